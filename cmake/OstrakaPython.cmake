@@ -26,7 +26,7 @@ endif()
 Python3_add_library(ostraka_python MODULE WITH_SOABI apps/python/module.cpp apps/python/objects.cpp
   apps/python/running.cpp apps/python/saved.cpp)
 target_include_directories(ostraka_python SYSTEM PRIVATE ${PYBIND11_INCLUDE})
-target_link_libraries(ostraka_python PRIVATE ostraka ostraka_flags)
+target_link_libraries(ostraka_python PRIVATE ostraka ostraka_flags fmt::fmt)
 # Placed beside the package's own files, so that the folder can be imported from; symbols of the library stay hidden in the module.
 set(OSTRAKA_PYTHON_BUILT ${CMAKE_BINARY_DIR}/python)
 set_target_properties(ostraka_python PROPERTIES OUTPUT_NAME _ostraka CXX_VISIBILITY_PRESET hidden

@@ -54,11 +54,12 @@ void read_memory(benchmark::State& state, int thread_count) {
 }
 
 void copy_memory(benchmark::State& state, int thread_count) {
-    const std::vector<std::uint64_t> from(array_bytes / 16, 7);
-    std::vector<std::uint64_t> to(from.size());
-    measure(state, thread_count, from.size(), block_words, array_bytes,
-            [&](std::size_t begin, std::size_t end) { std::memcpy(to.data() + begin, from.data() + begin, 8 * (end - begin)); });
-    if (to != from) state.SkipWithError("wrong copy");
+    const std::vector<std::uint64_t> source_array(array_bytes / 16, 7);
+    std::vector<std::uint64_t> target_array(source_array.size());
+    measure(state, thread_count, source_array.size(), block_words, array_bytes, [&](std::size_t begin, std::size_t end) {
+        std::memcpy(target_array.data() + begin, source_array.data() + begin, 8 * (end - begin));
+    });
+    if (target_array != source_array) state.SkipWithError("wrong copy");
 }
 
 /// Minimal traffic of a loop over all vertices and their one-rings: reads points and halfedges, writes normals.

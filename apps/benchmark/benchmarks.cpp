@@ -26,18 +26,18 @@ struct Target {
 };
 
 Target& kept_target(std::size_t vertices) {
-    static std::unique_ptr<Target> kept;
-    if (!kept || kept->vertices != vertices) {
-        kept.reset();
-        kept = std::make_unique<Target>();
-        const Making making = making_of(vertices);
-        kept->mesh = make_teapot(making.vertices, 2).mesh;
+    static std::unique_ptr<Target> cached;
+    if (!cached || cached->vertices != vertices) {
+        cached.reset();
+        cached = std::make_unique<Target>();
+        const TargetMeshing meshing = meshing_of(vertices);
+        cached->mesh = make_teapot(meshing.vertices, 2).mesh;
         RefineOptions options;
-        options.levels = making.levels;
-        if (options.levels > 0) refine(kept->mesh, options);
-        kept->vertices = vertices;
+        options.levels = meshing.levels;
+        if (options.levels > 0) refine(cached->mesh, options);
+        cached->vertices = vertices;
     }
-    return *kept;
+    return *cached;
 }
 
 struct Folder {
@@ -53,14 +53,14 @@ struct Folder {
 
 }  // namespace
 
-Making making_of(std::size_t vertices) {
-    Making making{vertices, 0};
-    for (; making.vertices > 500'000; making.vertices /= 4) ++making.levels;
-    return making;
+TargetMeshing meshing_of(std::size_t vertices) {
+    TargetMeshing meshing{vertices, 0};
+    for (; meshing.vertices > 500'000; meshing.vertices /= 4) ++meshing.levels;
+    return meshing;
 }
 
 const Source& source() {
-    static const Source made = [] {
+    static const Source source_data = [] {
         Source result;
         SyntheticMesh teapot = make_teapot(50'000, 1);
         result.regions = regions_from_labels(teapot.mesh, teapot.face_labels);
@@ -68,15 +68,15 @@ const Source& source() {
         result.mesh = std::move(teapot.mesh);
         return result;
     }();
-    return made;
+    return source_data;
 }
 
 const Mesh& target(std::size_t vertices) { return kept_target(vertices).mesh; }
 
 const SurfaceSearch& target_search(std::size_t vertices) {
-    Target& kept = kept_target(vertices);
-    if (!kept.search) kept.search = std::make_unique<SurfaceSearch>(kept.mesh);
-    return *kept.search;
+    Target& cached = kept_target(vertices);
+    if (!cached.search) cached.search = std::make_unique<SurfaceSearch>(cached.mesh);
+    return *cached.search;
 }
 
 const Path& scratch_folder() {

@@ -77,11 +77,11 @@ const Source& source();
 
 /// Up to 500,000 vertices the target is the same teapot, meshed independently; above, a mesh with a quarter or a sixteenth of
 /// the vertices whose triangles are subdivided into four, which is faster to make. The number of vertices is met within 0.1 %.
-struct Making {
+struct TargetMeshing {
     std::size_t vertices = 0;
     int levels = 0;
 };
-Making making_of(std::size_t vertices);
+TargetMeshing meshing_of(std::size_t vertices);
 
 /// One target is cached: requesting another number of vertices frees it and its search tree.
 const Mesh& target(std::size_t vertices);

@@ -17,7 +17,7 @@ namespace {
 /// An operation with its settings; file names are relative to a folder. Later steps use its outputs.
 struct Step {
     const char* operation;
-    const char* what;  ///< distinguishes runs of the same operation
+    const char* variant;  ///< distinguishes runs of the same operation
     const char* settings;
 };
 
@@ -100,11 +100,11 @@ const Step steps[]{
 std::optional<double> seconds_to_stop(const Step& step, const Path& folder, double after) {
     Context context;
     std::atomic<bool> is_done = false;
-    double told = -1;
+    double cancelled_at = -1;
     const Stopwatch clock;
     std::thread other([&] {
         while (!is_done && clock.seconds() < after) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        told = clock.seconds();
+        cancelled_at = clock.seconds();
         context.watch.cancel();
     });
     bool is_cancelled = false;
@@ -119,39 +119,39 @@ std::optional<double> seconds_to_stop(const Step& step, const Path& folder, doub
     is_done = true;
     other.join();
     if (failure) std::rethrow_exception(failure);
-    return is_cancelled ? std::optional(ended - told) : std::nullopt;
+    return is_cancelled ? std::optional(ended - cancelled_at) : std::nullopt;
 }
 
 void measure_step(const Step& step, const Path& folder) {
-    const std::string name = std::string(step.operation) + (*step.what == 0 ? "" : std::string(", ") + step.what);
-    constexpr double patience = 60;
+    const std::string name = std::string(step.operation) + (*step.variant == 0 ? "" : std::string(", ") + step.variant);
+    constexpr double time_limit = 60;
     const Stopwatch clock;
-    const auto first = seconds_to_stop(step, folder, patience);
-    const double whole = first ? patience : clock.seconds();
-    double longest = first.value_or(0);
+    const auto first_stop = seconds_to_stop(step, folder, time_limit);
+    const double full_duration = first_stop ? time_limit : clock.seconds();
+    double longest = first_stop.value_or(0);
     for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9})
-        if (const auto seconds = seconds_to_stop(step, folder, share * whole)) longest = std::max(longest, *seconds);
-    std::cout << "| " << name << " | " << (first ? "over " : "") << std::fixed << std::setprecision(first ? 0 : 1) << whole
-              << " | " << std::setprecision(2) << longest << " |" << std::endl;
+        if (const auto seconds = seconds_to_stop(step, folder, share * full_duration)) longest = std::max(longest, *seconds);
+    std::cout << "| " << name << " | " << (first_stop ? "over " : "") << std::fixed << std::setprecision(first_stop ? 0 : 1)
+              << full_duration << " | " << std::setprecision(2) << longest << " |" << std::endl;
 }
 
 }  // namespace
 
 int run_cancelling(const std::string& folder, const std::string& only) {
-    const Path data = Path(OSTRAKA_SOURCE_DIR) / "data", here = folder;
-    make_folder(here);
+    const Path data = Path(OSTRAKA_SOURCE_DIR) / "data", work_folder = folder;
+    make_folder(work_folder);
     for (const char* name : {"teapot.recipe.json", "statuette.recipe.json", "teapot-stretch.edit.json"})
-        write_file(here / name, read_file(data / name));
+        write_file(work_folder / name, read_file(data / name));
     for (const char* ending : {".ply", ".ant.json"})
-        write_file(here / (std::string("small") + ending), read_file(data / (std::string("statuette") + ending)));
+        write_file(work_folder / (std::string("small") + ending), read_file(data / (std::string("statuette") + ending)));
     std::cout << "| operation, a million faces | seconds in all | longest of the stops, seconds |\n|---|---|---|\n";
     int code = 0;
     for (const Step& step : steps) {
         if (std::string(step.operation).find(only) == std::string::npos) continue;
         try {
-            measure_step(step, here);
+            measure_step(step, work_folder);
         } catch (const std::exception& error) {
-            std::cout << "| " << step.operation << ", " << step.what << " | failed: " << error.what() << " | |" << std::endl;
+            std::cout << "| " << step.operation << ", " << step.variant << " | failed: " << error.what() << " | |" << std::endl;
             code = 1;
         }
     }

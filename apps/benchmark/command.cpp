@@ -55,19 +55,19 @@ std::string path_of(const std::string& name) { return (scratch_folder() / name).
 
 /// The teapot made by the command: binary PLY with labels (and, unless refined, colours).
 bool make_teapot(const std::string& name, std::size_t vertices, int seed) {
-    static std::map<std::string, bool> made;
-    const auto [known, is_new] = made.try_emplace(name, false);
-    if (!is_new) return known->second;
-    const Making making = making_of(vertices);
-    const std::string coarse = making.levels > 0 ? "coarse.ply" : name;
-    known->second = run_command({"mesh", "make", "teapot", path_of(coarse), "--vertices", std::to_string(making.vertices),
+    static std::map<std::string, bool> is_made;
+    const auto [entry, is_new] = is_made.try_emplace(name, false);
+    if (!is_new) return entry->second;
+    const TargetMeshing meshing = meshing_of(vertices);
+    const std::string coarse = meshing.levels > 0 ? "coarse.ply" : name;
+    entry->second = run_command({"mesh", "make", "teapot", path_of(coarse), "--vertices", std::to_string(meshing.vertices),
                                  "--seed", std::to_string(seed), "--quiet"})
                         .exit_code == 0;
-    if (making.levels > 0)
-        known->second = known->second && run_command({"mesh", "refine", path_of(coarse), path_of(name), "--levels",
-                                                      std::to_string(making.levels), "--quiet"})
+    if (meshing.levels > 0)
+        entry->second = entry->second && run_command({"mesh", "refine", path_of(coarse), path_of(name), "--levels",
+                                                      std::to_string(meshing.levels), "--quiet"})
                                                  .exit_code == 0;
-    return known->second;
+    return entry->second;
 }
 
 void report(benchmark::State& state, const CommandResult& run, std::size_t vertices) {
@@ -81,11 +81,11 @@ CommandResult measure_command(benchmark::State& state, const std::vector<std::st
                               const std::string& program = OSTRAKA_COMMAND) {
     CommandResult run;
     for ([[maybe_unused]] const auto lap : state) {
-        rusage own{};
-        ::getrusage(RUSAGE_SELF, &own);
+        rusage own_usage{};
+        ::getrusage(RUSAGE_SELF, &own_usage);
         run = run_program(program, arguments);
         if (run.exit_code != 0) state.SkipWithError(("exit code " + std::to_string(run.exit_code)).c_str());
-        else if (run.peak_bytes < 2048.0 * static_cast<double>(own.ru_maxrss))
+        else if (run.peak_bytes < 2048.0 * static_cast<double>(own_usage.ru_maxrss))
             state.SkipWithError("this process is too large for a measurement: run the command benchmarks alone");
         report(state, run, vertices);
     }
@@ -95,18 +95,18 @@ CommandResult measure_command(benchmark::State& state, const std::vector<std::st
 std::string target_file(std::size_t vertices) { return "target" + std::to_string(vertices) + ".ply"; }
 
 bool make_transfer_files(std::size_t vertices) {
-    static std::map<std::size_t, bool> made;
-    const auto [known, is_new] = made.try_emplace(vertices, false);
+    static std::map<std::size_t, bool> is_made;
+    const auto [entry, is_new] = is_made.try_emplace(vertices, false);
     if (is_new)
-        known->second = make_teapot("source.ply", 50'000, 1) && make_teapot(target_file(vertices), vertices, 2) &&
+        entry->second = make_teapot("source.ply", 50'000, 1) && make_teapot(target_file(vertices), vertices, 2) &&
                         run_command({"annotation", "apply", path_of("source.ply"), path_of("source.ant.json"),
                                      "--from-ply-labels", "--quiet"})
                                 .exit_code == 0;
-    return known->second;
+    return entry->second;
 }
 
 /// Minimal wall time of reading a transfer's input and building CGAL's tree over the target, by number of target vertices.
-std::map<std::size_t, double> least_seconds;
+std::map<std::size_t, double> min_seconds;
 
 void read_and_build(benchmark::State& state, std::size_t vertices) {
     if (!make_transfer_files(vertices)) {
@@ -116,10 +116,10 @@ void read_and_build(benchmark::State& state, std::size_t vertices) {
     const CommandResult run = measure_command(
         state, {read_and_build_tree, path_of("source.ply"), path_of("source.ant.json"), path_of(target_file(vertices))}, vertices,
         "/proc/self/exe");
-    if (run.exit_code == 0) least_seconds[vertices] = run.seconds;
+    if (run.exit_code == 0) min_seconds[vertices] = run.seconds;
 }
 
-void transfer_command(benchmark::State& state, std::size_t vertices, const std::vector<std::string>& more) {
+void transfer_command(benchmark::State& state, std::size_t vertices, const std::vector<std::string>& more_arguments) {
     if (!make_transfer_files(vertices)) {
         state.SkipWithError("the inputs could not be made");
         return;
@@ -131,21 +131,21 @@ void transfer_command(benchmark::State& state, std::size_t vertices, const std::
                                        path_of(target_file(vertices)),
                                        path_of("result.ant.json"),
                                        "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
     const CommandResult run = measure_command(state, arguments, vertices);
-    if (const auto least = least_seconds.find(vertices); least != least_seconds.end())
-        state.counters["of_reading_and_cgal_tree"] = run.seconds / least->second;
+    if (const auto entry = min_seconds.find(vertices); entry != min_seconds.end())
+        state.counters["of_reading_and_cgal_tree"] = run.seconds / entry->second;
 }
 
-/// Runs a command on the target only; 'more': arguments after the mesh file.
+/// Runs a command on the target only; `more_arguments`: those after the mesh file.
 void mesh_command(benchmark::State& state, std::size_t vertices, std::vector<std::string> arguments,
-                  const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {
+                  const std::vector<std::string>& more_arguments, const std::string& program = OSTRAKA_COMMAND) {
     if (!make_teapot(target_file(vertices), vertices, 2)) {
         state.SkipWithError("the input could not be made");
         return;
     }
     arguments.push_back(path_of(target_file(vertices)));
-    for (const std::string& argument : more) arguments.push_back(argument);
+    for (const std::string& argument : more_arguments) arguments.push_back(argument);
     measure_command(state, arguments, vertices, program);
 }
 
@@ -157,9 +157,9 @@ void study_command(benchmark::State& state, std::size_t vertices) {
         return;
     }
     const auto step = [&](const std::string& operation, const std::string& input, const std::string& output,
-                          const std::string& more) {
+                          const std::string& more_options) {
         return R"({"operation": ")" + operation + R"(", "keep": [")" + output + R"("], "with": {")" + input + R"(": ")" + mesh +
-               R"(")" + more + "}}";
+               R"(")" + more_options + "}}";
     };
     write_file(study, R"({"format": "ostraka-study", "version": 1, "title": "Five operations", "steps": {"curvature": )" +
                           step("measure map", "mesh", "output", R"(, "of": "mean-curvature")") + R"(, "thickness": )" +
@@ -167,20 +167,20 @@ void study_command(benchmark::State& state, std::size_t vertices) {
                           step("slice", "mesh", "output", R"(, "count": 20)") + R"(, "small": )" +
                           step("mesh simplify", "input", "output", R"(, "vertices": 100000)") + R"(, "picture": )" +
                           step("render", "meshes", "picture", "") + "}}");
-    double bare = 0;
+    double separate_seconds = 0;
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"measure", "map", mesh, path_of("five-1.npy"), "--of", "mean-curvature", "--quiet"},
           {"measure", "map", mesh, path_of("five-2.npy"), "--of", "gaussian-curvature", "--quiet"},
           {"slice", mesh, "--output", path_of("five-3"), "--count", "20", "--quiet"},
           {"mesh", "simplify", mesh, path_of("five-4.ply"), "--vertices", "100000", "--quiet"},
           {"render", mesh, path_of("five-5.png"), "--quiet"}}) {
-        const CommandResult one = run_command(arguments);
-        if (one.exit_code != 0) state.SkipWithError((arguments.front() + " failed").c_str());
-        bare += one.seconds;
+        const CommandResult command = run_command(arguments);
+        if (command.exit_code != 0) state.SkipWithError((arguments.front() + " failed").c_str());
+        separate_seconds += command.seconds;
     }
     const CommandResult run =
         measure_command(state, {"run", study, "--output", path_of("five-run"), "--again", "--quiet"}, vertices);
-    state.counters["of_bare_commands"] = run.seconds / bare;
+    state.counters["of_bare_commands"] = run.seconds / separate_seconds;
 }
 
 }  // namespace
@@ -220,10 +220,11 @@ void register_command_benchmarks() {
             "of_bare_commands", 1.05);
     for (const std::size_t vertices : {1'000'000, 8'000'000, 27'000'000}) {
         const auto add_mesh = [&](const std::string& name, const std::vector<std::string>& arguments,
-                                  const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {
-            return add(name + "/" + std::to_string(vertices), [vertices, arguments, more, program](benchmark::State& state) {
-                mesh_command(state, vertices, arguments, more, program);
-            });
+                                  const std::vector<std::string>& more_arguments, const std::string& program = OSTRAKA_COMMAND) {
+            return add(name + "/" + std::to_string(vertices),
+                       [vertices, arguments, more_arguments, program](benchmark::State& state) {
+                           mesh_command(state, vertices, arguments, more_arguments, program);
+                       });
         };
         add_mesh("reading", {read_mesh_only}, {}, "/proc/self/exe");
         add_mesh("mesh_info", {"mesh", "info"}, {"--quiet"});

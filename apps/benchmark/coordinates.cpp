@@ -20,7 +20,7 @@ Point on_ring(double a, double b, double radius) {
 }
 
 const Mesh& cage() {
-    static const Mesh made = [] {
+    static const Mesh cage_mesh = [] {
         TriangleSoup soup;
         constexpr Index columns = 20, rows = 10;
         for (Index i = 0; i < columns; ++i)
@@ -33,20 +33,21 @@ const Mesh& cage() {
             }
         return build_mesh(soup);
     }();
-    return made;
+    return cage_mesh;
 }
 
 const std::vector<Point>& points() {
-    static const std::vector<Point> made = [] {
-        std::vector<Point> list;
+    static const std::vector<Point> inner_points = [] {
+        std::vector<Point> torus_points;
         for (std::size_t i = 0; i < point_count; ++i) {
             // Evenly distributed inside the torus, by the golden ratio.
-            const double share = static_cast<double>(i) / point_count;
-            list.push_back(on_ring(2 * M_PI * share, 2 * M_PI * std::fmod(0.6180339887498949 * static_cast<double>(i), 1), 0.6));
+            const double fraction = static_cast<double>(i) / point_count;
+            torus_points.push_back(
+                on_ring(2 * M_PI * fraction, 2 * M_PI * std::fmod(0.6180339887498949 * static_cast<double>(i), 1), 0.6));
         }
-        return list;
+        return torus_points;
     }();
-    return made;
+    return inner_points;
 }
 
 /// Number of additions, multiplications, divisions and square roots in the loops over edges and faces (src/coords).

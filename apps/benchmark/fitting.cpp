@@ -17,13 +17,13 @@ namespace {
 
 AnnotationSet landmarks_of(const Statuette& statuette) {
     AnnotationSet set;
-    for (const StatuetteLandmark& place : statuette.landmarks) {
-        Annotation one;
-        one.id = static_cast<int>(set.annotations.size());
-        one.tag = place.name;
-        one.type = AnnotationType::point;
-        one.points = {place.vertex};
-        set.annotations.push_back(std::move(one));
+    for (const StatuetteLandmark& landmark : statuette.landmarks) {
+        Annotation annotation;
+        annotation.id = static_cast<int>(set.annotations.size());
+        annotation.tag = landmark.name;
+        annotation.type = AnnotationType::point;
+        annotation.points = {landmark.vertex};
+        set.annotations.push_back(std::move(annotation));
     }
     return set;
 }
@@ -34,7 +34,7 @@ struct Class {
 };
 
 const Class& template_of_class() {
-    static const Class made = [] {
+    static const Class template_class = [] {
         StatuetteParameters parameters;
         parameters.wall = 0;
         parameters.vertices = 25'000;
@@ -42,14 +42,14 @@ const Class& template_of_class() {
         AnnotationSet set = landmarks_of(statuette);
         return Class{std::move(statuette.mesh), std::move(set)};
     }();
-    return made;
+    return template_class;
 }
 
 /// A share of another member of the class around a landmark, meshed independently like a scan, with about `vertices` vertices.
 const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark = "head joint", double share = 0.5) {
-    static std::map<std::pair<std::uint64_t, std::string>, Fragment> made;
-    const auto [entry, fresh] = made.try_emplace({vertices, landmark});
-    if (!fresh) return entry->second;
+    static std::map<std::pair<std::uint64_t, std::string>, Fragment> fragments;
+    const auto [entry, is_new] = fragments.try_emplace({vertices, landmark});
+    if (!is_new) return entry->second;
     StatuetteParameters parameters;
     parameters.wall = 0;
     parameters.vertices = static_cast<std::uint64_t>(static_cast<double>(vertices) / share);
@@ -57,33 +57,33 @@ const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark 
     parameters.head_height = 50;
     parameters.arm_length = 76;
     parameters.seed = 2;
-    const Statuette whole = generate_statuette(parameters);
-    const auto top = std::find_if(whole.landmarks.begin(), whole.landmarks.end(),
-                                  [&](const StatuetteLandmark& one) { return one.name == landmark; });
+    const Statuette statuette = generate_statuette(parameters);
+    const auto top = std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
+                                  [&](const StatuetteLandmark& candidate) { return candidate.name == landmark; });
     BreakOptions options;
     options.share = share;
     options.noise = 0.001;
-    BrokenPiece piece = break_off(whole.mesh, top->place, options);
+    BrokenPiece piece = break_off(statuette.mesh, top->place, options);
     Fragment& fragment = entry->second;
     fragment.name = landmark;
-    for (Annotation& one : landmarks_of(whole).annotations) {
-        const auto found = std::find(piece.vertices.begin(), piece.vertices.end(), one.points.front());
-        if (found == piece.vertices.end()) continue;
-        one.points = {static_cast<Index>(found - piece.vertices.begin())};
-        fragment.annotations.annotations.push_back(std::move(one));
+    for (Annotation& annotation : landmarks_of(statuette).annotations) {
+        const auto position = std::find(piece.vertices.begin(), piece.vertices.end(), annotation.points.front());
+        if (position == piece.vertices.end()) continue;
+        annotation.points = {static_cast<Index>(position - piece.vertices.begin())};
+        fragment.annotations.annotations.push_back(std::move(annotation));
     }
     fragment.mesh = std::move(piece.mesh);
     return fragment;
 }
 
 void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
-    const Class& ours = template_of_class();
+    const Class& template_class = template_of_class();
     const Fragment& fragment = fragment_of(vertices);
     set_threads(thread_count);
     std::map<std::string, double> seconds;
     double laps = 0;
     for ([[maybe_unused]] const auto lap : state) {
-        const Reconstruction result = reconstruct(ours.mesh, ours.set, {}, {&fragment});
+        const Reconstruction result = reconstruct(template_class.mesh, template_class.set, {}, {&fragment});
         if (!result.placement.any()) state.SkipWithError("the fragment was not placed");
         for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
         seconds["fit: matching"] += result.fit.seconds_matching;
@@ -93,41 +93,41 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
     }
     set_threads(0);
     for (const auto& [phase, time] : seconds) state.counters[phase + " ms"] = 1000 * time / laps;
-    state.counters["vertices"] = static_cast<double>(ours.mesh.number_of_vertices());
+    state.counters["vertices"] = static_cast<double>(template_class.mesh.number_of_vertices());
     state.counters["fragment"] = static_cast<double>(fragment.mesh.number_of_vertices());
 }
 
-/// Two fragments: both new, the second added to the first, only one, or one left after the second was removed. `bare`: without
-/// landmarks, so that poses are searched.
-void change(benchmark::State& state, const std::string& what, bool bare) {
-    const Class& ours = template_of_class();
+/// Two fragments: both new, the second added to the first, only one, or one left after the second was removed; with or without
+/// landmarks; without them, poses are searched.
+void change(benchmark::State& state, const std::string& variant, bool without_landmarks) {
+    const Class& template_class = template_of_class();
     const std::array<const Fragment*, 2> fragments{&fragment_of(10'000, "head joint", 0.4),
                                                    &fragment_of(10'000, "base centre", 0.2)};
     ReconstructOptions options;
-    options.search.search = bare ? SearchOptions::Search::always : SearchOptions::Search::never;
+    options.search.search = without_landmarks ? SearchOptions::Search::always : SearchOptions::Search::never;
     set_threads(2);
     const RelationGraph no_graph;
-    Reconstructor kept(ours.mesh, ours.set, no_graph, options);
-    kept.add(*fragments[0]);
-    (void)kept.run();
+    Reconstructor reconstructor(template_class.mesh, template_class.set, no_graph, options);
+    reconstructor.add(*fragments[0]);
+    (void)reconstructor.run();
     std::map<std::string, double> seconds;
     double laps = 0;
     for ([[maybe_unused]] const auto lap : state) {
         state.PauseTiming();
-        if (what == "removed") {
-            kept.add(*fragments[1]);
-            (void)kept.run();
+        if (variant == "removed") {
+            reconstructor.add(*fragments[1]);
+            (void)reconstructor.run();
         }
         state.ResumeTiming();
         Reconstruction result;
-        if (what == "two") {
-            result = reconstruct(ours.mesh, ours.set, {}, {fragments[0], fragments[1]}, options);
-        } else if (what == "one") {
-            result = reconstruct(ours.mesh, ours.set, {}, {fragments[0]}, options);
+        if (variant == "two") {
+            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0], fragments[1]}, options);
+        } else if (variant == "one") {
+            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0]}, options);
         } else {
-            if (what == "added") kept.add(*fragments[1]);
-            else kept.remove(1);
-            result = kept.run();
+            if (variant == "added") reconstructor.add(*fragments[1]);
+            else reconstructor.remove(1);
+            result = reconstructor.run();
         }
         for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
         seconds["fit: matching"] += result.fit.seconds_matching;
@@ -135,9 +135,9 @@ void change(benchmark::State& state, const std::string& what, bool bare) {
         seconds["fit: coarsening"] += result.fit.seconds_coarsening;
         ++laps;
         state.PauseTiming();
-        if (what == "added") {
-            kept.remove(1);
-            (void)kept.run();
+        if (variant == "added") {
+            reconstructor.remove(1);
+            (void)reconstructor.run();
         }
         state.ResumeTiming();
     }
@@ -153,11 +153,11 @@ void register_fitting_benchmarks() {
             with_both_times(benchmark::RegisterBenchmark(
                 ("fitting/fragment:" + std::to_string(vertices) + "/threads:" + std::to_string(thread_count)).c_str(),
                 [=](benchmark::State& state) { run(state, vertices, thread_count); }));
-    for (const bool bare : {false, true})
-        for (const std::string what : {"two", "added", "one", "removed"})
+    for (const bool without_landmarks : {false, true})
+        for (const std::string variant : {"two", "added", "one", "removed"})
             with_both_times(benchmark::RegisterBenchmark(
-                (std::string("fitting/two_fragments/") + (bare ? "searched/" : "landmarks/") + what).c_str(),
-                [=](benchmark::State& state) { change(state, what, bare); }));
+                (std::string("fitting/two_fragments/") + (without_landmarks ? "searched/" : "landmarks/") + variant).c_str(),
+                [=](benchmark::State& state) { change(state, variant, without_landmarks); }));
 }
 
 }  // namespace ostraka::bench

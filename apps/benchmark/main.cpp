@@ -7,7 +7,7 @@
 namespace {
 
 /// Removes "--name=value" from the arguments and returns the value.
-std::string taken(int& argc, char** argv, const std::string& name) {
+std::string take_value(int& argc, char** argv, const std::string& name) {
     const std::string start = "--" + name + "=";
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
         register_slicing_benchmarks();
         register_fitting_benchmarks();
         register_transfer_benchmarks();
-        const std::string page = taken(argc, argv, "page");
+        const std::string page = take_value(argc, argv, "page");
         benchmark::Initialize(&argc, argv);
         if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
         PageReporter reporter;

@@ -17,8 +17,8 @@ namespace {
 using Run = benchmark::BenchmarkReporter::Run;
 
 std::map<std::pair<std::string, std::string>, double>& aims() {
-    static std::map<std::pair<std::string, std::string>, double> made;
-    return made;
+    static std::map<std::pair<std::string, std::string>, double> aim_values;
+    return aim_values;
 }
 
 std::string processor() {

@@ -8,14 +8,14 @@ import numpy
 import ostraka
 
 
-def measure(what, work, repeats=200):
+def measure(title, work, repeats=200):
     work()
     times = []
     for _ in range(repeats):
         begin = time.perf_counter()
         work()
         times.append(1e6 * (time.perf_counter() - begin))
-    print(f"{what:48} {statistics.median(times):10.1f} us")
+    print(f"{title:48} {statistics.median(times):10.1f} us")
 
 
 def grid(side):

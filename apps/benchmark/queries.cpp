@@ -24,7 +24,7 @@ struct QuerySet {
 };
 
 const QuerySet& query_set() {
-    static const QuerySet made = [] {
+    static const QuerySet queries = [] {
         QuerySet result;
         const Mesh& mesh = source().mesh;
         for (const Vertex v : mesh.vertices()) {
@@ -35,23 +35,24 @@ const QuerySet& query_set() {
         result.far = 0.02 * box_diagonal(mesh);
         return result;
     }();
-    return made;
+    return queries;
 }
 
-Index ask(const SurfaceSearch& search, const QuerySet& from, Query query, std::size_t i) {
-    if (query == Query::closest_point) return search.closest(from.points[i]).face;
-    const auto hits = search.line_hits(from.points[i], from.normals[i], query == Query::near_line ? from.near : from.far);
+Index answer_query(const SurfaceSearch& search, const QuerySet& query_points, Query query, std::size_t i) {
+    if (query == Query::closest_point) return search.closest(query_points.points[i]).face;
+    const auto hits = search.line_hits(query_points.points[i], query_points.normals[i],
+                                       query == Query::near_line ? query_points.near : query_points.far);
     return hits.empty() ? no_index : hits.front().face;
 }
 
 void run_queries(benchmark::State& state, Query query, int thread_count) {
-    const QuerySet& from = query_set();
+    const QuerySet& query_points = query_set();
     const SurfaceSearch& search = target_search(target_vertices);
-    std::vector<Index> faces(from.points.size());
+    std::vector<Index> faces(query_points.points.size());
     set_threads(thread_count);
     for ([[maybe_unused]] const auto lap : state)
         parallel_for(
-            faces.size(), [&](std::size_t i) { faces[i] = ask(search, from, query, i); }, 64);
+            faces.size(), [&](std::size_t i) { faces[i] = answer_query(search, query_points, query, i); }, 64);
     set_threads(0);
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * faces.size()));
 

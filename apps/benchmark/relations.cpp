@@ -35,9 +35,9 @@ void find_topology(benchmark::State& state) {
     std::size_t faces = 0, pairs = 0;
     for (const Annotation& annotation : set.annotations) faces += annotation.faces.size();
     for ([[maybe_unused]] const auto lap : state) {
-        const Topology found = topology(mesh, set);
+        const Topology result = topology(mesh, set);
         pairs = 0;
-        for (const auto& containers : found.order.containers) pairs += containers.size();
+        for (const auto& containers : result.order.containers) pairs += containers.size();
     }
     if (pairs == 0) state.SkipWithError("no region contains another");
     state.counters["faces_by_depth"] = static_cast<double>(faces);

@@ -15,7 +15,7 @@ constexpr int planes = 200;
 
 /// A hollow vase, so that walls have a thickness: a synthetic mesh with each triangle subdivided into sixteen.
 const Mesh& vase() {
-    static const Mesh made = [] {
+    static const Mesh vase_mesh = [] {
         MakeOptions options;
         options.vertices = 62'500;
         Mesh mesh = make_mesh(synthetic_object("vase"), options).mesh;
@@ -24,7 +24,7 @@ const Mesh& vase() {
         refine(mesh, finer);
         return mesh;
     }();
-    return made;
+    return vase_mesh;
 }
 
 SliceStack cut(const Mesh& mesh) {

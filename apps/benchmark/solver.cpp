@@ -41,17 +41,17 @@ std::vector<int> patch(const Points& points, std::size_t count) {
     return ids;
 }
 
-using List = std::vector<std::unique_ptr<Constraint>>;
+using ConstraintList = std::vector<std::unique_ptr<Constraint>>;
 
-void add_plane(List& list, const Points& rest) {
-    list.push_back(make_constraint("Plane", patch(rest, static_cast<std::size_t>(rest.cols() / 40)), 1, {}, rest));
+void add_plane(ConstraintList& constraints, const Points& rest) {
+    constraints.push_back(make_constraint("Plane", patch(rest, static_cast<std::size_t>(rest.cols() / 40)), 1, {}, rest));
 }
 
-void add_laplacians(List& list, const Mesh& mesh, const Points& rest, double weight) {
+void add_laplacians(ConstraintList& constraints, const Mesh& mesh, const Points& rest, double weight) {
     for (const Vertex v : mesh.vertices()) {
         std::vector<int> ids{static_cast<int>(v.idx())};
         for (const Vertex w : CGAL::vertices_around_target(mesh.halfedge(v), mesh)) ids.push_back(static_cast<int>(w.idx()));
-        list.push_back(make_constraint("LaplacianDisplacement", std::move(ids), weight, {}, rest));
+        constraints.push_back(make_constraint("LaplacianDisplacement", std::move(ids), weight, {}, rest));
     }
 }
 
@@ -96,11 +96,11 @@ void laplacian_and_plane(benchmark::State& state, std::size_t vertices) {
     for ([[maybe_unused]] const auto lap : state) {
         forget_peak();
         before = resident("VmRSS");
-        List list;
-        add_laplacians(list, mesh, rest, 1);
-        add_plane(list, rest);
+        ConstraintList constraint_list;
+        add_laplacians(constraint_list, mesh, rest, 1);
+        add_plane(constraint_list, rest);
         constraints = resident("VmRSS");
-        MeshSpaceSolver solver(std::move(list), rest);
+        MeshSpaceSolver solver(std::move(constraint_list), rest);
         Points x = rest;
         summary = solver.solve(x, plain(iterations));
         peak = resident("VmHWM");
@@ -115,10 +115,10 @@ void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
     const Points rest = points_of_mesh(target(vertices));
     SolveSummary summary;
     for ([[maybe_unused]] const auto lap : state) {
-        List list;
-        for (int i = 0; i < rest.cols(); ++i) list.push_back(make_constraint("Closeness", {i}, 1, {}, rest));
-        add_plane(list, rest);
-        MeshSpaceSolver solver(std::move(list), rest);
+        ConstraintList constraints;
+        for (int i = 0; i < rest.cols(); ++i) constraints.push_back(make_constraint("Closeness", {i}, 1, {}, rest));
+        add_plane(constraints, rest);
+        MeshSpaceSolver solver(std::move(constraints), rest);
         Points x = rest;
         summary = solver.solve(x, plain(iterations));
     }
@@ -126,15 +126,15 @@ void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
 }
 
 /// The vertices of each flower of the synthetic teapot.
-std::vector<std::vector<int>> flowers_of(const SyntheticMesh& made) {
+std::vector<std::vector<int>> flowers_of(const SyntheticMesh& teapot) {
     std::vector<std::vector<int>> flowers;
     const auto& parts = synthetic_object("teapot").parts;
     for (std::size_t part = 0; part < parts.size(); ++part) {
         if (parts[part].find("flower") == std::string::npos) continue;
         std::set<int> members;
-        for (const Face f : made.mesh.faces())
-            if (made.face_labels[f.idx()] == static_cast<int>(part))
-                for (const Vertex v : CGAL::vertices_around_face(made.mesh.halfedge(f), made.mesh))
+        for (const Face f : teapot.mesh.faces())
+            if (teapot.face_labels[f.idx()] == static_cast<int>(part))
+                for (const Vertex v : CGAL::vertices_around_face(teapot.mesh.halfedge(f), teapot.mesh))
                     members.insert(static_cast<int>(v.idx()));
         if (members.size() >= 10) flowers.emplace_back(members.begin(), members.end());
     }
@@ -144,28 +144,29 @@ std::vector<std::vector<int>> flowers_of(const SyntheticMesh& made) {
 /// The stretched teapot with rigid flowers whose centres are on one level (the thesis, figure 5.3): iterations until phi - best
 /// has fallen to a thousandth of its value at the start, and of its value after the first step.
 void same_level(benchmark::State& state, int window) {
-    MakeOptions making;
-    making.vertices = 20'000;
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), making);
-    const Mesh& mesh = made.mesh;
+    MakeOptions make_options;
+    make_options.vertices = 20'000;
+    const SyntheticMesh teapot = make_mesh(synthetic_object("teapot"), make_options);
+    const Mesh& mesh = teapot.mesh;
     const Points rest = points_of_mesh(mesh);
     Points stretched = rest;
     stretched.row(2) *= 1.4;
     const auto build = [&] {
-        List list;
-        add_laplacians(list, mesh, stretched, 2);
+        ConstraintList constraints;
+        add_laplacians(constraints, mesh, stretched, 2);
         std::vector<int> centres;
-        for (const std::vector<int>& ids : flowers_of(made)) {
+        for (const std::vector<int>& ids : flowers_of(teapot)) {
             Eigen::Vector3d mean = Eigen::Vector3d::Zero();
             for (const int i : ids) mean += rest.col(i) / static_cast<double>(ids.size());
-            const auto off = [&](int i) { return (rest.col(i) - mean).squaredNorm(); };
-            centres.push_back(*std::min_element(ids.begin(), ids.end(), [&](int a, int b) { return off(a) < off(b); }));
-            list.push_back(make_constraint("Rigid", ids, 4, {}, rest));
+            const auto squared_distance = [&](int i) { return (rest.col(i) - mean).squaredNorm(); };
+            centres.push_back(*std::min_element(ids.begin(), ids.end(),
+                                                [&](int a, int b) { return squared_distance(a) < squared_distance(b); }));
+            constraints.push_back(make_constraint("Rigid", ids, 4, {}, rest));
         }
         ConstraintParameters upright;
         upright.direction = Eigen::Vector3d(0.1, 0, 1);
-        list.push_back(make_constraint("Orientation", centres, 4, upright, rest));
-        return list;
+        constraints.push_back(make_constraint("Orientation", centres, 4, upright, rest));
+        return constraints;
     };
     SolveOptions options;
     options.tolerance = 0;
@@ -218,22 +219,22 @@ void through_cage(benchmark::State& state, Kind kind) {
     const Points rest = points_of_mesh(target(100'000));
     Points cage;
     const CageWeights weights = some_weights(rest, cage);
-    List list;
+    ConstraintList constraints;
     const int half = static_cast<int>(rest.cols() / 2);
     if (kind == Kind::edges) {
         ConstraintParameters shorter;
         shorter.min = shorter.max = 0.9;
-        for (int i = 0; i < half; ++i) list.push_back(make_constraint("EdgeStrain", {i, i + 1}, 1, shorter, rest));
+        for (int i = 0; i < half; ++i) constraints.push_back(make_constraint("EdgeStrain", {i, i + 1}, 1, shorter, rest));
     } else {
         for (int group = 0; group < 5; ++group) {
             std::vector<int> ids;
             for (int i = group * (half / 5); i < (group + 1) * (half / 5); ++i) ids.push_back(i);
-            list.push_back(make_constraint(kind == Kind::planes ? "Plane" : "Rigid", ids, 1, {}, rest));
+            constraints.push_back(make_constraint(kind == Kind::planes ? "Plane" : "Rigid", ids, 1, {}, rest));
         }
     }
-    list.push_back(make_constraint("Closeness", {static_cast<int>(rest.cols()) - 1}, 1, {}, rest));
+    constraints.push_back(make_constraint("Closeness", {static_cast<int>(rest.cols()) - 1}, 1, {}, rest));
     const std::size_t rows = kind == Kind::edges ? static_cast<std::size_t>(half) : 0;
-    CageSpaceSolver solver(std::move(list), weights, cage);
+    CageSpaceSolver solver(std::move(constraints), weights, cage);
     solver.initialize();
     Points c = 1.1 * cage;
     const SolveSummary first = solver.solve(c, plain(1));
@@ -255,38 +256,38 @@ void through_cage(benchmark::State& state, Kind kind) {
 /// targets, followed by 20 iterations and the update of all mesh vertices. Cage, weights and factorisation do not change
 /// between edits and are computed before.
 void interactive_edit(benchmark::State& state) {
-    MakeOptions making;
-    making.vertices = 60'000;
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), making);
-    const Mesh cage_mesh = make_cage(made.mesh).cage;
-    const Points mesh_points = points_of_mesh(made.mesh), cage = points_of_mesh(cage_mesh);
+    MakeOptions make_options;
+    make_options.vertices = 60'000;
+    const SyntheticMesh teapot = make_mesh(synthetic_object("teapot"), make_options);
+    const Mesh cage_mesh = make_cage(teapot.mesh).cage;
+    const Points mesh_points = points_of_mesh(teapot.mesh), cage = points_of_mesh(cage_mesh);
     // Additional rows for the handles, below those of the mesh, so that the handles have targets.
     const Eigen::Index n = mesh_points.cols(), handles = cage.cols();
     CageWeights weights(n + handles, handles);
-    weights.topRows(n) = compute_coordinates("mean-value", cage_mesh, made.mesh).vertex;
+    weights.topRows(n) = compute_coordinates("mean-value", cage_mesh, teapot.mesh).vertex;
     weights.bottomRows(handles).setIdentity();
     Points rest(3, n + handles);
     rest << mesh_points, cage;
     std::vector<int> ids(static_cast<std::size_t>(handles));
     std::iota(ids.begin(), ids.end(), static_cast<int>(n));
-    List list;
-    list.push_back(make_constraint("Closeness", ids, 1, {}, rest));
+    ConstraintList constraints;
+    constraints.push_back(make_constraint("Closeness", ids, 1, {}, rest));
     std::vector<int> members;
     ConstraintParameters level;
     level.direction = Eigen::Vector3d::UnitZ();
     int count = 0;
-    for (const std::vector<int>& flower : flowers_of(made)) {
-        list.push_back(make_constraint("Rigid", flower, 50, {}, rest));
+    for (const std::vector<int>& flower : flowers_of(teapot)) {
+        constraints.push_back(make_constraint("Rigid", flower, 50, {}, rest));
         members.insert(members.end(), flower.begin(), flower.end());
         level.stations.insert(level.stations.end(), flower.size(), count++);
     }
-    list.push_back(make_constraint("MeansOnLevel", members, 50, level, rest));
-    CageSpaceSolver solver(std::move(list), weights, cage);
+    constraints.push_back(make_constraint("MeansOnLevel", members, 50, level, rest));
+    CageSpaceSolver solver(std::move(constraints), weights, cage);
     solver.initialize();
     SolveOptions options;
     options.iterations = 20;
     options.tolerance = 0;
-    double targets = 0, update = 0, laps = 0, done = 0;
+    double targets = 0, update = 0, laps = 0, total_iterations = 0;
     SolveTimes times;
     for ([[maybe_unused]] const auto lap : state) {
         const auto now = std::chrono::steady_clock::now;
@@ -303,11 +304,11 @@ void interactive_edit(benchmark::State& state) {
         times.project += summary.times.project;
         times.solve += summary.times.solve;
         times.accelerate += summary.times.accelerate;
-        done += summary.iterations;
+        total_iterations += summary.iterations;
         laps += 1;
         if (!summary.usable) state.SkipWithError("not solved");
     }
-    state.counters["iterations"] = done / laps;
+    state.counters["iterations"] = total_iterations / laps;
     state.counters["targets_ms"] = 1e3 * targets / laps;  // including their part of the right-hand side
     state.counters["project_ms"] = 1e3 * times.project / laps;
     state.counters["solve_ms"] = 1e3 * times.solve / laps;

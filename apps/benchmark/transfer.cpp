@@ -19,8 +19,8 @@ std::map<std::size_t, double> cgal_seconds;
 
 void measure_cgal_tree(std::size_t vertices) {
     const double seconds = seconds_of_cgal_tree(target(vertices));
-    const auto [known, is_new] = cgal_seconds.try_emplace(vertices, seconds);
-    if (!is_new) known->second = std::min(known->second, seconds);
+    const auto [entry, is_new] = cgal_seconds.try_emplace(vertices, seconds);
+    if (!is_new) entry->second = std::min(entry->second, seconds);
 }
 
 /// Times laps one by one, excluding the time to free their results.
@@ -31,7 +31,7 @@ public:
     template <class Lap>
     void time(const Lap& lap) {
         const auto start = std::chrono::steady_clock::now();
-        const auto kept = lap();
+        const auto result = lap();
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         state_.SetIterationTime(seconds);
         fastest_ = std::min(fastest_, seconds);
@@ -67,7 +67,7 @@ void build_search(benchmark::State& state, std::size_t vertices) {
 }
 
 /// Empty if every region was transferred; on a target at least as fine as the source, its position and size are checked too.
-std::string what_is_wrong(const TransferResult& result, bool overlap) {
+std::string problem_of(const TransferResult& result, bool overlap) {
     for (const TransferScore& score : result.scores) {
         const std::string region = "region " + std::to_string(score.id);
         if (score.outcome != TransferOutcome::kept) return region + " " + to_string(score.outcome);
@@ -78,9 +78,9 @@ std::string what_is_wrong(const TransferResult& result, bool overlap) {
 }
 
 void transfer_regions(benchmark::State& state, std::size_t vertices, bool with_tree, bool overlap) {
-    const Source& from = source();
+    const Source& source_data = source();
     const Mesh& mesh = target(vertices);
-    const SurfaceSearch* const standing = with_tree ? nullptr : &target_search(vertices);
+    const SurfaceSearch* const existing_search = with_tree ? nullptr : &target_search(vertices);
     TransferOptions options;
     options.overlap = overlap;
     TransferTimes times;
@@ -89,9 +89,10 @@ void transfer_regions(benchmark::State& state, std::size_t vertices, bool with_t
         timer.time([&] {
             std::unique_ptr<SurfaceSearch> search;
             if (with_tree) search = std::make_unique<SurfaceSearch>(mesh);
-            const TransferResult result = transfer(from.mesh, from.regions, with_tree ? *search : *standing, options);
+            const TransferResult result =
+                transfer(source_data.mesh, source_data.regions, with_tree ? *search : *existing_search, options);
             times = result.times;
-            if (const std::string wrong = what_is_wrong(result, overlap); !wrong.empty()) state.SkipWithError(wrong.c_str());
+            if (const std::string problem = problem_of(result, overlap); !problem.empty()) state.SkipWithError(problem.c_str());
             return search;
         });
     timer.report();
@@ -121,11 +122,11 @@ void register_transfer_benchmarks() {
         add("tree/search", [=](benchmark::State& state) { build_search(state, vertices); });
         add("transfer/without_overlap", transferring(false, false));
         add("transfer/with_overlap", transferring(false, true));
-        const std::string both = add("transfer/and_tree_without_overlap", transferring(true, false)),
-                          all = add("transfer/and_tree_with_overlap", transferring(true, true));
+        const std::string without_overlap = add("transfer/and_tree_without_overlap", transferring(true, false)),
+                          with_overlap = add("transfer/and_tree_with_overlap", transferring(true, true));
         if (vertices < 1'000'000) continue;  // below, the source dominates the work
-        set_aim(both, "of_cgal_tree", 1);
-        set_aim(all, "of_cgal_tree", 1.3);
+        set_aim(without_overlap, "of_cgal_tree", 1);
+        set_aim(with_overlap, "of_cgal_tree", 1.3);
     }
 }
 

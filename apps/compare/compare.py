@@ -20,8 +20,8 @@ import numpy
 here = pathlib.Path(__file__).resolve().parent
 
 
-def measured(words):
-    """Wall seconds, peak memory in MB, and what the process printed."""
+def run_process(words):
+    """Wall seconds, exit code, standard output and standard error of the process."""
     begin = time.perf_counter()
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     printed, problems = process.communicate()
@@ -31,17 +31,17 @@ def measured(words):
 def with_memory(words):
     """GNU time measures the peak of the process that it waits for."""
     with tempfile.NamedTemporaryFile("r") as file:
-        seconds, code, printed, problems = measured(["/usr/bin/time", "-f", "%M", "-o", file.name, *map(str, words)])
+        seconds, code, printed, problems = run_process(["/usr/bin/time", "-f", "%M", "-o", file.name, *map(str, words)])
         if code not in (0, 3):
             sys.exit(f"compare: {' '.join(map(str, words))} ended with {code}: {problems[-600:]}")
         return {"seconds": seconds, "MB": int(file.read().split()[-1]) / 1024, "printed": printed}
 
 
-def own(told):
-    """What a peer prints of itself: our reports (run.seconds) or a line of JSON."""
-    begin = told["printed"].find("{")
+def document_of(run):
+    """The JSON that a peer prints: a report of Ostraka (run.seconds) or a line of JSON."""
+    begin = run["printed"].find("{")
     try:
-        document = json.loads(told["printed"][begin:]) if begin >= 0 else {}
+        document = json.loads(run["printed"][begin:]) if begin >= 0 else {}
     except ValueError:
         document = {}
     return document
@@ -52,23 +52,23 @@ class Task:
         self.title, self.note, self.peers = title, note, {}
 
     def peer(self, name, words, error=None):
-        """`error`: from what the process told, a text for the last column."""
+        """`error`: makes the text of the last column from the document of a run."""
         self.peers[name] = (words, error)
         return self
 
     def run(self, laps):
-        told = {name: [] for name in self.peers}
+        runs = {name: [] for name in self.peers}
         for _ in range(laps):
             for name, (words, _) in self.peers.items():
-                told[name].append(with_memory(words))
+                runs[name].append(with_memory(words))
         rows = []
         for name, (_, error) in self.peers.items():
-            several = sorted(told[name], key=lambda one: one["seconds"])
-            one = several[len(several) // 2]
-            document = own(one) | {"printed": one["printed"]}
+            sorted_runs = sorted(runs[name], key=lambda run: run["seconds"])
+            median_run = sorted_runs[len(sorted_runs) // 2]
+            document = document_of(median_run) | {"printed": median_run["printed"]}
             work = document.get("work")
-            rows.append([name, f"{one['seconds']:.2f}", "" if work is None else f"{work + document.get('build', 0):.3f}",
-                         f"{one['MB']:.0f}", error(document) if error else ""])
+            rows.append([name, f"{median_run['seconds']:.2f}", "" if work is None else f"{work + document.get('build', 0):.3f}",
+                         f"{median_run['MB']:.0f}", error(document) if error else ""])
         best = min(float(row[1]) for row in rows)
         print(f"### {self.title}\n\n{self.note}{chr(10) * 2 if self.note else ''}"
               "| by | whole process, s | work alone, s | MB | result |\n|---|---:|---:|---:|---|")
@@ -124,7 +124,7 @@ def main():
         pathlib.Path(file).write_text(f'<!DOCTYPE FilterScript><FilterScript><filter name="{title}">{text}</filter></FilterScript>')
         return file
 
-    def whole(value):
+    def integer(value):
         return ("RichInt", value)
 
     def real(value):
@@ -150,91 +150,91 @@ def main():
     slicing.peer("CGAL 5.5", [peers, "slice", "cgal", large, "100"], length)
     slicing.peer("VTK 9.1", [*vtk, "slice", large, "100"], length)
 
-    def off(file):
-        def told(_):
+    def error_of(file):
+        def mean_and_maximum(_):
             words = subprocess.run([peers, "closest", "ours", file, large], capture_output=True, text=True, check=True)
             distances = json.loads(words.stdout)
             return f"mean {distances['mean']:.2e}, maximum {distances['maximum']:.2e} mm off"
-        return told
+        return mean_and_maximum
 
-    wanted = max(300, n // 20)
-    simplify = Task(f"{counts} simplified to {wanted:,}", "Off: distance of the original's vertices from what is left.")
-    simplify.peer("Ostraka", [ostraka, "mesh", "simplify", large, "so.ply", "--vertices", str(wanted), "--quiet"], off("so.ply"))
-    simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(wanted)], off("sc.ply"))
-    simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(wanted)], off("sm.ply"))
-    simplify.peer("VTK 9.1, quadrics", [*vtk, "simplify", large, "sv.ply", str(wanted)], off("sv.ply"))
-    script = filter_script("simplify.mlx", "Simplification: Quadric Edge Collapse Decimation", TargetFaceNum=whole(2 * wanted),
+    target_count = max(300, n // 20)
+    simplify = Task(f"{counts} simplified to {target_count:,}", "Off: distance of the original's vertices from what is left.")
+    simplify.peer("Ostraka", [ostraka, "mesh", "simplify", large, "so.ply", "--vertices", str(target_count), "--quiet"], error_of("so.ply"))
+    simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(target_count)], error_of("sc.ply"))
+    simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(target_count)], error_of("sm.ply"))
+    simplify.peer("VTK 9.1, quadrics", [*vtk, "simplify", large, "sv.ply", str(target_count)], error_of("sv.ply"))
+    script = filter_script("simplify.mlx", "Simplification: Quadric Edge Collapse Decimation", TargetFaceNum=integer(2 * target_count),
                            TargetPerc=real(0), QualityThr=real(0.3), PreserveBoundary=flag(False), BoundaryWeight=real(1),
                            PreserveNormal=flag(False), PreserveTopology=flag(False), OptimalPlacement=flag(True),
                            PlanarQuadric=flag(False), PlanarWeight=real(0.001), QualityWeight=flag(False), AutoClean=flag(True),
                            Selected=flag(False))
-    by_meshlab(simplify, "MeshLab 2020.09, quadrics", ["-i", large, "-o", "sl.ply", "-s", script], off("sl.ply"))
+    by_meshlab(simplify, "MeshLab 2020.09, quadrics", ["-i", large, "-o", "sl.ply", "-s", script], error_of("sl.ply"))
 
     def distances(document):
         return f"mean {document['mean']:.6g}, maximum {document['maximum']:.6g} mm"
 
     closest = Task(f"Nearest places on {counts} to the vertices of {max(300, n // 10):,}",
-                   "Work alone: tree and queries. VTK's queries are asked from Python one by one.")
+                   "Work alone: tree and queries. VTK is queried from Python one by one.")
     closest.peer("Ostraka (library, 2 threads)", [peers, "closest", "ours", large, middle], distances)
     closest.peer("CGAL 5.5 (1 thread)", [peers, "closest", "cgal", large, middle], distances)
     closest.peer("VTK 9.1", [*vtk, "closest", large, middle], distances)
 
-    farthest = Task(f"Farthest place of {wanted:,} vertices from {max(300, n // 10):,} (one-sided Hausdorff distance)",
-                    "Ostraka and VTK ask from vertices; CGAL bounds the distance of whole surfaces to 0.1 % of the diagonal.")
+    farthest = Task(f"Farthest place of {target_count:,} vertices from {max(300, n // 10):,} (one-sided Hausdorff distance)",
+                    "Ostraka and VTK query from vertices; CGAL bounds the distance of whole surfaces to 0.1 % of the diagonal.")
     largest = lambda document: f"{document['maximum']:.5g} mm"
     farthest.peer("Ostraka (library, from vertices)", [peers, "closest", "ours", middle, small], largest)
     farthest.peer("CGAL 5.5, bounded error", [peers, "hausdorff", "cgal", small, middle], largest)
     farthest.peer("VTK 9.1, from vertices", [*vtk, "hausdorff", small, middle], largest)
     script = filter_script("hausdorff.mlx", "Hausdorff Distance", SampledMesh=("RichMesh", 0), TargetMesh=("RichMesh", 1),
                            SaveSample=flag(False), SampleVert=flag(True), SampleEdge=flag(False), SampleFauxEdge=flag(False),
-                           SampleFace=flag(False), SampleNum=whole(wanted), MaxDist=("RichAbsPerc", 50))
+                           SampleFace=flag(False), SampleNum=integer(target_count), MaxDist=("RichAbsPerc", 50))
 
     def logged(document):
-        found = re.search(r"max\s*:?\s*([0-9.e+-]+)", document["printed"])
-        return f"{float(found[1]):.5g} mm" if found else ""
+        match = re.search(r"max\s*:?\s*([0-9.e+-]+)", document["printed"])
+        return f"{float(match[1]):.5g} mm" if match else ""
 
     by_meshlab(farthest, "MeshLab 2020.09, from vertices", ["-l", "/dev/stdout", "-i", small, middle, "-s", script], logged)
 
     def reproduction(file):
-        def told(_):
+        def largest_error(_):
             values = numpy.load(file)
             corners, points = module.Mesh("cage.ply").points, module.Mesh(small).points
             return f"off by {numpy.linalg.norm(values @ corners - points, axis=1).max():.1e} mm at most"
-        return told
+        return largest_error
 
-    weights = Task(f"Mean value coordinates of {wanted:,} vertices in a cage of 200",
-                   "Off: distance of W c from the vertex. VTK is asked from Python one by one.")
+    weights = Task(f"Mean value coordinates of {target_count:,} vertices in a cage of 200",
+                   "Off: distance of W c from the vertex. VTK is called from Python one by one.")
     weights.peer("Ostraka (2 threads)", [ostraka, "cage", "weights", small, "cage.ply", "wo.npy", "--quiet"], reproduction("wo.npy"))
     weights.peer("VTK 9.1 (1 thread)", [*vtk, "weights", small, "cage.ply", "wv.npy"], reproduction("wv.npy"))
 
     pathlib.Path("raise.edit.json").write_text(json.dumps({"format": "ostraka-edit", "version": 1, "steps": raise_steps(module, small)}))
 
     def strained(file):
-        def told(_):
+        def rms_strain(_):
             faces, before, after = (module.Mesh(small).faces, module.Mesh(small).points, module.Mesh(file).points)
             edges = numpy.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
             lengths = [numpy.linalg.norm(p[edges[:, 0]] - p[edges[:, 1]], axis=1) for p in (before, after)]
             strain = lengths[1] / lengths[0] - 1
             return f"edges stretched by {numpy.sqrt((strain**2).mean()):.2%} rms"
-        return told
+        return rms_strain
 
-    raising = Task(f"The head of {wanted:,} vertices raised, its base held",
+    raising = Task(f"The head of {target_count:,} vertices raised, its base held",
                    "CGAL: as rigid as possible (spokes and rims), 10 iterations. Ostraka: Laplacian displacements to convergence, "
                    "with its checks of what moved and of the constraints.")
     raising.peer("Ostraka", [ostraka, "deform", small, "raise.edit.json", "do.ply", "--quiet"], strained("do.ply"))
     raising.peer("CGAL 5.5", [peers, "raise", "cgal", small, "dc.ply"], strained("dc.ply"))
 
     def wrong(labels_of):
-        def told(_):
+        def wrong_fraction(_):
             truth = numpy.loadtxt("large.labels", dtype=int)
             return f"{(labels_of() != truth).mean():.3%} of the faces wrong"
-        return told
+        return wrong_fraction
 
     def ours():
         return region_labels(module, "transferred.ant.json", "large.ply", len(numpy.loadtxt("large.labels", dtype=int)))
 
-    labels = Task(f"Parts of {wanted:,} vertices carried to {counts}",
-                  "Wrong: against the parts that the object was made of. Ostraka carries outlines and scores them; VTK gives each face "
+    labels = Task(f"Parts of {target_count:,} vertices transferred to {counts}",
+                  "Wrong: compared with the known parts of the object. Ostraka transfers outlines and scores them; VTK gives each face "
                   "the part of the face nearest to its centroid, from Python one by one.")
     labels.peer("Ostraka", [ostraka, "annotation", "transfer", "small.ply", "small.ant.json", "large.ply", "transferred.ant.json",
                             "--quiet"], wrong(ours))

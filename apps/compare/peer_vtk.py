@@ -43,7 +43,7 @@ def convert(source, target):
 
 def slices(source, count):
     mesh = read(source)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     low, high = mesh.GetBounds()[4:6]
     plane = vtkPlane()
     plane.SetNormal(0, 0, 1)
@@ -58,19 +58,19 @@ def slices(source, count):
     points = vtk_to_numpy(lines.GetPoints().GetData()).astype(float)
     ends = vtk_to_numpy(lines.GetLines().GetConnectivityArray()).reshape(-1, 2)
     length = numpy.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1).sum()
-    return told | {"work": lap(), "length": float(length)}
+    return figures | {"work": lap(), "length": float(length)}
 
 
 def simplify(source, target, vertices):
     mesh = read(source)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     decimation = vtkQuadricDecimation()
     decimation.SetInputData(mesh)
     decimation.SetTargetReduction(1 - int(vertices) / mesh.GetNumberOfPoints())
     decimation.Update()
-    told |= {"work": lap()}
+    figures |= {"work": lap()}
     write(target, decimation.GetOutput())
-    return told
+    return figures
 
 
 def locator_of(mesh):
@@ -92,49 +92,49 @@ def nearest(locator, points):
 
 def closest(source, other):
     mesh, points = read(source), vtk_to_numpy(read(other).GetPoints().GetData()).astype(float)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     locator = locator_of(mesh)
-    told |= {"build": lap()}
+    figures |= {"build": lap()}
     _, distances = nearest(locator, points)
-    return told | {"work": lap(), "mean": float(distances.mean()), "maximum": float(distances.max())}
+    return figures | {"work": lap(), "mean": float(distances.mean()), "maximum": float(distances.max())}
 
 
 def hausdorff(source, other):
     a, b = read(source), read(other)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     hausdorff_filter = vtkHausdorffDistancePointSetFilter()
     hausdorff_filter.SetInputData(0, a)
     hausdorff_filter.SetInputData(1, b)
     hausdorff_filter.SetTargetDistanceMethodToPointToCell()
     hausdorff_filter.Update()
-    return told | {"work": lap(), "maximum": hausdorff_filter.GetRelativeDistance()[0]}
+    return figures | {"work": lap(), "maximum": hausdorff_filter.GetRelativeDistance()[0]}
 
 
 def labels(source, source_labels, target, output):
     """Each face of the target takes the label of the face nearest to its centroid."""
     mesh, other = read(source), read(target)
     values = numpy.loadtxt(source_labels, dtype=int)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     locator = locator_of(mesh)
     points = vtk_to_numpy(other.GetPoints().GetData()).astype(float)
     corners = vtk_to_numpy(other.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     cells, _ = nearest(locator, points[corners].mean(axis=1))
-    told |= {"work": lap()}
+    figures |= {"work": lap()}
     numpy.savetxt(output, values[cells], fmt="%d")
-    return told
+    return figures
 
 
 def weights(source, cage, output):
     """Mean value coordinates, one call a point: VTK has no call for many."""
     points, cage = vtk_to_numpy(read(source).GetPoints().GetData()).astype(float), read(cage)
-    told = {"read": lap()}
+    figures = {"read": lap()}
     corners, triangles = cage.GetPoints(), cage.GetPolys()
     values = numpy.empty((len(points), corners.GetNumberOfPoints()))
     for point, row in zip(points, values):
         vtkMeanValueCoordinatesInterpolator.ComputeInterpolationWeights(point, corners, triangles, row)
-    told |= {"work": lap()}
+    figures |= {"work": lap()}
     numpy.save(output, values)
-    return told
+    return figures
 
 
 if __name__ == "__main__":

@@ -123,11 +123,11 @@ void simplify_by_openmesh(const Words& words) {
     std::printf("{\"read\": %.4f, \"work\": %.4f}\n", read, work);
 }
 
-void told(double read, double build, double work, const std::vector<double>& distances) {
-    double sum = 0, most = 0;
-    for (const double d : distances) sum += d, most = std::max(most, d);
+void print_distances(double read, double build, double work, const std::vector<double>& distances) {
+    double sum = 0, maximum = 0;
+    for (const double d : distances) sum += d, maximum = std::max(maximum, d);
     std::printf("{\"read\": %.4f, \"build\": %.4f, \"work\": %.4f, \"mean\": %.9g, \"maximum\": %.9g}\n", read, build, work,
-                sum / static_cast<double>(distances.size()), most);
+                sum / static_cast<double>(distances.size()), maximum);
 }
 
 /// Closest points on the first mesh to the vertices of the second: builds the tree, then queries it.
@@ -141,7 +141,7 @@ void closest_by_cgal(const Words& words) {
     const double build = lap();
     std::vector<double> distances(other.number_of_vertices());
     for (const Vertex v : other.vertices()) distances[v] = std::sqrt(tree.squared_distance(other.point(v)));
-    told(read, build, lap(), distances);
+    print_distances(read, build, lap(), distances);
 }
 
 void closest_by_us(const Words& words) {
@@ -153,7 +153,7 @@ void closest_by_us(const Words& words) {
     parallel_for(
         distances.size(),
         [&](std::size_t i) { distances[i] = search.closest(other.point(Vertex(static_cast<Index>(i)))).distance; }, 64);
-    told(read, build, lap(), distances);
+    print_distances(read, build, lap(), distances);
 }
 
 /// One-sided Hausdorff distance from the first surface to the second, within 0.1 % of the diagonal.

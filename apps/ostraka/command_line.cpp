@@ -12,6 +12,7 @@
 #include "ostraka/operations/pages.h"
 #include "ostraka/operations/table.h"
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <sys/resource.h>
@@ -63,7 +64,7 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
     const Slot* slot = call.parameters().slot(name);
     if (slot != nullptr && slot->is_positional)
         throw Error(ErrorKind::usage, call.entry().name, name + " is given without a flag",
-                    "'ostraka " + std::string(call.entry().name) + " --help' shows the order");
+                    fmt::format("'ostraka {} --help' shows the order", call.entry().name));
     std::vector<std::string> names;
     for (const CommonFlag& common : common_flags) names.emplace_back(common.name);
     for (const Option& option : call.parameters().options)
@@ -74,8 +75,8 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
 /// Checks and normalises the words after the operation's name for the parser: every flag is known and has its value. A word
 /// equal to a flag can be a value only after "=", and a positional argument can begin with a dash only after "--".
 std::vector<std::string> checked_words(Call& call, const std::vector<std::string>& words) {
-    const auto refuse = [&](const std::string& what, const std::string& remedy) {
-        throw Error(ErrorKind::usage, call.entry().name, what, remedy);
+    const auto refuse = [&](const std::string& problem, const std::string& remedy) {
+        throw Error(ErrorKind::usage, call.entry().name, problem, remedy);
     };
     std::vector<std::string> checked, arguments;
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -96,22 +97,23 @@ std::vector<std::string> checked_words(Call& call, const std::vector<std::string
         const std::string name = name_of_flag(word);
         const FlagValue value = word.starts_with("--") ? value_of_flag(call, name) : FlagValue::unknown;
         if (value == FlagValue::unknown && file_exists(word))
-            refuse("'" + printable(word, 60) + "' is read as an option", "write ./" + printable(word, 60));
+            refuse(fmt::format("'{}' is read as an option", printable(word, 60)), "write ./" + printable(word, 60));
         if (value == FlagValue::unknown) refuse_option(call, name);
         const std::size_t equals = word.find('=');
         if (value == FlagValue::none) {
             if (equals == std::string::npos) continue;
-            const std::string given = word.substr(equals + 1);
-            if (given != "true" && given != "false")
-                refuse("--" + name + " is '" + printable(given, 60) + "'", "give --" + name + " alone, or =true or =false");
+            const std::string switch_value = word.substr(equals + 1);
+            if (switch_value != "true" && switch_value != "false")
+                refuse(fmt::format("--{} is '{}'", name, printable(switch_value, 60)),
+                       fmt::format("give --{} alone, or =true or =false", name));
         } else if (equals != std::string::npos) {
             // The parser would take the next word for an empty value.
             if (equals + 1 == word.size()) checked.back().pop_back(), checked.emplace_back();
         } else if (i + 1 == words.size() ||
                    (begins_a_flag(words[i + 1]) && value_of_flag(call, name_of_flag(words[i + 1])) != FlagValue::unknown)) {
-            refuse("--" + name + " has no value",
+            refuse(fmt::format("--{} has no value", name),
                    i + 1 == words.size() ? "give it one"
-                                         : "give it one; --" + name + "=" + printable(words[i + 1], 40) + " for that word");
+                                         : fmt::format("give it one; --{}={} for that word", name, printable(words[i + 1], 40)));
         } else {
             checked.push_back(words[++i]);
         }
@@ -123,14 +125,15 @@ std::vector<std::string> checked_words(Call& call, const std::vector<std::string
 /// Sets a file; names of in-memory files are rejected on the command line.
 void set_file(Call& call, const std::string& name, const std::string& file) {
     if (is_memory(file))
-        throw Error(ErrorKind::usage, call.entry().name, name + " is '" + printable(file, 60) + "', which is for programs",
-                    "write ./" + printable(file, 60) + " for a file of that name");
+        throw Error(ErrorKind::usage, call.entry().name,
+                    fmt::format("{} is '{}', which is for programs", name, printable(file, 60)),
+                    fmt::format("write ./{} for a file of that name", printable(file, 60)));
     call.set_file(name, file);
 }
 
 bool is_group(const std::string& path) {
     const auto groups = operation_groups();
-    return std::any_of(groups.begin(), groups.end(), [&](const OperationGroup& one) { return one.name == path; });
+    return std::any_of(groups.begin(), groups.end(), [&](const OperationGroup& group) { return group.name == path; });
 }
 
 /// Converts "help" before the words of a command, or after those of a group, to a trailing --help.
@@ -146,29 +149,31 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> words) {
 
 /// The operation named by the first arguments; null if they name a group or are empty. Throws if they name neither.
 const OperationEntry* named_operation(const std::vector<std::string>& arguments) {
-    std::vector<std::string> given;
+    std::vector<std::string> command_words;
     for (const std::string& word : arguments)
         if (word.starts_with("-")) break;
-        else given.push_back(word);
+        else command_words.push_back(word);
     const OperationEntry* best = nullptr;
-    std::size_t maximum = 0, agreeing = 0;
-    std::vector<std::string> next;  // possible next words
+    std::size_t maximum = 0, max_matching = 0;
+    std::vector<std::string> next_words;  // possible next words
     for (const OperationEntry& entry : operations()) {
         const auto words = words_of(entry.name);
-        std::size_t same = 0;
-        while (same < words.size() && same < given.size() && words[same] == given[same]) ++same;
-        if (same == words.size() && same > maximum) best = &entry, maximum = same;
-        if (same > agreeing) agreeing = same, next.clear();
-        if (same == agreeing && same < words.size()) next.push_back(words[same]);
+        std::size_t matching = 0;
+        while (matching < words.size() && matching < command_words.size() && words[matching] == command_words[matching])
+            ++matching;
+        if (matching == words.size() && matching > maximum) best = &entry, maximum = matching;
+        if (matching > max_matching) max_matching = matching, next_words.clear();
+        if (matching == max_matching && matching < words.size()) next_words.push_back(words[matching]);
     }
-    if (best == nullptr && agreeing < given.size()) {
-        std::string before;
-        for (std::size_t i = 0; i < agreeing; ++i) before += " " + given[i];
-        if (agreeing == 0) next.emplace_back("workbench");
-        const std::string near = nearest_name(given[agreeing], next);
+    if (best == nullptr && max_matching < command_words.size()) {
+        std::string prefix;
+        for (std::size_t i = 0; i < max_matching; ++i) prefix += " " + command_words[i];
+        if (max_matching == 0) next_words.emplace_back("workbench");
+        const std::string nearest = nearest_name(command_words[max_matching], next_words);
         fail_usage(
-            "'" + printable(given[agreeing], 60) + "' is no command" + (agreeing == 0 ? "" : " of 'ostraka" + before + "'"),
-            near.empty() ? "'ostraka" + before + " --help' shows them" : "did you mean '" + near + "'?");
+            fmt::format("'{}' is not a command{}", printable(command_words[max_matching], 60),
+                        max_matching == 0 ? "" : fmt::format(" of 'ostraka{}'", prefix)),
+            nearest.empty() ? fmt::format("'ostraka{} --help' shows them", prefix) : fmt::format("did you mean '{}'?", nearest));
     }
     return best;
 }
@@ -176,55 +181,57 @@ const OperationEntry* named_operation(const std::vector<std::string>& arguments)
 std::string type_of(const Option& option) {
     static constexpr const char* types[]{"", "INT", "FLOAT", "TEXT", "TEXT", "TEXT", "FLOATS", "INTS"};
     std::string text = types[static_cast<std::size_t>(option.type())];
-    if (const auto names = option.names(); !names.empty()) text = "{" + joined(names, ",") + "}";
+    if (const auto names = option.names(); !names.empty()) text = fmt::format("{{{}}}", joined(names, ","));
     if (const auto* words = std::get_if<Words>(&option.rule); words != nullptr && !words->others.empty())
         text += " or " + words->others;
     if (const auto* range = std::get_if<Range>(&option.rule))
-        text += " in [" + digits(range->min, 6) + ", " + digits(range->max, 6) + "]";
+        text += fmt::format(" in [{}, {}]", digits(range->min, 6), digits(range->max, 6));
     return text;
 }
 
 void add_option(CLI::App& command, Option& option) {
-    const std::string flag = "--" + option.name, help = option.help + (option.unit.empty() ? "" : " (" + option.unit + ")");
-    CLI::Option* added = nullptr;
+    const std::string flag = "--" + option.name,
+                      help = option.help + (option.unit.empty() ? "" : fmt::format(" ({})", option.unit));
+    CLI::Option* cli_option = nullptr;
     if (option.type() == OptionType::boolean) {
         const bool is_on = option.initial == "true";
         const auto set = [&option](std::int64_t count) { option.set(count > 0); };
-        added = command.add_flag_function(flag, set, is_on ? help + "; on unless --no-" + option.name + " is given" : help);
+        cli_option =
+            command.add_flag_function(flag, set, is_on ? fmt::format("{}; on unless --no-{} is given", help, option.name) : help);
         if (is_on) command.add_flag_function("!--no-" + option.name, set)->group("");
     } else {
-        added = command.add_option_function<std::vector<std::string>>(
+        cli_option = command.add_option_function<std::vector<std::string>>(
             option.is_positional ? option.name : flag, [&option](const std::vector<std::string>& words) { option.set(words); },
             help);
-        added->type_name(type_of(option))->expected(1);
+        cli_option->type_name(type_of(option))->expected(1);
         if (option.is_list())
-            added->expected(1, option.takes_words ? 1'000'000 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-        added->allow_extra_args(option.takes_words);
+            cli_option->expected(1, option.takes_words ? 1'000'000 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        cli_option->allow_extra_args(option.takes_words);
         const OptionType type = option.type();
         if (type == OptionType::integer || type == OptionType::number) {
-            if (!option.initial.empty()) added->default_str(digits(std::stod(option.initial)));
+            if (!option.initial.empty()) cli_option->default_str(digits(std::stod(option.initial)));
         } else if (!option.initial.empty()) {
-            added->default_str(option.initial);
+            cli_option->default_str(option.initial);
         }
     }
-    if (option.needed) added->required();
-    if (!option.group.empty()) added->group(option.group);
+    if (option.needed) cli_option->required();
+    if (!option.group.empty()) cli_option->group(option.group);
 }
 
 void add_slot(CLI::App& command, Call& call, const Slot& slot) {
     const std::string name = slot.name;
-    auto* added = command.add_option_function<std::vector<std::string>>(
+    auto* cli_option = command.add_option_function<std::vector<std::string>>(
         slot.is_positional ? name : "--" + name,
         [&call, name](const std::vector<std::string>& files) {
             for (const auto& file : files) set_file(call, name, file);
         },
         slot.help);
-    added->type_name("FILE");
-    if (slot.repeated) added->expected(slot.is_positional ? -1 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    else added->expected(1);
-    added->allow_extra_args(slot.takes_words || (slot.is_positional && slot.repeated));
-    if (slot.repeated && slot.takes_words) added->expected(1, 1'000'000);
-    if (slot.needed) added->required();
+    cli_option->type_name("FILE");
+    if (slot.repeated) cli_option->expected(slot.is_positional ? -1 : 1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    else cli_option->expected(1);
+    cli_option->allow_extra_args(slot.takes_words || (slot.is_positional && slot.repeated));
+    if (slot.repeated && slot.takes_words) cli_option->expected(1, 1'000'000);
+    if (slot.needed) cli_option->required();
 }
 
 bool is_repeated(Call& call, const std::string& name) {
@@ -245,15 +252,16 @@ public:
     std::string make_usage(const CLI::App* /*app*/, std::string name) const override {
         std::string text;
         for (const auto& order : call_.parameters().orders)
-            text += (text.empty() ? "Usage: " : "       ") + name + " [OPTIONS] " + shown_order(call_, order) + "\n";
+            text += fmt::format("{}{} [OPTIONS] {}\n", text.empty() ? "Usage: " : "       ", name, shown_order(call_, order));
         return text;
     }
     std::string make_positionals(const CLI::App* /*app*/) const override {
         std::ostringstream text;
         text << "\nPositionals:\n";
-        const auto add = [&](const std::string& name, const std::string& what, const std::string& help) {
+        const auto add = [&](const std::string& name, const std::string& value_type, const std::string& help) {
             if (call_.parameters().in_some_order(name))
-                CLI::detail::format_help(text, name + " " + what + (is_repeated(call_, name) ? " ..." : ""), help, column_width_);
+                CLI::detail::format_help(text, fmt::format("{} {}{}", name, value_type, is_repeated(call_, name) ? " ..." : ""),
+                                         help, column_width_);
         };
         for (const Slot* slot : call_.parameters().slots()) add(slot->name, "FILE", slot->help);
         for (const Option& option : call_.parameters().options) add(option.name, type_of(option), option.help);
@@ -265,7 +273,7 @@ private:
 };
 
 /// Number of files whose extension fits the slot they would fill.
-std::size_t agreeing_endings(Call& call, const std::vector<std::string>& order, const std::vector<std::string>& files) {
+std::size_t matching_extensions(Call& call, const std::vector<std::string>& order, const std::vector<std::string>& files) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < std::min(order.size(), files.size()); ++i) {
         const Slot* slot = call.parameters().slot(order[i]);
@@ -282,38 +290,41 @@ std::size_t agreeing_endings(Call& call, const std::vector<std::string>& order, 
 void take_positionals(Call& call, const std::vector<std::string>& words) {
     const auto& orders = call.parameters().orders;
     const auto fits = [&](const std::vector<std::string>& order) {
-        const bool open = std::any_of(order.begin(), order.end(), [&](const auto& name) { return is_repeated(call, name); });
-        return open ? words.size() >= order.size() : words.size() == order.size();
+        const bool is_open = std::any_of(order.begin(), order.end(), [&](const auto& name) { return is_repeated(call, name); });
+        return is_open ? words.size() >= order.size() : words.size() == order.size();
     };
     auto order = orders.end();
-    for (auto one = orders.begin(); one != orders.end(); ++one)
-        if (fits(*one) && (order == orders.end() || agreeing_endings(call, *one, words) > agreeing_endings(call, *order, words)))
-            order = one;
+    for (auto candidate = orders.begin(); candidate != orders.end(); ++candidate)
+        if (fits(*candidate) &&
+            (order == orders.end() || matching_extensions(call, *candidate, words) > matching_extensions(call, *order, words)))
+            order = candidate;
     if (order == orders.end()) {
-        std::vector<std::string> ways;
-        for (const auto& one : orders) ways.push_back(shown_order(call, one));
+        std::vector<std::string> accepted_orders;
+        for (const auto& candidate : orders) accepted_orders.push_back(shown_order(call, candidate));
         throw Error(ErrorKind::usage, call.entry().name,
-                    counted(words.size(), "argument") + (words.size() == 1 ? " is" : " are") + " given",
-                    "give " + joined(ways, ", or "));
+                    fmt::format("{} {} given", counted(words.size(), "argument"), words.size() == 1 ? "is" : "are"),
+                    "give " + joined(accepted_orders, ", or "));
     }
-    std::size_t at = 0;
+    std::size_t position = 0;
     for (std::size_t i = 0; i < order->size(); ++i) {
-        const std::size_t take = is_repeated(call, (*order)[i]) ? words.size() - order->size() + 1 : 1;
-        const std::vector<std::string> mine(words.begin() + static_cast<long>(at), words.begin() + static_cast<long>(at + take));
+        const std::size_t count = is_repeated(call, (*order)[i]) ? words.size() - order->size() + 1 : 1;
+        const std::vector<std::string> arguments(words.begin() + static_cast<long>(position),
+                                                 words.begin() + static_cast<long>(position + count));
         if (call.parameters().slot((*order)[i]) != nullptr)
-            for (const auto& file : mine) set_file(call, (*order)[i], file);
-        else call.option((*order)[i]).set(mine);
-        at += take;
+            for (const auto& file : arguments) set_file(call, (*order)[i], file);
+        else call.option((*order)[i]).set(arguments);
+        position += count;
     }
 }
 
 /// Throws for the first missing required argument, and explains how to give it.
 void refuse_missing(const Call& call) {
     const Parameters& parameters = call.parameters();
-    const auto refuse = [&](const std::string& name, const std::string& what, const char* value) {
+    const auto refuse = [&](const std::string& name, const std::string& help, const char* value) {
         const bool is_flag = !parameters.in_some_order(name);
-        throw Error(ErrorKind::usage, call.entry().name, (is_flag ? "--" : "") + name + " is missing",
-                    "give " + what + ": " + (is_flag ? "--" + name + " " + value : usage_of(call, parameters.orders.front())));
+        throw Error(ErrorKind::usage, call.entry().name, fmt::format("{}{} is missing", is_flag ? "--" : "", name),
+                    fmt::format("give {}: {}", help,
+                                is_flag ? fmt::format("--{} {}", name, value) : usage_of(call, parameters.orders.front())));
     };
     for (const Slot* slot : parameters.slots())
         if (slot->needed && slot->sources.empty()) refuse(slot->name, slot->help, "FILE");
@@ -323,14 +334,14 @@ void refuse_missing(const Call& call) {
 
 /// Throws for a superfluous argument; the remedy names the flag to which a file may belong.
 [[noreturn]] void refuse_extra(const Call& call, const std::string& word) {
-    std::string remedy = "'ostraka " + std::string(call.entry().name) + " --help' shows what it takes";
+    std::string remedy = fmt::format("'ostraka {} --help' shows what it takes", call.entry().name);
     for (const Slot* slot : call.parameters().slots()) {
         const auto endings = endings_of(slot->kind);
         if (!slot->is_positional && slot->role == Role::input && (slot->sources.empty() || slot->repeated) &&
             std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return word.ends_with(ending); }))
-            remedy = "give it as --" + slot->name + " " + printable(word, 60);
+            remedy = fmt::format("give it as --{} {}", slot->name, printable(word, 60));
     }
-    throw Error(ErrorKind::usage, call.entry().name, "'" + printable(word, 60) + "' is one argument too many", remedy);
+    throw Error(ErrorKind::usage, call.entry().name, fmt::format("'{}' is one argument too many", printable(word, 60)), remedy);
 }
 
 /// Flags common to all commands.
@@ -365,7 +376,8 @@ bool add_parameters(CLI::App& command, Call& call, std::vector<std::string>& wor
 
 void check_standard_output() {
     std::cout.flush();
-    if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
+    if (!std::cout)
+        throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space, or repair the pipe");
 }
 
 /// Limits the address space, so that allocations beyond the limit fail with an error even if the estimate of an operation was
@@ -395,20 +407,20 @@ int run_call(Call& call, const Common& common) {
     limit_allocations(context.watch.memory_limit);
     const Signals signals;
     signals.stop([&context] { context.watch.cancel(); });
-    bool shown = false;
+    bool has_text = false;
     const auto show = [&](const Report& report) {
         const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json
                                     : common.show == "csv"               ? ReportFormat::csv
                                     : common.show == "markdown"          ? ReportFormat::markdown
                                                                          : ReportFormat::table;
         const std::string text = report.to_text(format);
-        shown = !text.empty();
+        has_text = !text.empty();
         std::cout << text;
         // If the report could not be printed, no file is replaced.
         check_standard_output();
     };
     const Report report = call.run(context, show);
-    if (!common.quiet && shown)
+    if (!common.quiet && has_text)
         if (const std::string times = report.times(); !times.empty()) std::cerr << "time: " << times << '\n';
     return report.holds() ? done : answer_is_no;
 }
@@ -425,20 +437,20 @@ int run_command_line(int argc, char** argv) {
     tool.require_subcommand(1);
     Common common;
     std::vector<std::string> words;
-    bool by_count = false;
+    bool collects_words = false;
     std::unique_ptr<Call> call;
     CLI::App* running = nullptr;
-    std::vector<std::string> given = with_help_as_flag({argv + 1, argv + argc});
-    if (!given.empty() && given.front() == "workbench") return run_workbench({given.begin() + 1, given.end()});
-    const OperationEntry* wanted = named_operation(given);
+    std::vector<std::string> arguments = with_help_as_flag({argv + 1, argv + argc});
+    if (!arguments.empty() && arguments.front() == "workbench") return run_workbench({arguments.begin() + 1, arguments.end()});
+    const OperationEntry* requested_entry = named_operation(arguments);
     std::map<std::string, CLI::App*> known_groups;
     const auto group_of = [&](CLI::App& parent, const std::string& path, const std::string& word) {
         CLI::App*& group = known_groups[path];
         if (group != nullptr) return group;
         const auto groups = operation_groups();
-        const auto known =
-            std::find_if(groups.begin(), groups.end(), [&](const OperationGroup& one) { return one.name == path; });
-        group = parent.add_subcommand(word, known == groups.end() ? "" : known->help);
+        const auto group_entry =
+            std::find_if(groups.begin(), groups.end(), [&](const OperationGroup& candidate) { return candidate.name == path; });
+        group = parent.add_subcommand(word, group_entry == groups.end() ? "" : group_entry->help);
         group->require_subcommand(1);
         return group;
     };
@@ -451,7 +463,7 @@ int run_command_line(int argc, char** argv) {
             parent = group_of(*parent, path, parts[i]);
         }
         CLI::App* command = parent->add_subcommand(parts.back(), entry.help);
-        if (&entry != wanted) continue;
+        if (&entry != requested_entry) continue;
         running = command;
         call = std::make_unique<Call>(entry);
         command->add_flag("--json", common.json, "print the report for machines instead of tables");
@@ -461,36 +473,37 @@ int run_command_line(int argc, char** argv) {
         command->add_flag("--quiet", common.quiet, "no notes and no progress bar");
         command->add_option("--threads", common.threads, "number of threads, 0 for all cores; results do not depend on it")
             ->check(CLI::Range(0, 1024));
-        command->add_option("--memory", common.memory, "memory that the work may take [GB]; 0: what the machine has")
+        command->add_option("--memory", common.memory, "memory limit of the work [GB]; 0: the memory of the machine")
             ->check(CLI::Range(0.0, 1e6));
-        by_count = add_parameters(*command, *call, words);
+        collects_words = add_parameters(*command, *call, words);
         command->allow_extras();
     }
     tool.add_subcommand("workbench", workbench_help);
     if (call) {
-        const auto behind = given.begin() + static_cast<long>(words_of(call->entry().name).size());
-        const std::vector<std::string> checked = checked_words(*call, {behind, given.end()});
-        given.erase(behind, given.end());
-        given.insert(given.end(), checked.begin(), checked.end());
-    } else if (!given.empty() && given[0].starts_with("-") && given[0] != "-h" && given[0] != "--help" &&
-               given[0] != "--version") {
-        fail_usage("'" + printable(given[0], 60) + "' stands before a command", "flags follow it: ostraka mesh info FILE --json");
+        const auto after_command = arguments.begin() + static_cast<long>(words_of(call->entry().name).size());
+        const std::vector<std::string> checked = checked_words(*call, {after_command, arguments.end()});
+        arguments.erase(after_command, arguments.end());
+        arguments.insert(arguments.end(), checked.begin(), checked.end());
+    } else if (!arguments.empty() && arguments[0].starts_with("-") && arguments[0] != "-h" && arguments[0] != "--help" &&
+               arguments[0] != "--version") {
+        fail_usage(fmt::format("'{}' precedes the command", printable(arguments[0], 60)),
+                   "flags follow it: ostraka mesh info FILE --json");
     }
     try {
-        std::reverse(given.begin(), given.end());  // the parser expects reverse order
-        tool.parse(given);
+        std::reverse(arguments.begin(), arguments.end());  // the parser expects reverse order
+        tool.parse(arguments);
     } catch (const CLI::ParseError& error) {
         if (call && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) refuse_missing(*call);
         if (error.get_exit_code() != 0 && call)
             throw Error(ErrorKind::usage, call->entry().name, error.what(),
-                        "'ostraka " + std::string(call->entry().name) + " --help' shows what it takes");
+                        fmt::format("'ostraka {} --help' shows what it takes", call->entry().name));
         if (tool.exit(error) != 0) return wrong_usage;
         std::cout.flush();
         return std::cout ? done : failed;
     }
     if (running == nullptr) return wrong_usage;
     for (const std::string& extra : running->remaining()) refuse_extra(*call, extra);
-    if (by_count) take_positionals(*call, words);
+    if (collects_words) take_positionals(*call, words);
     refuse_missing(*call);
     return run_call(*call, common);
 }

@@ -19,12 +19,12 @@ namespace ostraka::app {
 
 namespace {
 
-constexpr timespec patience{0, 700'000'000};
+constexpr timespec grace_period{0, 700'000'000};
 
 [[noreturn]] void end_process() {
     abandon_outputs();
     kill_children();
-    constexpr std::string_view message = "ostraka: cancelled (what was not complete is gone)\n";
+    constexpr std::string_view message = "ostraka: cancelled (incomplete outputs are removed)\n";
     static_cast<void>(::write(2, message.data(), message.size()) == 0);
     std::_Exit(cancelled);
 }
@@ -40,7 +40,7 @@ struct Signals::Shared {
         int signal = 0;
         sigwait(&signals, &signal);
         if (!begin_to_stop()) end_process();
-        sigtimedwait(&signals, nullptr, &patience);
+        sigtimedwait(&signals, nullptr, &grace_period);
         const std::lock_guard lock(mutex);
         if (!is_over) end_process();
     }
@@ -67,9 +67,9 @@ Signals::~Signals() {
     shared_->is_over = true;
 }
 
-void Signals::stop(std::function<void()> how) const {
+void Signals::stop(std::function<void()> function) const {
     const std::lock_guard lock(shared_->mutex);
-    shared_->stop = std::move(how);
+    shared_->stop = std::move(function);
 }
 
 }  // namespace ostraka::app

@@ -17,7 +17,7 @@ public:
     Signals(const Signals&) = delete;
     Signals& operator=(const Signals&) = delete;
 
-    void stop(std::function<void()> how) const;
+    void stop(std::function<void()> function) const;
 
 private:
     struct Shared;

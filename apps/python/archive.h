@@ -67,14 +67,14 @@ private:
         put_size(list.size());
         if constexpr (is_plain<T>) bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T));
         else
-            for (const T& one : list) put(one);
+            for (const T& element : list) put(element);
     }
 };
 
 /// Reads fields from bytes. Throws Error (input) if the bytes do not hold them.
 class Reader {
 public:
-    explicit Reader(std::string_view all) : rest_(all) {}
+    explicit Reader(std::string_view bytes) : rest_(bytes) {}
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
@@ -86,16 +86,16 @@ public:
 
 private:
     std::string_view take(std::size_t count) {
-        if (count > rest_.size()) fail_archive("is shorter than what it holds");
-        const std::string_view taken = rest_.substr(0, count);
+        if (count > rest_.size()) fail_archive("is shorter than its content");
+        const std::string_view part = rest_.substr(0, count);
         rest_.remove_prefix(count);
-        return taken;
+        return part;
     }
     /// Reads the length of a list whose elements take at least `bytes_each` bytes.
     std::size_t get_size(std::size_t bytes_each) {
         std::uint64_t size = 0;
         get(size);
-        if (size > rest_.size() / bytes_each) fail_archive("is shorter than what it holds");
+        if (size > rest_.size() / bytes_each) fail_archive("is shorter than its content");
         return static_cast<std::size_t>(size);
     }
     template <class T>
@@ -107,7 +107,7 @@ private:
             get(number);
             std::uint8_t last = 1;
             if constexpr (std::is_enum_v<T>) last = static_cast<std::uint8_t>(last_of(T{}));
-            if (number > last) fail_archive("holds a value that is none of those allowed");
+            if (number > last) fail_archive("holds a value that is not allowed");
             value = static_cast<T>(number);
         } else {
             fields(*this, value);
@@ -136,8 +136,8 @@ private:
         list.clear();
         if constexpr (is_plain<T>) {
             list.resize(get_size(sizeof(T)));
-            const std::string_view taken = take(list.size() * sizeof(T));
-            if (!taken.empty()) std::memcpy(list.data(), taken.data(), taken.size());
+            const std::string_view part = take(list.size() * sizeof(T));
+            if (!part.empty()) std::memcpy(list.data(), part.data(), part.size());
         } else {
             for (std::size_t count = get_size(1); count > 0; --count) get(list.emplace_back());
         }

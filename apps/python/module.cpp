@@ -10,6 +10,8 @@
 #include "ostraka/operation/operation.h"
 #include "ostraka/operations/table.h"
 
+#include <fmt/core.h>
+
 namespace ostraka::python {
 
 namespace {
@@ -63,27 +65,27 @@ std::string default_name(const Slot& slot) {
 
 /// The result of Call::declaration for every operation, with further data that callers in other languages need.
 py::bytes declarations() {
-    Json list(rapidjson::kArrayType);
-    auto& allocator = list.GetAllocator();
+    Json entries(rapidjson::kArrayType);
+    auto& allocator = entries.GetAllocator();
     for (const OperationEntry& entry : operations()) {
         const Call call(entry);
-        JsonValue declared = call.declaration(allocator);
-        declared.RemoveMember("result");
+        JsonValue declaration = call.declaration(allocator);
+        declaration.RemoveMember("result");
         for (const char* role : {"inputs", "outputs"})
-            for (JsonValue& one : declared[role].GetArray()) {
-                const Slot& slot = *call.parameters().slot(text_in(one, "name"));
-                add_members(one, allocator, "named", slot.is_named, "none", slot.takes_none, "new", slot.may_be_new, "called",
-                            default_name(slot));
+            for (JsonValue& slot_entry : declaration[role].GetArray()) {
+                const Slot& slot = *call.parameters().slot(text_in(slot_entry, "name"));
+                add_members(slot_entry, allocator, "named", slot.is_named, "none", slot.takes_none, "new", slot.may_be_new,
+                            "called", default_name(slot));
             }
-        list.PushBack(declared, allocator);
+        entries.PushBack(declaration, allocator);
     }
-    return to_compact_text(list);
+    return to_compact_text(entries);
 }
 
 std::vector<std::pair<std::string, std::string>> groups() {
-    std::vector<std::pair<std::string, std::string>> list;
-    for (const OperationGroup& group : operation_groups()) list.emplace_back(group.name, group.help);
-    return list;
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (const OperationGroup& group : operation_groups()) entries.emplace_back(group.name, group.help);
+    return entries;
 }
 
 void set_option(Call& call, const std::string& name, const py::handle& value) {
@@ -94,12 +96,12 @@ void set_option(Call& call, const std::string& name, const py::handle& value) {
         // Integers and lists, in JSON form.
         Json settings(rapidjson::kObjectType);
         auto& allocator = settings.GetAllocator();
-        const auto one = [&](const py::handle& element) {
+        const auto json_of = [&](const py::handle& element) {
             if (py::isinstance<py::str>(element)) return json_string(element.cast<std::string>(), allocator);
             int overflow = 0;
-            const long long whole =
+            const long long integer =
                 py::isinstance<py::int_>(element) ? PyLong_AsLongLongAndOverflow(element.ptr(), &overflow) : 0;
-            if (py::isinstance<py::int_>(element) && overflow == 0) return JsonValue(static_cast<std::int64_t>(whole));
+            if (py::isinstance<py::int_>(element) && overflow == 0) return JsonValue(static_cast<std::int64_t>(integer));
             if (py::isinstance<py::float_>(element)) return JsonValue(element.cast<double>());
             if (overflow > 0 && !PyErr_Occurred()) {
                 const unsigned long long large = PyLong_AsUnsignedLongLong(element.ptr());
@@ -107,20 +109,20 @@ void set_option(Call& call, const std::string& name, const py::handle& value) {
                 PyErr_Clear();
             }
             throw Error(ErrorKind::usage, call.entry().name,
-                        "option " + name + " is " + printable(py::repr(element).cast<std::string>(), 60),
+                        fmt::format("option {} is {}", name, printable(py::repr(element).cast<std::string>(), 60)),
                         "use " + call.option(name).allowed());
         };
         JsonValue list(rapidjson::kArrayType);
         if (py::isinstance<py::list>(value))
-            for (const auto element : value) list.PushBack(one(element), allocator);
-        add_member(settings, name, py::isinstance<py::list>(value) ? std::move(list) : one(value), allocator);
+            for (const auto element : value) list.PushBack(json_of(element), allocator);
+        add_member(settings, name, py::isinstance<py::list>(value) ? std::move(list) : json_of(value), allocator);
         call.set(settings);
     }
 }
 
 void set_inputs(Call& call, const py::list& inputs) {
-    for (const auto given : inputs) {
-        const auto [slot, value, label] = given.cast<std::tuple<std::string, py::object, std::string>>();
+    for (const auto input : inputs) {
+        const auto [slot, value, label] = input.cast<std::tuple<std::string, py::object, std::string>>();
         if (py::isinstance<Held>(value)) {
             Object object = value.cast<const Held&>().object;
             if (!label.empty()) object.name = label;
@@ -135,21 +137,21 @@ void set_inputs(Call& call, const py::list& inputs) {
 }
 
 void set_outputs(Call& call, const py::list& outputs) {
-    for (const auto given : outputs) {
-        const auto [slot, value] = given.cast<std::pair<std::string, py::object>>();
+    for (const auto output : outputs) {
+        const auto [slot, value] = output.cast<std::pair<std::string, py::object>>();
         if (py::isinstance<py::bytes>(value)) {
             call.set_file(slot, path_of(value.cast<py::bytes>()));
             continue;
         }
         // Outputs written as files in memory choose their own name, from which writers derive the format.
-        const bool own = dynamic_cast<const FileOutput*>(&call.slot(slot)) != nullptr;
-        call.want(slot, !value.is_none() ? value.cast<std::string>() : own ? "" : default_name(call.slot(slot)));
+        const bool names_itself = dynamic_cast<const FileOutput*>(&call.slot(slot)) != nullptr;
+        call.want(slot, !value.is_none() ? value.cast<std::string>() : names_itself ? "" : default_name(call.slot(slot)));
     }
 }
 
 /// Outputs that stayed in memory, by name.
 py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
-    py::dict made;
+    py::dict kept_outputs;
     for (const Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output) continue;
         py::list objects;
@@ -161,9 +163,9 @@ py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
                 held.object.name = updated != nullptr && *updated ? updated->file_name() : default_name(*slot);
             objects.append(std::move(held));
         }
-        if (!objects.empty()) made[py::str(slot->name)] = objects;
+        if (!objects.empty()) kept_outputs[py::str(slot->name)] = objects;
     }
-    return made;
+    return kept_outputs;
 }
 
 /// Runs an operation. `options`: (name, value); `inputs`: (slot name, file name as bytes, object, or None for "none");
@@ -174,8 +176,8 @@ py::tuple run(const std::string& name, const py::dict& options, const py::list& 
     for (const auto& [option, value] : options) set_option(*call, option.cast<std::string>(), value);
     // Folders and templates given as inputs keep their files in contexts of their own, which must live as long.
     std::vector<std::shared_ptr<Context>> contexts;
-    for (const auto given : inputs)
-        if (const auto value = given.cast<std::tuple<std::string, py::object, std::string>>();
+    for (const auto input : inputs)
+        if (const auto value = input.cast<std::tuple<std::string, py::object, std::string>>();
             py::isinstance<Held>(std::get<1>(value)))
             contexts.push_back(std::get<1>(value).cast<const Held&>().context);
     set_inputs(*call, inputs);
@@ -202,7 +204,7 @@ PYBIND11_MODULE(_ostraka, module) {
             raise_error(error);
         }
     });
-    wanted_threads = threads();
+    requested_threads = threads();
     stop_work_at_exit();
 
     add_objects(module);
@@ -212,13 +214,13 @@ PYBIND11_MODULE(_ostraka, module) {
         .def_property_readonly("holds", &Report::holds);
 
     module.def("version", version);
-    module.def("memory_limit", [] { return wanted_memory > 0 ? wanted_memory.load() : memory_limit(); });
-    module.def("set_memory_limit", [](double bytes) { wanted_memory = bytes; });
+    module.def("memory_limit", [] { return requested_memory > 0 ? requested_memory.load() : memory_limit(); });
+    module.def("set_memory_limit", [](double bytes) { requested_memory = bytes; });
     module.def("hold_spare_team", hold_spare_team);
-    module.def("threads", [] { return wanted_threads.load(); });
+    module.def("threads", [] { return requested_threads.load(); });
     module.def("set_threads", [](int count) {
         set_threads(count);  // rejects invalid numbers of threads
-        wanted_threads = threads();
+        requested_threads = threads();
     });
     module.def("nearest_name", nearest_name);
     module.def("declarations", declarations);

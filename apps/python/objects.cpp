@@ -10,6 +10,8 @@
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,7 @@ Path path_of(const py::bytes& name) {
     const std::string text = name;
     if (text.empty()) fail_usage("the name of a file is empty", "name a file");
     if (text.find('\0') != std::string::npos) fail_usage("the name of a file holds a zero byte", "name another file");
-    if (is_memory(text)) fail_usage("'" + printable(text, 60) + "' names a file in memory", "give the object itself");
+    if (is_memory(text)) fail_usage(fmt::format("'{}' names a file in memory", printable(text, 60)), "give the object itself");
     return text;
 }
 
@@ -47,8 +49,8 @@ void write_object(const Object& object, const Path& file) {
     transaction.commit();
 }
 
-Object object_of_values(std::vector<double> list) {
-    const auto values = std::make_shared<const std::vector<double>>(std::move(list));
+Object object_of_values(std::vector<double> numbers) {
+    const auto values = std::make_shared<const std::vector<double>>(std::move(numbers));
     Object object(values);
     object.write = [values](const Path& file) { write_values(file, *values); };
     return object;
@@ -86,7 +88,7 @@ py::bytes bytes_of(const Held& held) {
 template <class Number>
 py::array view_of(const std::shared_ptr<const void>& owner, const Number* numbers, std::vector<py::ssize_t> shape) {
     const py::capsule keeps(new std::shared_ptr<const void>(owner),
-                            [](void* kept) { delete static_cast<std::shared_ptr<const void>*>(kept); });
+                            [](void* pointer) { delete static_cast<std::shared_ptr<const void>*>(pointer); });
     py::array array(py::dtype::of<Number>(), std::move(shape), numbers, keeps);
     array.attr("setflags")(py::arg("write") = false);
     return array;
@@ -120,8 +122,8 @@ Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256
         const auto polygons = std::make_shared<const PolygonSoup>(std::move(soup));
         object = Object(polygons, std::move(name), sha256);
         object.write = [polygons](const Path& file) {
-            const TriangulatedSoup made = triangulate(PolygonSoup(*polygons));
-            write_triangles(file, made.soup, made.extras);
+            const TriangulatedSoup triangulated = triangulate(PolygonSoup(*polygons));
+            write_triangles(file, triangulated.soup, triangulated.extras);
         };
     }
     return object;
@@ -142,11 +144,11 @@ using Numbers = py::array_t<Number, py::array::c_style | py::array::forcecast>;
 template <class Entry, class Number>
 void take_extra(const py::dict& extras, const char* name, std::size_t count, std::vector<Entry>& list) {
     if (!extras.contains(name)) return;
-    const auto given = extras[name].cast<Numbers<Number>>();
-    if (static_cast<std::size_t>(given.size()) * sizeof(Number) != count * sizeof(Entry))
-        fail_input(name, "has another size than the mesh", "give one entry an element");
+    const auto array = extras[name].cast<Numbers<Number>>();
+    if (static_cast<std::size_t>(array.size()) * sizeof(Number) != count * sizeof(Entry))
+        fail_input(name, "has another size than the mesh", "give one entry per element");
     list.resize(count);
-    std::copy_n(given.data(), given.size(), reinterpret_cast<Number*>(list.data()));
+    std::copy_n(array.data(), array.size(), reinterpret_cast<Number*>(list.data()));
 }
 
 /// Makes a mesh from points (n x 3), the concatenated corners of all polygons, and the begin of each polygon among the corners.
@@ -154,7 +156,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
                       const py::dict& extras, const std::string& name) {
     check_mesh_extension(name);
     PolygonSoup soup;
-    if (points.ndim() != 2 || points.shape(1) != 3) fail_input("points", "is no array of n x 3 numbers", "give x, y, z");
+    if (points.ndim() != 2 || points.shape(1) != 3) fail_input("points", "is not an array of n x 3 numbers", "give x, y, z");
     const auto count = static_cast<std::size_t>(points.shape(0));
     if (count >= no_index || static_cast<std::size_t>(corners.size()) >= no_index)
         fail_work(name, "has more than four thousand million corners", "split it");
@@ -163,14 +165,14 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
     for (std::size_t i = 0; i < count; ++i)
         for (const double x : soup.points[i])
             if (!std::isfinite(x))
-                fail_input("points", "point " + std::to_string(i) + " is not finite", "leave it out, or give its place");
+                fail_input("points", fmt::format("point {} is not finite", i), "leave it out, or give its position");
     const auto ends = static_cast<std::size_t>(begin.size());
     soup.polygon_begin.resize(std::max<std::size_t>(ends, 1));
     for (std::size_t i = 0; i < ends; ++i) {
-        const std::int64_t least = i == 0 ? 0 : begin.data()[i - 1];
-        if (begin.data()[i] < least || begin.data()[i] > corners.size() || (i == 0 && begin.data()[0] != 0) ||
+        const std::int64_t minimum = i == 0 ? 0 : begin.data()[i - 1];
+        if (begin.data()[i] < minimum || begin.data()[i] > corners.size() || (i == 0 && begin.data()[0] != 0) ||
             (i + 1 == ends && begin.data()[i] != corners.size()))
-            fail_input("faces", "polygon " + std::to_string(i) + " begins at no place of the corners", "count corners from 0");
+            fail_input("faces", fmt::format("polygon {} begins at an invalid place in the corners", i), "count corners from 0");
         soup.polygon_begin[i] = static_cast<Index>(begin.data()[i]);
     }
     soup.corners.resize(static_cast<std::size_t>(corners.size()));
@@ -179,9 +181,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
         if (corner < 0 || corner >= static_cast<std::int64_t>(count)) {
             const auto face =
                 std::upper_bound(soup.polygon_begin.begin(), soup.polygon_begin.end(), i) - soup.polygon_begin.begin();
-            fail_input("faces",
-                       "face " + std::to_string(face - 1) + " names vertex " + std::to_string(corner) + ", and there are " +
-                           std::to_string(count),
+            fail_input("faces", fmt::format("face {} names vertex {}, and there are {}", face - 1, corner, count),
                        "count vertices from 0");
         }
         soup.corners[i] = static_cast<Index>(corner);
@@ -200,7 +200,7 @@ py::array points_view(const Held& held) {
     if (const auto soup = held.object.as<PolygonSoup>())
         return view_of(soup, reinterpret_cast<const double*>(soup->points.data()), {size_of(soup->points.size()), 3});
     const auto file = held.object.as<MeshFile>();
-    if (!file) fail_usage("the object is no mesh", "give a mesh");
+    if (!file) fail_usage("the object is not a mesh", "give a mesh");
     const std::size_t count = file->mesh.number_of_vertices();
     if (count == 0 || file->mesh.has_garbage()) {
         const TriangleSoup soup = to_soup(file->mesh);
@@ -216,7 +216,7 @@ std::pair<py::array, py::array> polygons_of(const Held& held) {
         return {view_of(soup, soup->polygon_begin.data(), {size_of(soup->polygon_begin.size())}),
                 view_of(soup, soup->corners.data(), {size_of(soup->corners.size())})};
     const auto file = held.object.as<MeshFile>();
-    if (!file) fail_usage("the object is no mesh", "give a mesh");
+    if (!file) fail_usage("the object is not a mesh", "give a mesh");
     std::vector<Index> begin(file->mesh.number_of_faces() + 1), corner_list;
     corner_list.reserve(3 * file->mesh.number_of_faces());
     for (std::size_t i = 0; i < begin.size(); ++i) begin[i] = static_cast<Index>(3 * i);
@@ -230,7 +230,7 @@ std::pair<py::array, py::array> polygons_of(const Held& held) {
 py::dict extras_of(const Held& held) {
     const auto soup = held.object.as<PolygonSoup>();
     const auto file = held.object.as<MeshFile>();
-    if (!soup && !file) fail_usage("the object is no mesh", "give a mesh");
+    if (!soup && !file) fail_usage("the object is not a mesh", "give a mesh");
     const MeshExtras& extras = soup ? soup->extras : file->extras;
     const std::shared_ptr<const void> owner = soup ? std::shared_ptr<const void>(soup) : file;
     py::dict arrays;
@@ -273,7 +273,7 @@ py::array array_of_object(const Held& held) {
     if (const auto coordinates = held.object.as<Coordinates>())
         return view_of(coordinates, coordinates->vertex.data(), {coordinates->vertex.rows(), coordinates->vertex.cols()});
     const auto map = held.object.as<IndexMap>();
-    if (!map) fail_usage("the object is no array");
+    if (!map) fail_usage("the object is not an array");
     std::vector<std::int64_t> indices;
     for (const Index i : map->map) indices.push_back(i == no_index ? -1 : static_cast<std::int64_t>(i));
     const py::ssize_t count = size_of(indices.size());
@@ -288,7 +288,7 @@ py::object normals_of_coordinates(const Held& held) {
 
 py::dict files_of(const Held& held) {
     const auto folder = held.object.as<Path>();
-    if (!folder) fail_usage("the object is no folder");
+    if (!folder) fail_usage("the object is not a folder");
     py::dict files;
     for (const std::string& name : files_in(*folder))
         if (name.front() != '.') files[text_of_bytes(name)] = Held{Object::of(read_file(*folder / name), name)};
@@ -304,26 +304,29 @@ Held unpickled(const py::bytes& state) {
 }
 
 /// The faces of each region, and one label per face: the id of the smallest region that contains it, -1 for none.
-std::pair<py::dict, py::array> faces_of(const Held& held, const Held& on) {
-    const auto file = on.object.as<MeshFile>();
-    if (!file) throw Error(ErrorKind::input, on.object.name, "is no oriented manifold of triangles", "use ostraka.mesh.repair");
+std::pair<py::dict, py::array> faces_of(const Held& held, const Held& held_mesh) {
+    const auto file = held_mesh.object.as<MeshFile>();
+    if (!file)
+        throw Error(ErrorKind::input, held_mesh.object.name, "is not an oriented manifold of triangles",
+                    "use ostraka.mesh.repair");
     auto [set, labels] = unlocked([held, file] {
-        AnnotationSet read;
-        if (const auto known = held.object.as<AnnotationSet>()) {
-            check_annotations(*known, file->mesh, held.object.name);
-            read = *known;
+        AnnotationSet annotations;
+        if (const auto in_memory = held.object.as<AnnotationSet>()) {
+            check_annotations(*in_memory, file->mesh, held.object.name);
+            annotations = *in_memory;
         } else {
             const InMemory place(Path(held.object.name).filename().string());
             write_object(held.object, place.file);
-            read = read_annotations(place.file, file->mesh);
+            annotations = read_annotations(place.file, file->mesh);
         }
-        auto of_faces = labels_of(file->mesh, read);
-        return std::pair(std::move(read), std::move(of_faces));
+        auto face_labels = labels_of(file->mesh, annotations);
+        return std::pair(std::move(annotations), std::move(face_labels));
     });
     py::dict faces;
-    for (Annotation& one : set.annotations) {
-        const py::ssize_t count = size_of(one.faces.size());
-        if (one.type == AnnotationType::region) faces[py::int_(one.id)] = array_of(std::move(one.faces), {count});
+    for (Annotation& annotation : set.annotations) {
+        const py::ssize_t count = size_of(annotation.faces.size());
+        if (annotation.type == AnnotationType::region)
+            faces[py::int_(annotation.id)] = array_of(std::move(annotation.faces), {count});
     }
     const py::ssize_t count = size_of(labels.size());
     return {faces, array_of(std::move(labels), {count})};

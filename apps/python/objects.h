@@ -43,7 +43,7 @@ struct InMemory {
 void write_object(const Object& object, const Path& file);
 
 /// One number per element.
-Object object_of_values(std::vector<double> list);
+Object object_of_values(std::vector<double> numbers);
 
 /// Adds the class of these objects, and the functions that read and make them, to the module.
 void add_objects(py::module_& module);

@@ -18,7 +18,7 @@ namespace ostraka::python {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds poll{50}, patience{600};
+constexpr std::chrono::milliseconds poll{50}, grace_period{600};
 constexpr int interrupted_polls = 4;  ///< polls during which the main thread may handle an interrupt
 
 /// A running job, owned by the worker thread and by the waiting thread.
@@ -76,16 +76,16 @@ bool python_ends() {
 #endif
 }
 
-void work_on(const std::shared_ptr<Job>& job, Jobs* list) {
+void work_on(const std::shared_ptr<Job>& job, Jobs* running_jobs) {
     try {
-        set_threads(wanted_threads);  // a setting of each thread
+        set_threads(requested_threads);  // a setting of each thread
         const WatchScope watched(job->watch.get());
         job->work();
     } catch (...) {
         job->failure = std::current_exception();
     }
     job->work = nullptr;  // also frees the objects it owns
-    list->remove(job.get());
+    running_jobs->remove(job.get());
     const std::lock_guard lock(job->mutex);
     job->done = true;
     job->ended.notify_one();
@@ -98,9 +98,10 @@ void stop(Job& job) {
     job.watch->cancel();
 }
 
-std::function<void(const std::string&, double)> calls(const std::weak_ptr<Job>& of, const py::object& progress) {
-    return [of, function = progress.ptr()](const std::string& phase, double share) {
-        const std::shared_ptr<Job> job = of.lock();
+std::function<void(const std::string&, double)> progress_callback(const std::weak_ptr<Job>& weak_job,
+                                                                  const py::object& progress) {
+    return [weak_job, function = progress.ptr()](const std::string& phase, double share) {
+        const std::shared_ptr<Job> job = weak_job.lock();
         if (!job || job->abandoned || python_ends()) return;
         const py::gil_scoped_acquire python;
         if (job->abandoned || job->raised) return;
@@ -112,7 +113,7 @@ std::function<void(const std::string&, double)> calls(const std::weak_ptr<Job>& 
 
 /// Runs signal handlers and picks up exceptions that other threads raised in this one. `polls`: number of consecutive calls
 /// during which the main thread has been handling an interrupt.
-void hear(Job& job, int& polls) {
+void handle_signals(Job& job, int& polls) {
     if (PyErr_CheckSignals() != 0) return stop(job);
     PyObject* module = PyImport_ImportModule("ostraka._interrupts");
     PyObject* answer = module == nullptr ? nullptr : PyObject_CallMethod(module, "main_thread_state", nullptr);
@@ -136,15 +137,15 @@ void wait_if_python_ends(const Job& job) {
 /// Waits without the GIL until the job has ended, or for 0.6 s after its cancellation. Returns whether it has ended.
 bool wait_for(Job& job) {
     int polls = 0;
-    std::optional<Clock::time_point> last;
+    std::optional<Clock::time_point> deadline;
     for (std::unique_lock lock(job.mutex); !job.ended.wait_for(lock, poll, [&] { return job.done; });) {
         lock.unlock();
         wait_if_python_ends(job);
         {
             const py::gil_scoped_acquire python;
-            if (!job.raised) hear(job, polls);
-            if (job.raised && !last) last = Clock::now() + patience;
-            if (last && Clock::now() > *last) {
+            if (!job.raised) handle_signals(job, polls);
+            if (job.raised && !deadline) deadline = Clock::now() + grace_period;
+            if (deadline && Clock::now() > *deadline) {
                 job.abandoned = true;
                 return false;
             }
@@ -162,17 +163,17 @@ void run_watched(const std::shared_ptr<Watch>& watch, const py::object& progress
     job->watch = watch;
     job->work = std::move(work);
     job->at_end = python_ends();
-    watch->memory_limit = wanted_memory;
-    if (!progress.is_none()) watch->on_progress = calls(job, progress);
+    watch->memory_limit = requested_memory;
+    if (!progress.is_none()) watch->on_progress = progress_callback(job, progress);
     {
-        const py::gil_scoped_release free;
+        const py::gil_scoped_release without_gil;
         jobs.load()->add(job.get());
         std::thread worker;
         try {
             worker = std::thread(work_on, job, jobs.load());
         } catch (const std::system_error&) {
             jobs.load()->remove(job.get());
-            throw Error(ErrorKind::failure, "", "the system gives no further thread", "end other work first");
+            throw Error(ErrorKind::failure, "", "no further thread can be started", "end other work first");
         }
         if (wait_for(*job)) worker.join();
         else worker.detach();
@@ -186,7 +187,7 @@ void run_watched(const std::shared_ptr<Watch>& watch, const py::object& progress
     try {
         if (job->failure) std::rethrow_exception(job->failure);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::failure, "", "the memory does not suffice", "end other programs, or give a smaller object");
+        throw Error(ErrorKind::failure, "", "there is not enough memory", "end other programs, or give a smaller object");
     }
 }
 

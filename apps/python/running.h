@@ -15,9 +15,9 @@ namespace py = pybind11;
 namespace ostraka::python {
 
 /// The number of threads that operations use; it is set in every worker thread, since the setting is per thread.
-inline std::atomic<int> wanted_threads{0};
+inline std::atomic<int> requested_threads{0};
 /// Memory limit of the process during operations in bytes; 0: the memory of the machine.
-inline std::atomic<double> wanted_memory{0};
+inline std::atomic<double> requested_memory{0};
 
 /// Runs `work` on a separate thread, without the GIL. The calling thread handles signals meanwhile: an exception raised by
 /// their handlers, such as KeyboardInterrupt, or by `progress` cancels the work. The exception is raised when the work has

@@ -9,6 +9,8 @@
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,7 +94,7 @@ std::size_t faces_of_ply(std::string_view ply) {
 MeshWriting writing_of(const Object& object, std::size_t faces) {
     MeshWriting writing;
     const auto add = [&](const std::string& ending) {
-        if (std::none_of(writing.files.begin(), writing.files.end(), [&](const auto& one) { return one.first == ending; }))
+        if (std::none_of(writing.files.begin(), writing.files.end(), [&](const auto& entry) { return entry.first == ending; }))
             writing.files.emplace_back(ending, bytes_of_object(object, "mesh" + ending));
     };
     add(".ply");
@@ -121,13 +123,13 @@ std::function<void(const Path&)> write_mesh_with(MeshWriting writing, Write writ
     };
 }
 
-void check_count(std::size_t given, std::size_t elements, const char* what) {
-    if (given != 0 && given != elements) fail_archive(std::string("has another number of ") + what + " than of elements");
+void check_count(std::size_t given, std::size_t elements, const char* attribute) {
+    if (given != 0 && given != elements) fail_archive(fmt::format("has another number of {} than of elements", attribute));
 }
 
-void check_indices(const std::vector<Index>& list, std::size_t below) {
-    if (std::any_of(list.begin(), list.end(), [&](Index i) { return i >= below; }))
-        fail_archive("names an element that is not there");
+void check_indices(const std::vector<Index>& list, std::size_t limit) {
+    if (std::any_of(list.begin(), list.end(), [&](Index i) { return i >= limit; }))
+        fail_archive("names an element that does not exist");
 }
 
 void check_mesh(const PolygonSoup& soup) {
@@ -168,7 +170,7 @@ PolygonSoup soup_of(const MeshFile& file) {
 MeshFile mesh_of(PolygonSoup soup, std::vector<Index> triangle_polygon) {
     TriangleSoup triangles;
     for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
-        if (soup.polygon_begin[i + 1] != 3 * (i + 1)) fail_archive("has polygons that are no triangles");
+        if (soup.polygon_begin[i + 1] != 3 * (i + 1)) fail_archive("has polygons that are not triangles");
         triangles.triangles.push_back({soup.corners[3 * i], soup.corners[3 * i + 1], soup.corners[3 * i + 2]});
     }
     check_count(triangle_polygon.size(), soup.polygon_count(), "polygons");
@@ -191,15 +193,15 @@ Object restored_mesh(Reader& reader) {
 }
 
 Object restored_polygons(Reader& reader) {
-    PolygonSoup read;
+    PolygonSoup stored;
     MeshWriting writing;
-    reader(read, writing);
-    check_mesh(read);
-    const auto soup = std::make_shared<const PolygonSoup>(std::move(read));
+    reader(stored, writing);
+    check_mesh(stored);
+    const auto soup = std::make_shared<const PolygonSoup>(std::move(stored));
     Object object(soup);
     object.write = write_mesh_with(std::move(writing), [soup](const Path& file, const WriteOptions& options) {
-        const TriangulatedSoup made = triangulate(PolygonSoup(*soup));
-        write_triangles(file, made.soup, made.extras, options);
+        const TriangulatedSoup triangulated = triangulate(PolygonSoup(*soup));
+        write_triangles(file, triangulated.soup, triangulated.extras, options);
     });
     return object;
 }
@@ -217,7 +219,7 @@ WeightMatrix restored_matrix(Reader& reader) {
     reader(rows, columns, numbers);
     const bool fits = rows == 0 || columns == 0 ? numbers.empty() && std::max(rows, columns) < no_index
                                                 : numbers.size() % rows == 0 && numbers.size() / rows == columns;
-    if (!fits) fail_archive("holds an array of another size than it says");
+    if (!fits) fail_archive("holds an array of another size than it states");
     if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
         fail_archive("has a weight that is not finite");
     return Eigen::Map<const WeightMatrix>(numbers.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
@@ -240,13 +242,13 @@ SparseWeights restored_sparse(Reader& reader, const WeightMatrix& dense) {
     if (begin.empty() || begin.front() != 0 || begin.back() != count || !std::is_sorted(begin.begin(), begin.end()) ||
         column.size() != values.size() || begin.size() - 1 != static_cast<std::size_t>(dense.rows()) ||
         columns != static_cast<std::uint64_t>(dense.cols()))
-        fail_archive("holds weights of another size than it says");
+        fail_archive("holds weights of another size than it states");
     for (std::size_t row = 0; row + 1 < begin.size(); ++row)
         for (int i = begin[row]; i < begin[row + 1]; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            if (column[at] < 0 || column[at] >= static_cast<int>(columns) || (i > begin[row] && column[at] <= column[at - 1]) ||
-                !std::isfinite(values[at]))
-                fail_archive("holds weights that are in no order");
+            const auto position = static_cast<std::size_t>(i);
+            if (column[position] < 0 || column[position] >= static_cast<int>(columns) ||
+                (i > begin[row] && column[position] <= column[position - 1]) || !std::isfinite(values[position]))
+                fail_archive("holds weights that are not in order");
         }
     return Eigen::Map<const SparseWeights>(dense.rows(), dense.cols(), count, begin.data(), column.data(), values.data());
 }
@@ -254,9 +256,9 @@ SparseWeights restored_sparse(Reader& reader, const WeightMatrix& dense) {
 void save_coordinates(Writer& writer, const Object& object, const Coordinates& coordinates) {
     const std::string header = coordinate_header_file("weights.npy").string();
     const Files files = files_of_object(object, "weights.npy");
-    const auto found = std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.first == header; });
-    if (found == files.end()) fail_usage("coordinates without a header cannot be kept");
-    writer(coordinates.kind, coordinates.seconds, found->second);
+    const auto header_file = std::find_if(files.begin(), files.end(), [&](const auto& entry) { return entry.first == header; });
+    if (header_file == files.end()) fail_usage("coordinates without a header cannot be kept");
+    writer(coordinates.kind, coordinates.seconds, header_file->second);
     save_matrix(writer, coordinates.vertex);
     save_matrix(writer, coordinates.normal);
     writer(coordinates.is_sparse());
@@ -265,7 +267,8 @@ void save_coordinates(Writer& writer, const Object& object, const Coordinates& c
 
 /// Writes the files of coordinates as write_coordinates does; `header`: their header, with other names.
 void write_restored(const Path& weights, const Coordinates& coordinates, const std::string& header) {
-    if (extension(weights) != ".npy") fail_usage("'" + weights.string() + "' is no name for a NumPy array", "end it in .npy");
+    if (extension(weights) != ".npy")
+        fail_usage(fmt::format("'{}' is not the name of a NumPy array", weights.string()), "end its name in .npy");
     Json document = parse_json(header, "pickle");
     auto& allocator = document.GetAllocator();
     const auto write_list = [&](JsonValue& array, const Path& file, const auto& numbers, const std::vector<std::size_t>& shape) {
@@ -293,29 +296,29 @@ void write_restored(const Path& weights, const Coordinates& coordinates, const s
 }
 
 Object restored_coordinates(Reader& reader) {
-    Coordinates read;
+    Coordinates stored;
     std::string header;
     bool is_sparse = false;
-    reader(read.kind, read.seconds, header);
-    read.vertex = restored_matrix(reader);
-    read.normal = restored_matrix(reader);
+    reader(stored.kind, stored.seconds, header);
+    stored.vertex = restored_matrix(reader);
+    stored.normal = restored_matrix(reader);
     reader(is_sparse);
-    if (is_sparse) read.sparse = restored_sparse(reader, read.vertex);
+    if (is_sparse) stored.sparse = restored_sparse(reader, stored.vertex);
     const Json document = parse_json(header, "pickle");
     validate(document, "coordinates", "pickle");
     if ((find_member(document, "sparse") != nullptr) != is_sparse ||
-        (find_member(document, "normal") != nullptr) != read.has_normals())
+        (find_member(document, "normal") != nullptr) != stored.has_normals())
         fail_archive("has weights that are not those of their header");
-    const auto coordinates = std::make_shared<const Coordinates>(std::move(read));
+    const auto coordinates = std::make_shared<const Coordinates>(std::move(stored));
     Object object(coordinates);
     object.write = [coordinates, header](const Path& file) { write_restored(file, *coordinates, header); };
     return object;
 }
 
 Object restored_values(Reader& reader) {
-    std::vector<double> read;
-    reader(read);
-    return object_of_values(std::move(read));
+    std::vector<double> stored;
+    reader(stored);
+    return object_of_values(std::move(stored));
 }
 
 Object restored_index_map(Reader& reader) {
@@ -351,14 +354,14 @@ Object restored_annotations(Reader& reader) {
 // ---- several files ----
 
 /// Writes the files into an in-memory folder that `context` keeps.
-Path put_files(const Files& files, Context& context, const std::string& name) {
+Path write_files(const Files& files, Context& context, const std::string& name) {
     const Path folder = context.memory(name);
-    OutputTransaction own;
+    OutputTransaction transaction;
     for (const auto& [file, bytes] : files) {
         require_plain_name(file, "pickle", "files");
         write_file(folder / file, bytes);
     }
-    own.commit();
+    transaction.commit();
     return folder;
 }
 
@@ -366,15 +369,15 @@ Held restored_folder(Reader& reader) {
     Files files;
     reader(files);
     const auto context = std::make_shared<Context>();
-    return {Object::of(put_files(files, *context, "folder")), context};
+    return {Object::of(write_files(files, *context, "folder")), context};
 }
 
 constexpr const char* template_name = "saved.template.json";
 
-void save_template(Writer& writer, const Object& object, const Template& known) {
+void save_template(Writer& writer, const Object& object, const Template& package) {
     std::vector<std::string> parts;  // by file name in the folder
-    for (const PackagedFile& part : known.file.contents) parts.push_back(part.file.filename().string());
-    writer(known.file, parts, files_of_object(object, template_name));
+    for (const PackagedFile& part : package.file.contents) parts.push_back(part.file.filename().string());
+    writer(package.file, parts, files_of_object(object, template_name));
 }
 
 Held restored_template(Reader& reader) {
@@ -382,9 +385,9 @@ Held restored_template(Reader& reader) {
     std::vector<std::string> parts;
     Files files;
     reader(file, parts, files);
-    if (parts.size() != file.contents.size()) fail_archive("has another number of parts than it says");
+    if (parts.size() != file.contents.size()) fail_archive("has another number of parts than it states");
     const auto context = std::make_shared<Context>();
-    const Path folder = put_files(files, *context, "template");
+    const Path folder = write_files(files, *context, "template");
     for (std::size_t i = 0; i < parts.size(); ++i) {
         require_plain_name(parts[i], "pickle", "parts");
         file.contents[i].file = folder / parts[i];
@@ -440,9 +443,9 @@ void save_data(Writer& writer, const Object& object) {
         writer(Type::coordinates), save_coordinates(writer, object, *coordinates);
     else if (const auto map = object.as<IndexMap>()) writer(Type::index_map, *map, bytes_of_object(object, "map.json"));
     else if (const auto folder = object.as<Path>()) writer(Type::folder, files_of_folder(*folder));
-    else if (const auto known = object.as<Template>()) writer(Type::template_package), save_template(writer, object, *known);
+    else if (const auto package = object.as<Template>()) writer(Type::template_package), save_template(writer, object, *package);
     else if (const auto text = object.as<std::string>()) writer(Type::text, *text);
-    else throw Error(ErrorKind::usage, object.name, "is no object that can be pickled", "save it as a file");
+    else throw Error(ErrorKind::usage, object.name, "cannot be pickled", "save it as a file");
 }
 
 }  // namespace
@@ -457,11 +460,11 @@ std::string state_of(const Held& held) {
 }
 
 Held held_of(const std::string& state) {
-    const std::string_view all = state;
-    if (!all.starts_with(magic)) fail_archive("is no object of this version of the toolkit");
-    if (all.size() < magic.size() + digest_size) fail_archive("is shorter than what it holds");
-    const std::string_view content = all.substr(0, all.size() - digest_size);
-    if (sha256(content) != all.substr(content.size())) fail_archive("is damaged (its checksum differs)");
+    const std::string_view archive = state;
+    if (!archive.starts_with(magic)) fail_archive("is not an object of this version of the toolkit");
+    if (archive.size() < magic.size() + digest_size) fail_archive("is shorter than its content");
+    const std::string_view content = archive.substr(0, archive.size() - digest_size);
+    if (sha256(content) != archive.substr(content.size())) fail_archive("is damaged (its checksum differs)");
     Reader reader(content.substr(magic.size()));
     std::string name, checksum;
     Type type{};

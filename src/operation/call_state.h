@@ -14,12 +14,12 @@ struct Context::CallState {
     std::vector<ReadRecord::Entry> read = {};                                   ///< files in the order of reading
     std::map<std::pair<const Slot*, std::size_t>, std::string> checksums = {};  ///< checksums of objects in memory
     std::map<std::tuple<const Slot*, std::size_t, std::type_index, std::string>, std::shared_ptr<const void>> loaded = {};
-    std::vector<ReadRecord::Entry>* within = nullptr;             ///< files read by the enclosing load, if loads are nested
-    std::vector<std::pair<std::string, std::string>> noted = {};  ///< notes already reported, by file, to avoid repetitions
-    std::vector<std::pair<std::string, std::string>> named = {};  ///< names and checksums of inputs that are read elsewhere
+    std::vector<ReadRecord::Entry>* within = nullptr;  ///< files read by the enclosing load, if loads are nested
+    std::vector<std::pair<std::string, std::string>> reported_notes = {};   ///< by file, to avoid repetitions
+    std::vector<std::pair<std::string, std::string>> recorded_inputs = {};  ///< inputs that are read elsewhere, with checksums
 
     /// Checksum of the i-th object of a slot: stated by the object, or that of its file or of the file it would be written to.
-    const std::string& know(const Slot& slot, std::size_t i);
+    const std::string& checksum_of(const Slot& slot, std::size_t i);
     void add(const std::vector<ReadRecord::Entry>& files);
     /// Files that were read, except those that are updated in place.
     [[nodiscard]] std::vector<Path> inputs() const;

@@ -1,5 +1,7 @@
 #include "call_state.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -9,16 +11,16 @@
 
 namespace ostraka {
 
-struct Object::Made {
+struct Object::ChecksumCache {
     std::mutex mutex;
-    std::map<std::string, Checksums> of;  ///< by name of the object
+    std::map<std::string, Checksums> by_name;  ///< by name of the object
 };
 
-std::shared_ptr<Object::Made> Object::make_made() { return std::make_shared<Made>(); }
+std::shared_ptr<Object::ChecksumCache> Object::make_checksum_cache() { return std::make_shared<ChecksumCache>(); }
 
 const Object::Checksums& Object::checksums() const {
-    const std::lock_guard lock(made_->mutex);
-    if (const auto known = made_->of.find(name); known != made_->of.end()) return known->second;
+    const std::lock_guard lock(checksum_cache_->mutex);
+    if (const auto cached = checksum_cache_->by_name.find(name); cached != checksum_cache_->by_name.end()) return cached->second;
     Checksums sums{sha256, {}};  // stored only once complete, because writing may be cancelled
     if (sums.sha256.empty() && write) {
         static std::atomic<std::size_t> count{0};
@@ -27,31 +29,31 @@ const Object::Checksums& Object::checksums() const {
             ~Folder() { forget_memory(path); }
         } const folder;
         const Path file = folder.path / Path(name).filename();
-        OutputTransaction own;
+        OutputTransaction transaction;
         write(file);
-        own.commit();
+        transaction.commit();
         sums.sha256 = sha256_of_file(file);
-        for (const std::string& one : files_in(folder.path))  // e.g. the header of coordinates
-            if (one != file.filename()) sums.beside.emplace_back(one, sha256_of_file(folder.path / one));
+        for (const std::string& file_name : files_in(folder.path))  // e.g. the header of coordinates
+            if (file_name != file.filename()) sums.beside.emplace_back(file_name, sha256_of_file(folder.path / file_name));
     } else if (const auto bytes = as<std::string>(); sums.sha256.empty() && bytes) {
         sums.sha256 = ostraka::sha256(*bytes);
     } else if (const auto document = as<Json>(); sums.sha256.empty() && document) {
         sums.sha256 = ostraka::sha256(to_text(*document));
     }
-    return made_->of.emplace(name, std::move(sums)).first->second;
+    return checksum_cache_->by_name.emplace(name, std::move(sums)).first->second;
 }
 
-const std::string& Context::CallState::know(const Slot& slot, std::size_t i) {
-    std::string& sum = checksums[{&slot, i}];
-    if (!sum.empty()) return sum;
-    const Object::Checksums& made = slot.sources[i].object.checksums();
-    named.insert(named.end(), made.beside.begin(), made.beside.end());
-    return sum = made.sha256;
+const std::string& Context::CallState::checksum_of(const Slot& slot, std::size_t i) {
+    std::string& checksum = checksums[{&slot, i}];
+    if (!checksum.empty()) return checksum;
+    const Object::Checksums& object_checksums = slot.sources[i].object.checksums();
+    recorded_inputs.insert(recorded_inputs.end(), object_checksums.beside.begin(), object_checksums.beside.end());
+    return checksum = object_checksums.sha256;
 }
 
 void Context::CallState::add(const std::vector<ReadRecord::Entry>& files) {
     for (const auto& entry : files)
-        if (std::none_of(read.begin(), read.end(), [&](const auto& known) { return known.file == entry.file; }))
+        if (std::none_of(read.begin(), read.end(), [&](const auto& other) { return other.file == entry.file; }))
             read.push_back(entry);
 }
 
@@ -63,7 +65,7 @@ std::vector<Path> Context::CallState::inputs() const {
     return files;
 }
 
-struct Context::Kept {
+struct Context::ObjectCache {
     struct File {
         ReadRecord::Entry entry;
         std::uintmax_t size = 0;
@@ -89,10 +91,10 @@ struct Context::Kept {
     std::optional<Entry> find_or_begin(const Name& name) {
         std::unique_lock lock(mutex);
         read.wait(lock, [&] { return !reading.contains(name); });
-        if (const auto known = objects.find(name); known != objects.end()) {
-            const auto& files = known->second.files;
-            if (std::all_of(files.begin(), files.end(), [](const File& file) { return file.unchanged(); })) return known->second;
-            objects.erase(known);
+        if (const auto cached = objects.find(name); cached != objects.end()) {
+            const auto& files = cached->second.files;
+            if (std::all_of(files.begin(), files.end(), [](const File& file) { return file.unchanged(); })) return cached->second;
+            objects.erase(cached);
         }
         reading.insert(name);
         return {};
@@ -105,16 +107,16 @@ struct Context::Kept {
     }
 };
 
-Context::Context() : kept_(std::make_shared<Kept>()) {}
+Context::Context() : object_cache_(std::make_shared<ObjectCache>()) {}
 
 void Context::share_objects(Context& other) {
     keep_objects = other.keep_objects = true;
-    kept_ = other.kept_;
+    object_cache_ = other.object_cache_;
 }
 
 void Context::forget(const Path& file) {
-    const std::lock_guard lock(kept_->mutex);
-    std::erase_if(kept_->objects, [&](const auto& one) { return std::get<0>(one.first) == file.string(); });
+    const std::lock_guard lock(object_cache_->mutex);
+    std::erase_if(object_cache_->objects, [&](const auto& cached) { return std::get<0>(cached.first) == file.string(); });
 }
 
 Context::~Context() {
@@ -122,68 +124,68 @@ Context::~Context() {
 }
 
 Provenance Context::provenance() const {
-    if (run_ == nullptr) throw std::logic_error("no operation is under way");
+    if (call_ == nullptr) throw std::logic_error("no operation is running");
     Provenance provenance;
-    provenance.command = run_->command;
-    provenance.options = run_->parameters->options.values();
+    provenance.command = call_->command;
+    provenance.options = call_->parameters->options.values();
     std::erase_if(provenance.options, [](const auto& option) { return option.second.empty(); });
     std::set<Path> listed;
-    std::map<Path, std::string> known;  // checksums of files already read
-    for (const auto& entry : run_->read) known.emplace(entry.file, entry.sha256);
-    for (const Slot* slot : run_->parameters->slots()) {
+    std::map<Path, std::string> checksums_by_file;  // checksums of files already read
+    for (const auto& entry : call_->read) checksums_by_file.emplace(entry.file, entry.sha256);
+    for (const Slot* slot : call_->parameters->slots()) {
         if (slot->role != Role::input) continue;
         for (std::size_t i = 0; i < slot->sources.size(); ++i) {
             const Source& source = slot->sources[i];
             if (source.object.as<Path>()) continue;  // a folder; its files are recorded separately
             if (source.object) {
-                provenance.inputs.emplace_back(Path(source.object.name).filename().string(), run_->know(*slot, i));
+                provenance.inputs.emplace_back(Path(source.object.name).filename().string(), call_->checksum_of(*slot, i));
                 continue;
             }
             listed.insert(source.file);
-            const std::string called = (source.label.empty() ? "" : source.label + "=") + source.file.filename().string();
-            if (!known.contains(source.file)) {  // not read yet, or a folder, whose files are recorded separately
+            const std::string input_name = (source.label.empty() ? "" : source.label + "=") + source.file.filename().string();
+            if (!checksums_by_file.contains(source.file)) {  // not read yet, or a folder, whose files are recorded separately
                 if (!file_exists(source.file)) continue;
-                run_->read.push_back({source.file, sha256_of_file(source.file)});
-                known.emplace(source.file, run_->read.back().sha256);
+                call_->read.push_back({source.file, sha256_of_file(source.file)});
+                checksums_by_file.emplace(source.file, call_->read.back().sha256);
             }
-            provenance.inputs.emplace_back(called, known.at(source.file));
+            provenance.inputs.emplace_back(input_name, checksums_by_file.at(source.file));
         }
     }
-    for (const auto& entry : run_->read)
+    for (const auto& entry : call_->read)
         if (!is_memory(entry.file) && !listed.contains(entry.file))
             provenance.inputs.emplace_back(entry.file.filename().string(), entry.sha256);
-    provenance.inputs.insert(provenance.inputs.end(), run_->named.begin(), run_->named.end());
+    provenance.inputs.insert(provenance.inputs.end(), call_->recorded_inputs.begin(), call_->recorded_inputs.end());
     return provenance;
 }
 
 std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::type_index type, const std::string& key,
                                           const Read& read) {
-    if (run_ == nullptr) throw std::logic_error("no operation is under way");
+    if (call_ == nullptr) throw std::logic_error("no operation is running");
     if (i >= slot.sources.size()) throw std::logic_error("nothing was given for " + slot.name);
-    const auto place = std::tuple(&slot, i, type, key);
-    if (const auto known = run_->loaded.find(place); known != run_->loaded.end()) return known->second;
+    const auto load_key = std::tuple(&slot, i, type, key);
+    if (const auto loaded = call_->loaded.find(load_key); loaded != call_->loaded.end()) return loaded->second;
     check_cancelled();
     const Source& source = slot.sources[i];
-    if (source.object) run_->know(slot, i);
+    if (source.object) call_->checksum_of(slot, i);
     const bool shared = keep_objects && !source.object;
     const auto name = std::tuple(source.file.string(), type, key);
     if (shared)
-        if (const auto known = kept_->find_or_begin(name)) {
-            for (const auto& file : known->files) {
-                run_->add({file.entry});
-                if (run_->within != nullptr) run_->within->push_back(file.entry);
+        if (const auto cached = object_cache_->find_or_begin(name)) {
+            for (const auto& file : cached->files) {
+                call_->add({file.entry});
+                if (call_->within != nullptr) call_->within->push_back(file.entry);
             }
-            return run_->loaded[place] = known->data;
+            return call_->loaded[load_key] = cached->data;
         }
-    std::optional<Kept::Entry> entry;
+    std::optional<ObjectCache::Entry> entry;
     struct End {  // ends the reading also if an exception is thrown
-        Kept* kept;
-        const Kept::Name& name;
-        std::optional<Kept::Entry>& entry;
+        ObjectCache* kept;
+        const ObjectCache::Name& name;
+        std::optional<ObjectCache::Entry>& entry;
         ~End() {
             if (kept != nullptr) kept->end(name, std::move(entry));
         }
-    } const end{shared ? kept_.get() : nullptr, name, entry};
+    } const end{shared ? object_cache_.get() : nullptr, name, entry};
     std::vector<ReadRecord::Entry> files;
     std::shared_ptr<const void> data;
     {
@@ -192,14 +194,14 @@ std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::
             CallState& run;
             std::vector<ReadRecord::Entry>* outer;
             ~Within() { run.within = outer; }
-        } const within{*run_, std::exchange(run_->within, &files)};
+        } const within{*call_, std::exchange(call_->within, &files)};
         data = read(source.file);
         files.insert(files.end(), record.files.begin(), record.files.end());
     }
-    run_->add(files);
-    if (run_->within != nullptr) run_->within->insert(run_->within->end(), files.begin(), files.end());
+    call_->add(files);
+    if (call_->within != nullptr) call_->within->insert(call_->within->end(), files.begin(), files.end());
     if (shared) {
-        entry.emplace(Kept::Entry{{}, data});
+        entry.emplace(ObjectCache::Entry{{}, data});
         for (const auto& file : files) {
             std::error_code code;
             if (is_memory(file.file)) entry->files.push_back({file, 0, {}});
@@ -208,28 +210,32 @@ std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::
                     {file, std::filesystem::file_size(file.file, code), std::filesystem::last_write_time(file.file, code)});
         }
     }
-    return run_->loaded[place] = data;
+    return call_->loaded[load_key] = data;
 }
 
 void Context::record(const std::function<void()>& read) {
     const ReadRecord record;
     read();
-    run_->add(record.files);
+    call_->add(record.files);
 }
 
-void Context::record_input(const std::string& name, const std::string& sha256) { run_->named.emplace_back(name, sha256); }
+void Context::record_input(const std::string& name, const std::string& sha256) {
+    call_->recorded_inputs.emplace_back(name, sha256);
+}
 
-void Context::record_object(const Slot& slot, std::size_t i, const std::string& sha256) { run_->checksums[{&slot, i}] = sha256; }
+void Context::record_object(const Slot& slot, std::size_t i, const std::string& sha256) { call_->checksums[{&slot, i}] = sha256; }
 
-std::string Context::checksum_of_object(const Slot& slot, std::size_t i) { return run_->know(slot, i); }
+std::string Context::checksum_of_object(const Slot& slot, std::size_t i) { return call_->checksum_of(slot, i); }
 
-void Context::note(const std::string& text) { run_->report->note(text); }
+void Context::note(const std::string& text) { call_->report->note(text); }
 
 void Context::notes(const std::string& file, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
-        if (std::find(run_->noted.begin(), run_->noted.end(), std::pair(file, text)) != run_->noted.end()) continue;
-        run_->noted.emplace_back(file, text);
-        run_->report->note(file.empty() ? text : file + ": " + text);
+        if (std::find(call_->reported_notes.begin(), call_->reported_notes.end(), std::pair(file, text)) !=
+            call_->reported_notes.end())
+            continue;
+        call_->reported_notes.emplace_back(file, text);
+        call_->report->note(file.empty() ? text : fmt::format("{}: {}", file, text));
     }
 }
 
@@ -240,12 +246,12 @@ Path Context::memory(const std::string& name) {
     return folder / name;
 }
 
-void Context::check_output(const Path& file) const { ostraka::check_outputs(run_->inputs(), {file}); }
+void Context::check_output(const Path& file) const { ostraka::check_outputs(call_->inputs(), {file}); }
 
 void Context::check_outputs(const std::vector<Path>& further) const {
-    std::vector<Path> inputs = run_->inputs(), outputs;
-    for (const Slot* slot : run_->parameters->slots())
-        if (dynamic_cast<const FolderOutput*>(slot) == nullptr && !run_->parameters->updated_in_place(*slot))
+    std::vector<Path> inputs = call_->inputs(), outputs;
+    for (const Slot* slot : call_->parameters->slots())
+        if (dynamic_cast<const FolderOutput*>(slot) == nullptr && !call_->parameters->updated_in_place(*slot))
             for (const Source& source : slot->sources) (slot->role == Role::input ? inputs : outputs).push_back(source.file);
     outputs.insert(outputs.end(), further.begin(), further.end());
     ostraka::check_outputs(inputs, outputs);

@@ -2,6 +2,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/operation/operation.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -22,8 +24,9 @@ JsonValue option_schema(const Option& option, JsonAllocator& allocator) {
     JsonValue schema = json_object(allocator, "type", name);
     add_rule(schema, option, "enum", allocator);
     if (option.is_list()) schema = json_object(allocator, "type", "array", "items", std::move(schema));
-    const std::string about = std::holds_alternative<Words>(option.rule) ? option.allowed() : option.unit;
-    add_members(schema, allocator, "description", option.help + (about.empty() ? "" : " (" + about + ")"));
+    const std::string constraint = std::holds_alternative<Words>(option.rule) ? option.allowed() : option.unit;
+    add_members(schema, allocator, "description",
+                constraint.empty() ? option.help : fmt::format("{} ({})", option.help, constraint));
     return schema;
 }
 
@@ -42,12 +45,12 @@ JsonValue Call::schema(JsonAllocator& allocator) const {
     JsonValue properties(rapidjson::kObjectType);
     std::vector<std::string> needed;
     for (const Slot* slot : parameters_.slots()) {
-        JsonValue one = slot->repeated
-                            ? json_object(allocator, "type", "array", "items", json_object(allocator, "type", "string"))
-                        : slot->role == Role::input ? json_object(allocator, "type", "string")
-                                                    : json_object(allocator, "type", std::array{"string", "boolean"});
-        add_members(one, allocator, "description", slot->help);
-        add_members(properties, allocator, slot->name, std::move(one));
+        JsonValue slot_schema = slot->repeated
+                                    ? json_object(allocator, "type", "array", "items", json_object(allocator, "type", "string"))
+                                : slot->role == Role::input ? json_object(allocator, "type", "string")
+                                                            : json_object(allocator, "type", std::array{"string", "boolean"});
+        add_members(slot_schema, allocator, "description", slot->help);
+        add_members(properties, allocator, slot->name, std::move(slot_schema));
         if (slot->needed && slot->role == Role::input && !slot->may_be_new) needed.push_back(slot->name);
     }
     for (const Option& option : parameters_.options) {
@@ -64,23 +67,24 @@ JsonValue Call::schema(JsonAllocator& allocator) const {
 JsonValue Call::declaration(JsonAllocator& allocator) const {
     JsonValue inputs(rapidjson::kArrayType), outputs(rapidjson::kArrayType), options(rapidjson::kArrayType);
     for (const Slot* slot : parameters_.slots()) {
-        JsonValue one = json_object(allocator, "name", slot->name, "kind", to_string(slot->kind), "required", slot->needed,
-                                    "repeated", slot->repeated);
-        if (slot->updated != nullptr) add_members(one, allocator, "updates", slot->updated->name);
-        add_members(one, allocator, "help", slot->help);
-        (slot->role == Role::input ? inputs : outputs).PushBack(one, allocator);
+        JsonValue slot_entry = json_object(allocator, "name", slot->name, "kind", to_string(slot->kind), "required", slot->needed,
+                                           "repeated", slot->repeated);
+        if (slot->updated != nullptr) add_members(slot_entry, allocator, "updates", slot->updated->name);
+        add_members(slot_entry, allocator, "help", slot->help);
+        (slot->role == Role::input ? inputs : outputs).PushBack(slot_entry, allocator);
     }
     for (const Option& option : parameters_.options) {
         static constexpr const char* types[]{"boolean", "integer", "number", "text", "choice", "texts", "numbers", "integers"};
-        JsonValue one = json_object(allocator, "name", option.name, "type", types[static_cast<std::size_t>(option.type())]);
-        add_rule(one, option, "choices", allocator);
+        JsonValue option_entry =
+            json_object(allocator, "name", option.name, "type", types[static_cast<std::size_t>(option.type())]);
+        add_rule(option_entry, option, "choices", allocator);
         if (const auto* words = std::get_if<Words>(&option.rule))
-            add_members(one, allocator, "words", words->names, "others", words->others);
-        if (!option.initial.empty()) add_members(one, allocator, "default", initial_of(option, allocator));
-        if (!option.unit.empty()) add_members(one, allocator, "unit", option.unit);
-        if (!option.group.empty()) add_members(one, allocator, "group", option.group);
-        add_members(one, allocator, "required", option.needed, "help", option.help);
-        options.PushBack(one, allocator);
+            add_members(option_entry, allocator, "words", words->names, "others", words->others);
+        if (!option.initial.empty()) add_members(option_entry, allocator, "default", initial_of(option, allocator));
+        if (!option.unit.empty()) add_members(option_entry, allocator, "unit", option.unit);
+        if (!option.group.empty()) add_members(option_entry, allocator, "group", option.group);
+        add_members(option_entry, allocator, "required", option.needed, "help", option.help);
+        options.PushBack(option_entry, allocator);
     }
     return json_object(allocator, "name", entry_->name, "help", entry_->help, "inputs", std::move(inputs), "outputs",
                        std::move(outputs), "options", std::move(options), "arguments", parameters_.orders, "result",

@@ -14,14 +14,14 @@ namespace {
 Path in_memory(Context& context, const Object& object, const std::string& slot) {
     if (const auto folder = object.as<Path>()) return *folder;
     const Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
-    OutputTransaction own;  // read before the outputs of the call are committed
+    OutputTransaction transaction;  // read before the outputs of the call are committed
     write_object(object, path, slot);
-    own.commit();
+    transaction.commit();
     return path;
 }
 
 /// Records the checksum `sum()` for an object that has neither a checksum nor a file form.
-void tell_checksum(const Slot& slot, std::size_t i, const std::function<std::string()>& sum) {
+void record_checksum(const Slot& slot, std::size_t i, const std::function<std::string()>& sum) {
     const Object& object = slot.sources[i].object;
     if (object.sha256.empty() && !object.write) slot.context->record_object(slot, i, sum());
 }
@@ -38,19 +38,19 @@ const T& loaded(const Slot& slot, std::size_t i, const std::string& key, const R
         slot.context->load(slot, i, typeid(T), key, [&](const Path& file) -> std::shared_ptr<const void> {
             if (auto data = object.as<T>()) {
                 if (check) check(*data);
-                tell_checksum(slot, i, [&] { return sum(*data); });
+                record_checksum(slot, i, [&] { return sum(*data); });
                 return data;
             }
-            if (auto made = object && convert ? convert(object) : std::nullopt)
-                return std::make_shared<const T>(std::move(*made));
+            if (auto converted = object && convert ? convert(object) : std::nullopt)
+                return std::make_shared<const T>(std::move(*converted));
             return std::make_shared<const T>(read(object ? in_memory(*slot.context, object, slot.name) : file));
         }));
 }
 
 /// Throws: provenance requires the checksum of every input.
 [[noreturn]] std::string unknown_checksum(const Slot& slot) {
-    throw Error(ErrorKind::usage, slot.name, "is given as an object that does not say of which bytes",
-                "say its checksum (Object::sha256), or give a file, or its bytes");
+    throw Error(ErrorKind::usage, slot.name, "is given as an object without a checksum",
+                "set its checksum (Object::sha256), or give a file or its bytes");
 }
 
 /// Key for an object that depends on another object in memory.
@@ -58,7 +58,7 @@ std::string address(const void* object) { return std::to_string(reinterpret_cast
 
 /// Returns a copy, or moves the object if nothing else holds it.
 template <class T>
-T taken(const Slot& slot, std::size_t i, const T& object) {
+T copy_or_move(const Slot& slot, std::size_t i, const T& object) {
     if (slot.context->keep_objects || slot.sources.at(i).object) return object;
     return std::move(const_cast<T&>(object));
 }
@@ -81,8 +81,8 @@ std::vector<std::string> endings_of(Kind kind) {
         {Kind::study, {".study.json"}},
         {Kind::coordinates, {".npy"}},
     };
-    const auto known = endings.find(kind);
-    return known == endings.end() ? std::vector<std::string>() : known->second;
+    const auto entry = endings.find(kind);
+    return entry == endings.end() ? std::vector<std::string>() : entry->second;
 }
 
 std::string to_string(Kind kind) {
@@ -114,7 +114,7 @@ const MeshFile& MeshInput::get(std::size_t i) const {
         const auto soup = object.as<PolygonSoup>();
         if (!mesh && !soup) return {};
         MeshFile file = mesh ? MeshFile{*mesh, {}, {}, {}} : mesh_of_polygons(*soup, object.name);
-        tell_checksum(*this, i, [&] { return mesh_checksum(file.mesh); });
+        record_checksum(*this, i, [&] { return mesh_checksum(file.mesh); });
         return file;
     };
     // With a cache, the file is read once for both its polygons and its mesh.
@@ -122,45 +122,47 @@ const MeshFile& MeshInput::get(std::size_t i) const {
         return context->keep_objects && !sources.at(i).object ? mesh_of_polygons(polygons(i), path.string()) : read_mesh(path);
     };
     const auto& file = loaded<MeshFile>(
-        *this, i, "", read, [](const MeshFile& one) { return mesh_checksum(one.mesh); }, convert);
+        *this, i, "", read, [](const MeshFile& mesh_file) { return mesh_checksum(mesh_file.mesh); }, convert);
     context->notes(size() > 1 || role != Role::input ? sources[i].name() : std::string(), file.notes);
     return file;
 }
 
-MeshFile MeshInput::take(std::size_t i) const { return taken(*this, i, get(i)); }
+MeshFile MeshInput::take(std::size_t i) const { return copy_or_move(*this, i, get(i)); }
 
 const PolygonSoup& MeshInput::polygons(std::size_t i) const {
     const auto convert = [&](const Object& object) -> std::optional<PolygonSoup> {
         const auto file = object.as<MeshFile>();
         const auto mesh = object.as<Mesh>();
         if (!file && !mesh) return {};
-        tell_checksum(*this, i, [&] { return mesh_checksum(file ? file->mesh : *mesh); });
+        record_checksum(*this, i, [&] { return mesh_checksum(file ? file->mesh : *mesh); });
         return as_polygons(to_soup(file ? file->mesh : *mesh), file ? file->extras : MeshExtras());
     };
     const auto sum = [](const PolygonSoup& soup) {
-        const auto bytes = [](const auto& list) {
-            return std::string_view(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(list[0]));
+        const auto bytes = [](const auto& array) {
+            return std::string_view(reinterpret_cast<const char*>(array.data()), array.size() * sizeof(array[0]));
         };
         return sha256(sha256(bytes(soup.points)) + sha256(bytes(soup.polygon_begin)) + sha256(bytes(soup.corners)));
     };
     return loaded<PolygonSoup>(*this, i, "", read_polygons, sum, convert);
 }
 
-PolygonSoup MeshInput::take_polygons(std::size_t i) const { return taken(*this, i, polygons(i)); }
+PolygonSoup MeshInput::take_polygons(std::size_t i) const { return copy_or_move(*this, i, polygons(i)); }
 
-void Slot::describe_shared(OptionList& options, const OptionList& own) {
-    for (const Option& option : own)
-        if (const Option* known = options.find(option.name)) shared_.emplace_back(known->value, option.value);
+void Slot::describe_shared(OptionList& options, const OptionList& slot_options) {
+    for (const Option& option : slot_options)
+        if (const Option* operation_option = options.find(option.name))
+            shared_.emplace_back(operation_option->value, option.value);
         else options(option.name, option.value, option.help, option.rule, option.unit);
 }
 
 void Slot::take_shared() const {
-    for (const auto& [from, to] : shared_)
+    for (const auto& [operation_option, slot_option] : shared_)
         std::visit(
-            [](auto& known, auto& own) {
-                if constexpr (std::same_as<decltype(known), decltype(own)> && requires { *own = *known; }) *own = *known;
+            [](auto& source, auto& target) {
+                if constexpr (std::same_as<decltype(source), decltype(target)> && requires { *target = *source; })
+                    *target = *source;
             },
-            from.place, to.place);
+            operation_option.place, slot_option.place);
 }
 
 void AnnotationsInput::describe(OptionList& options) { describe_shared(options, options_of(reading)); }
@@ -176,8 +178,8 @@ const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const
         context->keep_objects && !object ? mesh_checksum(mesh) + (reading.force_mesh ? " forced" : "") : address(&mesh);
     const auto& set = loaded<AnnotationSet>(
         *this, i, key, [&](const Path& path) { return read_annotations(path, mesh, reading); },
-        [&](const AnnotationSet& known) { return checksum_of(known, mesh); }, {},
-        [&](const AnnotationSet& known) { check_annotations(known, mesh, object.name); });
+        [&](const AnnotationSet& annotations) { return checksum_of(annotations, mesh); }, {},
+        [&](const AnnotationSet& annotations) { check_annotations(annotations, mesh, object.name); });
     context->notes(size() > 1 ? sources[i].name() : std::string(), set.notes);
     return set;
 }
@@ -204,7 +206,7 @@ const Json& JsonInput::operator*() const {
     return loaded<Json>(*this, 0, "", read_json, [](const Json& document) { return sha256(to_text(document)); });
 }
 
-void TemplateInput::describe(OptionList& list) { describe_shared(list, options_of(options)); }
+void TemplateInput::describe(OptionList& operation_options) { describe_shared(operation_options, options_of(options)); }
 
 const Template& TemplateInput::operator*() const {
     take_shared();
@@ -223,7 +225,7 @@ Path FileInput::path(std::size_t i) const {
 
 std::shared_ptr<const AnnotationSet> FileInput::annotations_on(const Mesh& mesh) const {
     auto set = sources.at(0).object.as<AnnotationSet>();
-    if (set) tell_checksum(*this, 0, [&] { return checksum_of(*set, mesh); });
+    if (set) record_checksum(*this, 0, [&] { return checksum_of(*set, mesh); });
     return set;
 }
 

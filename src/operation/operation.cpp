@@ -4,6 +4,8 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/transaction.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -11,7 +13,7 @@
 namespace ostraka {
 
 Slot& Parameters::input(std::string name, Kind kind, Slot& slot, std::string help) {
-    if (this->slot(name) != nullptr) throw std::logic_error("'" + name + "' is declared twice");
+    if (this->slot(name) != nullptr) throw std::logic_error(fmt::format("'{}' is declared twice", name));
     slot.name = std::move(name);
     slot.kind = kind;
     slot.role = Role::input;
@@ -27,8 +29,8 @@ Slot& Parameters::output(std::string name, Kind kind, Slot& slot, std::string he
 }
 
 Slot* Parameters::slot(const std::string& name) const {
-    const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const Slot* slot) { return slot->name == name; });
-    return found == slots_.end() ? nullptr : *found;
+    const auto match = std::find_if(slots_.begin(), slots_.end(), [&](const Slot* slot) { return slot->name == name; });
+    return match == slots_.end() ? nullptr : *match;
 }
 
 bool Parameters::in_some_order(const std::string& name) const {
@@ -48,7 +50,7 @@ Call::Call(const OperationEntry& entry) : entry_(&entry), operation_(entry.make(
     operation_->describe(parameters_);
     for (const Slot* slot : parameters_.slots())
         if (parameters_.options.find(slot->name) != nullptr)
-            throw std::logic_error(std::string(entry.name) + " declares '" + slot->name + "' twice");
+            throw std::logic_error(fmt::format("{} declares '{}' twice", entry.name, slot->name));
     if (!parameters_.orders.empty()) return;
     std::vector<std::string> order;
     for (const Slot* slot : parameters_.slots())
@@ -66,26 +68,26 @@ void Call::no_such_name(const std::string& name, const std::vector<std::string>&
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
     // Bounds were named least and most before version 0.2.
-    const std::string asked = name.starts_with("least-")  ? "min-" + name.substr(6)
-                              : name.starts_with("most-") ? "max-" + name.substr(5)
-                                                          : name;
-    const std::string near = nearest_name(asked, names);
-    throw Error(ErrorKind::usage, entry_->name, "has no option '" + printable(name, 60) + "'",
-                near.empty()                     ? "'ostraka " + std::string(entry_->name) + " --help' shows them"
-                : near == name && !flags.empty() ? "options begin with --"
-                                                 : "did you mean '" + near + "'?");
+    const std::string current_name = name.starts_with("least-")  ? "min-" + name.substr(6)
+                                     : name.starts_with("most-") ? "max-" + name.substr(5)
+                                                                 : name;
+    const std::string nearest = nearest_name(current_name, names);
+    throw Error(ErrorKind::usage, entry_->name, fmt::format("has no option '{}'", printable(name, 60)),
+                nearest.empty()                     ? fmt::format("'ostraka {} --help' shows them", entry_->name)
+                : nearest == name && !flags.empty() ? "options begin with --"
+                                                    : fmt::format("did you mean '{}'?", nearest));
 }
 
 Option& Call::option(const std::string& name) {
-    Option* found = parameters_.options.find(name);
-    if (found == nullptr) no_such_name(name);
-    return *found;
+    Option* match = parameters_.options.find(name);
+    if (match == nullptr) no_such_name(name);
+    return *match;
 }
 
 Slot& Call::slot(const std::string& name) {
-    Slot* found = parameters_.slot(name);
-    if (found == nullptr) no_such_name(name);
-    return *found;
+    Slot* match = parameters_.slot(name);
+    if (match == nullptr) no_such_name(name);
+    return *match;
 }
 
 namespace {
@@ -103,16 +105,16 @@ void in_operation(const char* name, const Work& work) {
 
 void Call::set(const std::string& name, const std::string& value) {
     in_operation(entry_->name, [&] {
-        Option& known = option(name);
-        if (known.type() != OptionType::text && known.type() != OptionType::choice && known.type() != OptionType::texts)
-            throw Error(ErrorKind::usage, "", "option " + name + " is the text '" + printable(value, 60) + "'",
-                        "use " + known.allowed());
-        if (known.type() == OptionType::texts && known.given) {
-            auto words = known.texts();
+        Option& target = option(name);
+        if (target.type() != OptionType::text && target.type() != OptionType::choice && target.type() != OptionType::texts)
+            throw Error(ErrorKind::usage, "", fmt::format("option {} is the text '{}'", name, printable(value, 60)),
+                        "use " + target.allowed());
+        if (target.type() == OptionType::texts && target.given) {
+            auto words = target.texts();
             words.push_back(value);
-            known.set(words);
+            target.set(words);
         } else {
-            known.set(std::vector{value});
+            target.set(std::vector{value});
         }
     });
 }
@@ -121,93 +123,94 @@ void Call::set(const std::string& name, bool value) {
 }
 void Call::set(const std::string& name, double value) {
     in_operation(entry_->name, [&] {
-        Option& known = option(name);
-        if (known.type() == OptionType::integer && value == static_cast<double>(static_cast<std::int64_t>(value)))
-            known.set(static_cast<std::int64_t>(value));
-        else known.set(value);
+        Option& target = option(name);
+        if (target.type() == OptionType::integer && value == static_cast<double>(static_cast<std::int64_t>(value)))
+            target.set(static_cast<std::int64_t>(value));
+        else target.set(value);
     });
 }
 
 void Call::set_file(const std::string& name, const Path& file) {
-    Slot& known = slot(name);
-    if (!known.sources.empty() && !known.repeated)
+    Slot& target_slot = slot(name);
+    if (!target_slot.sources.empty() && !target_slot.repeated)
         throw Error(ErrorKind::usage, entry_->name, name + " is given twice", "give it once");
     if (file.empty()) throw Error(ErrorKind::usage, entry_->name, name + " is empty", "name a file");
-    if (known.takes_none && file == "none") {
-        known.sources.emplace_back();
+    if (target_slot.takes_none && file == "none") {
+        target_slot.sources.emplace_back();
         return;
     }
-    if (!known.is_named) {
-        known.sources.push_back({file, {}});
+    if (!target_slot.is_named) {
+        target_slot.sources.push_back({file, {}});
         return;
     }
     const std::string word = file.string();
     const std::size_t equals = word.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == word.size())
-        throw Error(ErrorKind::usage, entry_->name, name + " is '" + printable(word, 60) + "'", "give NAME=FILE");
-    Source& source = known.sources.emplace_back();
+        throw Error(ErrorKind::usage, entry_->name, fmt::format("{} is '{}'", name, printable(word, 60)), "give NAME=FILE");
+    Source& source = target_slot.sources.emplace_back();
     source.file = word.substr(equals + 1);
     source.label = word.substr(0, equals);
 }
 
 void Call::set_object(const std::string& name, Object object) {
-    Slot& known = slot(name);
-    if (known.role != Role::input) throw Error(ErrorKind::usage, entry_->name, name + " is an output", "ask for it with want");
-    if (!known.sources.empty() && !known.repeated)
+    Slot& target_slot = slot(name);
+    if (target_slot.role != Role::input)
+        throw Error(ErrorKind::usage, entry_->name, name + " is an output", "request it with want");
+    if (!target_slot.sources.empty() && !target_slot.repeated)
         throw Error(ErrorKind::usage, entry_->name, name + " is given twice", "give it once");
-    if (!object) throw Error(ErrorKind::usage, entry_->name, name + " is no object", "give a " + to_string(known.kind));
+    if (!object) throw Error(ErrorKind::usage, entry_->name, name + " is not an object", "give a " + to_string(target_slot.kind));
     if (object.name.empty()) object.name = name;
-    known.sources.push_back({{}, std::move(object)});
+    target_slot.sources.push_back({{}, std::move(object)});
 }
 
-void Call::want(const std::string& name, const std::string& called) {
-    Slot& known = slot(name);
-    if (known.role != Role::output)
+void Call::want(const std::string& name, const std::string& object_name) {
+    Slot& target_slot = slot(name);
+    if (target_slot.role != Role::output)
         throw Error(ErrorKind::usage, entry_->name, name + " is an input", "give it a file or an object");
-    if (known.sources.empty()) known.sources.emplace_back();
-    known.sources.front().object.name = called;
+    if (target_slot.sources.empty()) target_slot.sources.emplace_back();
+    target_slot.sources.front().object.name = object_name;
 }
 
 void Call::set(const JsonValue& values, const std::string& where) {
-    if (!values.IsObject()) throw Error(ErrorKind::usage, where, "is no object", "give names and values");
-    const auto wrong = [&](const std::string& name, const std::string& allowed) {
-        throw Error(ErrorKind::usage, where.empty() ? entry_->name : where, "'" + name + "' has a value of another type",
+    if (!values.IsObject()) throw Error(ErrorKind::usage, where, "is not an object", "give names and values");
+    const auto fail_type = [&](const std::string& name, const std::string& allowed) {
+        throw Error(ErrorKind::usage, where.empty() ? entry_->name : where, fmt::format("'{}' has a value of another type", name),
                     "use " + allowed);
     };
     for (const auto& member : values.GetObject()) {
         const std::string name = member.name.GetString();
         const JsonValue& value = member.value;
-        if (Slot* known = parameters_.slot(name)) {
+        if (Slot* target_slot = parameters_.slot(name)) {
             if (value.IsString()) set_file(name, value.GetString());
-            else if (value.IsTrue() && known->role == Role::output) want(name);
+            else if (value.IsTrue() && target_slot->role == Role::output) want(name);
             else if (value.IsArray())
-                for (const auto& one : value.GetArray())
-                    if (one.IsString()) set_file(name, one.GetString());
-                    else wrong(name, "names of files");
-            else wrong(name, known->role == Role::output ? "the name of a file, or true" : "the name of a file");
+                for (const auto& element : value.GetArray())
+                    if (element.IsString()) set_file(name, element.GetString());
+                    else fail_type(name, "names of files");
+            else fail_type(name, target_slot->role == Role::output ? "the name of a file, or true" : "the name of a file");
             continue;
         }
-        Option& known = option(name);
+        Option& target_option = option(name);
         if (value.IsBool()) set(name, value.GetBool());
-        else if (value.IsInt64()) in_operation(entry_->name, [&] { known.set(value.GetInt64()); });
-        else if (value.IsNumber()) in_operation(entry_->name, [&] { known.set(value.GetDouble()); });
+        else if (value.IsInt64()) in_operation(entry_->name, [&] { target_option.set(value.GetInt64()); });
+        else if (value.IsNumber()) in_operation(entry_->name, [&] { target_option.set(value.GetDouble()); });
         else if (value.IsString()) set(name, std::string(value.GetString(), value.GetStringLength()));
         else if (value.IsArray()) {
             std::vector<double> numbers;
             std::vector<std::string> texts;
-            for (const auto& one : value.GetArray())
-                if (one.IsNumber()) numbers.push_back(one.GetDouble());
-                else if (one.IsString()) texts.emplace_back(one.GetString());
-                else wrong(name, known.allowed());
-            if (!numbers.empty() && !texts.empty()) wrong(name, known.allowed());
+            for (const auto& element : value.GetArray())
+                if (element.IsNumber()) numbers.push_back(element.GetDouble());
+                else if (element.IsString()) texts.emplace_back(element.GetString());
+                else fail_type(name, target_option.allowed());
+            if (!numbers.empty() && !texts.empty()) fail_type(name, target_option.allowed());
             in_operation(entry_->name, [&] {
-                if (!texts.empty() && known.type() != OptionType::texts) wrong(name, known.allowed());
-                if (!numbers.empty() && known.type() == OptionType::texts) wrong(name, known.allowed());
-                if (!texts.empty()) known.set(texts);
-                else known.set(numbers);
+                if (!texts.empty() && target_option.type() != OptionType::texts) fail_type(name, target_option.allowed());
+                if (!numbers.empty() && target_option.type() == OptionType::texts) fail_type(name, target_option.allowed());
+                if (!texts.empty()) target_option.set(texts);
+                else target_option.set(numbers);
             });
         } else {
-            wrong(name, known.allowed());
+            fail_type(name, target_option.allowed());
         }
     }
 }
@@ -216,19 +219,18 @@ namespace {
 /// Refuses a mesh file where a JSON document is expected (arguments in the wrong order).
 void refuse_mesh(const Slot& slot, const Path& file) {
     constexpr std::array documents{Kind::annotations, Kind::graph, Kind::edit, Kind::recipe, Kind::rules};
-    const auto meshes = endings_of(Kind::mesh);
+    const auto mesh_extensions = endings_of(Kind::mesh);
     if (std::find(documents.begin(), documents.end(), slot.kind) == documents.end() ||
-        std::find(meshes.begin(), meshes.end(), extension(file)) == meshes.end())
+        std::find(mesh_extensions.begin(), mesh_extensions.end(), extension(file)) == mesh_extensions.end())
         return;
-    fail_input(file.string(), "is a mesh by its name, and it stands in the place of: " + slot.help,
-               "mind the order of the files");
+    fail_input(file.string(), "has the name of a mesh, but is given as: " + slot.help, "check the order of the files");
 }
 }  // namespace
 
-void Call::check_given(const std::function<bool(const Path&)>& comes) const {
+void Call::check_given(const std::function<bool(const Path&)>& will_exist) const {
     for (const Option& option : parameters_.options)
         if (option.needed && !option.given)
-            throw Error(ErrorKind::usage, entry_->name, "option " + option.name + " is missing", "give " + option.help);
+            throw Error(ErrorKind::usage, entry_->name, fmt::format("option {} is missing", option.name), "give " + option.help);
     std::vector<Path> inputs, outputs;
     for (const Slot* slot : parameters_.slots()) {
         if (slot->needed && slot->sources.empty() && slot->role == Role::input && !slot->may_be_new)
@@ -255,7 +257,8 @@ void Call::check_given(const std::function<bool(const Path&)>& comes) const {
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
             if (slot->role == Role::input && !source.file.empty() && slot->kind != Kind::collection && !is_folder(source.file) &&
-                (!slot->may_be_new || file_exists(source.file)) && (!comes || file_exists(source.file) || !comes(source.file)))
+                (!slot->may_be_new || file_exists(source.file)) &&
+                (!will_exist || file_exists(source.file) || !will_exist(source.file)))
                 check_readable(source.file);
 }
 
@@ -270,10 +273,10 @@ void Call::complete() {
     }
 }
 
-void Call::check(const std::function<bool(const Path&)>& comes) {
+void Call::check(const std::function<bool(const Path&)>& will_exist) {
     complete();
     in_operation(entry_->name, [&] { parameters_.options.check(""); });
-    check_given(comes);
+    check_given(will_exist);
 }
 
 Report Call::run(Context& context, const std::function<void(const Report&)>& before_commit) {
@@ -281,31 +284,31 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     for (Slot* slot : parameters_.slots()) slot->context = &context;
     Report report({entry_->name, {}, {}}, parameters_.report);
     report.on_note = context.on_note;
-    Context::CallState run{entry_->name, &parameters_, &report};
-    struct Under {
+    Context::CallState call_state{entry_->name, &parameters_, &report};
+    struct RestoreCall {
         Context& context;
         Context::CallState* outer;
-        ~Under() { context.run_ = outer; }
-    } under{context, context.run_};
-    context.run_ = &run;
+        ~RestoreCall() { context.call_ = outer; }
+    } restore_call{context, context.call_};
+    context.call_ = &call_state;
     const WatchScope watch(&context.watch);
     check_cancelled();
     // If a memory limit is set, refuse work that is estimated to exceed it.
     if (context.watch.memory_limit > 0)
-        require_memory(operation_->memory_needed(input_bytes()), std::string("'") + entry_->name + "'",
+        require_memory(operation_->memory_needed(input_bytes()), fmt::format("'{}'", entry_->name),
                        "allow more, or use smaller meshes");
     OutputTransaction outputs;
     operation_->run(context, report);
     report.set_provenance(context.provenance());
-    context.read_ = run.read;
+    context.read_ = call_state.read;
     check_cancelled();
     if (before_commit) before_commit(report);
     std::vector<Path> inputs;
-    for (const auto& entry : run.read) inputs.push_back(entry.file);
+    for (const auto& entry : call_state.read) inputs.push_back(entry.file);
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
             if (slot->role == Role::input) inputs.push_back(source.file);
-    const KeptFiles kept(std::move(inputs));
+    const KeptFiles kept_files(std::move(inputs));
     outputs.commit();
     for (Slot* slot : parameters_.slots()) slot->finish();
     return report;
@@ -320,21 +323,21 @@ double Call::input_bytes() const {
 }
 
 std::string Call::usual_ending(const std::string& output) const {
-    const Slot* found = parameters_.slot(output);
-    if (found == nullptr) no_such_name(output);
-    if (dynamic_cast<const FolderOutput*>(found) != nullptr) return {};
-    if (const auto* file = dynamic_cast<const FileOutput*>(found); file != nullptr && !file->extension_.empty())
+    const Slot* match = parameters_.slot(output);
+    if (match == nullptr) no_such_name(output);
+    if (dynamic_cast<const FolderOutput*>(match) != nullptr) return {};
+    if (const auto* file = dynamic_cast<const FileOutput*>(match); file != nullptr && !file->extension_.empty())
         return file->extension_;
-    if (const auto endings = endings_of(found->kind); !endings.empty()) return endings.front();
-    return dynamic_cast<const ValuesOutput*>(found) != nullptr ? ".npy" : ".json";
+    if (const auto endings = endings_of(match->kind); !endings.empty()) return endings.front();
+    return dynamic_cast<const ValuesOutput*>(match) != nullptr ? ".npy" : ".json";
 }
 
 const Object& Call::object(const std::string& name, std::size_t i) const {
-    const Slot* found = parameters_.slot(name);
-    if (found == nullptr) no_such_name(name);
-    if (i >= found->size() || !found->sources[i].object)
-        throw Error(ErrorKind::usage, entry_->name, name + " holds no object", "it was not asked for, or written to a file");
-    return found->sources[i].object;
+    const Slot* match = parameters_.slot(name);
+    if (match == nullptr) no_such_name(name);
+    if (i >= match->size() || !match->sources[i].object)
+        throw Error(ErrorKind::usage, entry_->name, name + " holds no object", "it was not requested, or was written to a file");
+    return match->sources[i].object;
 }
 
 }  // namespace ostraka

@@ -6,6 +6,8 @@
 #include "ostraka/report/markdown.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -18,14 +20,14 @@ namespace {
 
 /// Sets a nested member ("distortion.A"), creating the objects in between.
 void set_member(JsonValue& object, std::string_view key, JsonValue value, JsonAllocator& allocator) {
-    JsonValue* at = &object;
+    JsonValue* parent = &object;
     for (std::size_t dot; (dot = key.find('.')) != std::string_view::npos; key.remove_prefix(dot + 1)) {
         const std::string_view name = key.substr(0, dot);
-        if (find_member(*at, name) == nullptr) add_member(*at, name, JsonValue(rapidjson::kObjectType), allocator);
-        at = const_cast<JsonValue*>(find_member(*at, name));
+        if (find_member(*parent, name) == nullptr) add_member(*parent, name, JsonValue(rapidjson::kObjectType), allocator);
+        parent = const_cast<JsonValue*>(find_member(*parent, name));
     }
-    if (const JsonValue* known = find_member(*at, key)) *const_cast<JsonValue*>(known) = std::move(value);
-    else add_member(*at, key, std::move(value), allocator);
+    if (const JsonValue* existing = find_member(*parent, key)) *const_cast<JsonValue*>(existing) = std::move(value);
+    else add_member(*parent, key, std::move(value), allocator);
 }
 
 bool is_number(const std::string& text) {
@@ -34,33 +36,33 @@ bool is_number(const std::string& text) {
 }
 
 const Field* find_field(const std::vector<Field>& fields, std::string_view key) {
-    const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.key == key; });
-    return found == fields.end() ? nullptr : &*found;
+    const auto match = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.key == key; });
+    return match == fields.end() ? nullptr : &*match;
 }
 
 /// A table for terminals: padded columns, numbers right-aligned, no text truncated.
 std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
-    std::vector<std::vector<std::string>> all{header};
+    std::vector<std::vector<std::string>> table_rows{header};
     for (const auto& row : rows) {
-        all.push_back(row);
-        all.back().resize(header.size());
-        for (auto& cell : all.back()) cell = printable(cell, std::string::npos);
+        table_rows.push_back(row);
+        table_rows.back().resize(header.size());
+        for (auto& cell : table_rows.back()) cell = printable(cell, std::string::npos);
     }
-    const auto counts = [](const std::string& cell) { return cell.empty() || cell == "-" || is_number(cell); };
-    return aligned_rows(all, [&](std::size_t row, std::size_t column) {
-        if (row > 0) return is_number(all[row][column]);
-        return all.size() > 1 &&
-               std::all_of(all.begin() + 1, all.end(), [&](const auto& cells) { return counts(cells[column]); });
+    const auto is_numeric = [](const std::string& cell) { return cell.empty() || cell == "-" || is_number(cell); };
+    return aligned_rows(table_rows, [&](std::size_t row, std::size_t column) {
+        if (row > 0) return is_number(table_rows[row][column]);
+        return table_rows.size() > 1 && std::all_of(table_rows.begin() + 1, table_rows.end(),
+                                                    [&](const auto& cells) { return is_numeric(cells[column]); });
     });
 }
 
 /// Names and values, one pair per line, with the values aligned.
 std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows) {
-    std::size_t widest = 0;
-    for (const auto& [name, value] : rows) widest = std::max(widest, shown_width(name));
+    std::size_t width = 0;
+    for (const auto& [name, value] : rows) width = std::max(width, shown_width(name));
     std::string text;
     for (const auto& [name, value] : rows)
-        text += name + std::string(widest - shown_width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
+        text += name + std::string(width - shown_width(name) + 2, ' ') + printable(value, std::string::npos) + "\n";
     return text;
 }
 
@@ -80,7 +82,7 @@ std::string ReportValue::text() const {
             else if constexpr (std::is_arithmetic_v<Type> || std::same_as<Type, std::string>) return ReportText(value).text;
             else if constexpr (std::same_as<Type, std::vector<std::string>>) return joined(value);
             else if constexpr (requires { value.begin(); })
-                return joined(value, " ", [](auto one) { return ReportText(one).text; });
+                return joined(value, " ", [](auto item) { return ReportText(item).text; });
             else return {};
         },
         value_);
@@ -102,8 +104,7 @@ Report::Report(Provenance provenance, ReportLayout layout) : provenance_(std::mo
 
 Report& Report::operator()(std::string_view key, ReportValue value, std::optional<std::string> shown) {
     const Field* field = find_field(layout_.of_values, key);
-    if (field == nullptr && layout_.schema.empty())
-        throw std::logic_error("the report declares no value '" + std::string(key) + "'");
+    if (field == nullptr && layout_.schema.empty()) throw std::logic_error(fmt::format("the report declares no value '{}'", key));
     if (value.absent()) return *this;
     if (field != nullptr && !field->title.empty())
         people(field->title, (shown ? *shown : value.text()) + (in_unit(*field).empty() ? "" : " " + in_unit(*field)));
@@ -116,11 +117,11 @@ void Report::values(const JsonValue& object) {
 }
 
 Report::ShownTable& Report::table_of(const std::string& key) {
-    if (const auto known = table_index_.find(key); known != table_index_.end()) return tables_[known->second];
+    if (const auto shown = table_index_.find(key); shown != table_index_.end()) return tables_[shown->second];
     const auto layout = std::find_if(layout_.tables.begin(), layout_.tables.end(), [&](const auto& table) {
         return table.key.empty() ? table.title == key : table.key == key;
     });
-    if (layout == layout_.tables.end()) throw std::logic_error("the report declares no table '" + key + "'");
+    if (layout == layout_.tables.end()) throw std::logic_error(fmt::format("the report declares no table '{}'", key));
     table_index_[key] = tables_.size();
     blocks_.push_back({Block::Kind::table, {}, {}, tables_.size()});
     if (!layout->key.empty()) set_member(result_, key, JsonValue(rapidjson::kArrayType), allocator());
@@ -151,21 +152,22 @@ Report::Row Report::row(const std::string& table) {
 
 void Report::row(const std::string& table, std::initializer_list<ReportText> cells) {
     ShownTable& shown = table_of(table);
-    if (cells.size() != shown.empty.size()) throw std::logic_error("a row of the table '" + table + "' has other columns");
+    if (cells.size() != shown.empty.size())
+        throw std::logic_error(fmt::format("a row of the table '{}' has other columns", table));
     auto& row = shown.rows.emplace_back();
     for (const ReportText& cell : cells) row.push_back(cell.text);
 }
 
 Report::Row& Report::Row::operator()(std::string_view key, ReportValue value, std::optional<std::string> text) {
     ShownTable& table = report_.tables_[table_];
-    const std::string& of = report_.layout_.tables[table.layout].key;
+    const std::string& table_key = report_.layout_.tables[table.layout].key;
     const auto column = table.places.find(key);
-    if (column == table.places.end() || of.empty())
-        throw std::logic_error("table '" + of + "' of the report declares no column '" + std::string(key) + "'");
+    if (column == table.places.end() || table_key.empty())
+        throw std::logic_error(fmt::format("table '{}' of the report declares no column '{}'", table_key, key));
     if (value.absent()) return *this;
     if (column->second >= 0) table.rows[row_][static_cast<std::size_t>(column->second)] = text ? std::move(*text) : value.text();
-    JsonValue& list = *const_cast<JsonValue*>(find_member(report_.result_, of));
-    set_member(list[static_cast<rapidjson::SizeType>(row_)], key, value.json(report_.allocator()), report_.allocator());
+    JsonValue& rows = *const_cast<JsonValue*>(find_member(report_.result_, table_key));
+    set_member(rows[static_cast<rapidjson::SizeType>(row_)], key, value.json(report_.allocator()), report_.allocator());
     return *this;
 }
 
@@ -173,7 +175,7 @@ Report::Row& Report::Row::shown(std::string_view title_or_key, ReportText text) 
     ShownTable& table = report_.tables_[table_];
     const auto column = table.shown.find(title_or_key);
     if (column == table.shown.end())
-        throw std::logic_error("the report's table has no column '" + std::string(title_or_key) + "' for people");
+        throw std::logic_error(fmt::format("the report's table has no column '{}' for people", title_or_key));
     table.rows[row_][static_cast<std::size_t>(column->second)] = std::move(text.text);
     return *this;
 }
@@ -236,8 +238,8 @@ std::string Report::times() const {
         for (const auto& member : object.GetObject())
             if (member.value.IsObject()) add(member.value);
             else if (const std::string name = member.name.GetString(); name != "threads")
-                text += (text.empty() ? "" : ", ") + (name == "seconds" ? "" : name + " ") + number(member.value.GetDouble(), 3) +
-                        " s";
+                text += fmt::format("{}{}{} s", text.empty() ? "" : ", ", name == "seconds" ? "" : name + " ",
+                                    number(member.value.GetDouble(), 3));
     };
     add(run_);
     return text;
@@ -245,9 +247,9 @@ std::string Report::times() const {
 
 std::string Report::in_unit(const Field& field) const {
     std::string text = field.unit;
-    const std::size_t at = text.find("length");
-    if (at == std::string::npos) return text;
-    return unit_.empty() ? "" : text.replace(at, 6, printable(unit_, 20));
+    const std::size_t position = text.find("length");
+    if (position == std::string::npos) return text;
+    return unit_.empty() ? "" : text.replace(position, 6, printable(unit_, 20));
 }
 
 std::string Report::shown_table(const ShownTable& table, ReportFormat format) const {
@@ -271,11 +273,11 @@ std::string Report::to_text(ReportFormat format) const {
             if (format == ReportFormat::markdown) text += markdown_paragraphs(block.text) + "\n";
             else if (format != ReportFormat::csv) text += block.text + "\n";
         } else if (block.kind == Block::Kind::table || block.kind == Block::Kind::text_table) {
-            const TextTable* own = block.text_table.get();
-            const std::string shown = own == nullptr                  ? shown_table(tables_[block.table], format)
-                                      : format == ReportFormat::table ? own->plain()
-                                      : format == ReportFormat::csv   ? own->csv()
-                                                                      : own->markdown();
+            const TextTable* text_table = block.text_table.get();
+            const std::string shown = text_table == nullptr           ? shown_table(tables_[block.table], format)
+                                      : format == ReportFormat::table ? text_table->plain()
+                                      : format == ReportFormat::csv   ? text_table->csv()
+                                                                      : text_table->markdown();
             if (!text.empty() && !shown.empty() && format != ReportFormat::table) text += "\n";
             text += shown;
         } else {

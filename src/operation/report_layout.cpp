@@ -2,6 +2,8 @@
 
 #include "ostraka/core/json_build.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -13,9 +15,9 @@ JsonValue type_schema(const Field& field, JsonAllocator& allocator) {
         add_members(schema, allocator, "type", "array", "items",
                     json_object(allocator, "type", types[static_cast<std::size_t>(field.type)]));
     else if (field.type != FieldType::any) add_members(schema, allocator, "type", types[static_cast<std::size_t>(field.type)]);
-    std::string about = field.title;
-    if (!field.unit.empty()) about += (about.empty() ? "in " : ", in ") + field.unit;
-    if (!about.empty()) add_members(schema, allocator, "description", about);
+    std::string description = field.title;
+    if (!field.unit.empty()) description += (description.empty() ? "in " : ", in ") + field.unit;
+    if (!description.empty()) add_members(schema, allocator, "description", description);
     return schema;
 }
 
@@ -29,14 +31,16 @@ JsonValue object_schema(const std::vector<Field>& fields, JsonAllocator& allocat
         const std::size_t dot = field.key.find('.');
         const std::string name = field.key.substr(0, dot);
         if (inner.find(name) == inner.end()) order.push_back(name);
-        Field rest = field;
-        rest.key = dot == std::string::npos ? "" : field.key.substr(dot + 1);
-        inner[name].push_back(std::move(rest));
+        Field inner_field = field;
+        inner_field.key = dot == std::string::npos ? "" : field.key.substr(dot + 1);
+        inner[name].push_back(std::move(inner_field));
     }
     for (const std::string& name : order) {
-        const auto& list = inner.at(name);
+        const auto& inner_fields = inner.at(name);
         add_member(properties, name,
-                   list.front().key.empty() ? type_schema(list.front(), allocator) : object_schema(list, allocator), allocator);
+                   inner_fields.front().key.empty() ? type_schema(inner_fields.front(), allocator)
+                                                    : object_schema(inner_fields, allocator),
+                   allocator);
     }
     return json_object(allocator, "type", "object", "properties", std::move(properties), "additionalProperties", false);
 }
@@ -48,17 +52,17 @@ JsonValue ReportLayout::to_schema(JsonAllocator& allocator) const {
     JsonValue& properties = result["properties"];
     for (const Table& table : tables) {
         if (table.key.empty()) continue;
-        JsonValue list = json_object(allocator, "type", "array");
-        if (!table.title.empty()) add_members(list, allocator, "description", table.title);
-        add_members(list, allocator, "items", object_schema(table.columns, allocator));
-        add_members(properties, allocator, table.key, std::move(list));
+        JsonValue table_schema = json_object(allocator, "type", "array");
+        if (!table.title.empty()) add_members(table_schema, allocator, "description", table.title);
+        add_members(table_schema, allocator, "items", object_schema(table.columns, allocator));
+        add_members(properties, allocator, table.key, std::move(table_schema));
     }
-    ReportLayout always;
-    if (checks) always.values(fields::boolean("sound"), fields::integer("defects"), fields::any("findings"));
-    always.values(fields::texts("notes"));
-    for (const Field& field : always.of_values) add_members(properties, allocator, field.key, type_schema(field, allocator));
+    ReportLayout common;
+    if (checks) common.values(fields::boolean("sound"), fields::integer("defects"), fields::any("findings"));
+    common.values(fields::texts("notes"));
+    for (const Field& field : common.of_values) add_members(properties, allocator, field.key, type_schema(field, allocator));
     if (!schema.empty()) {
-        add_members(result, allocator, "description", "as " + schema + ".schema.json has it");
+        add_members(result, allocator, "description", fmt::format("as specified by {}.schema.json", schema));
         result["additionalProperties"].SetBool(true);
     }
     return result;

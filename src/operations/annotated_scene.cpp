@@ -52,7 +52,7 @@ public:
                     break;
                 }
                 for (const Outline& outline : extract_outlines(mesh_, annotation.faces))
-                    for (const auto& line : seen_of(outline)) {
+                    for (const auto& line : visible_parts(outline)) {
                         if (on_map_) add_line(line, colour, 3, true);
                         else add_line(line, region_outline_colour, 1.5, false);
                     }
@@ -98,9 +98,9 @@ public:
             drawn.width = 1.8;
             drawn.through = true;
             for (const Point& p : pins_of(mesh, measure)) scene_.markers.push_back({{p.x(), p.y(), p.z()}, white, 3.5, "", true});
-            const std::string in = !measure.unit.empty() ? measure.unit : unit;
+            const std::string shown_unit = !measure.unit.empty() ? measure.unit : unit;
             std::string text = attribute.name;
-            if (measure.value) text += ": " + digits(*measure.value, 4) + (in.empty() ? "" : " " + in);
+            if (measure.value) text += ": " + digits(*measure.value, 4) + (shown_unit.empty() ? "" : " " + shown_unit);
             scene_.labels.push_back({text, ink, {}, drawn.points, true});
             if (!measure.value) continue;
             // Without labels beside the object, the value is drawn at the middle of the line.
@@ -194,7 +194,7 @@ private:
     }
 
     /// The closed outline, or its parts between covered edges.
-    [[nodiscard]] std::vector<std::vector<Index>> seen_of(const Outline& outline) const {
+    [[nodiscard]] std::vector<std::vector<Index>> visible_parts(const Outline& outline) const {
         const std::size_t n = outline.size();
         const auto corner = [&](std::size_t i) { return outline[i % n]; };
         std::size_t begin = 0;  // index after a covered edge, if there is one

@@ -10,6 +10,8 @@
 #include "ostraka/transfer/lay_curves.h"
 #include "ostraka/vocabulary/vocabulary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -63,7 +65,8 @@ void report_annotations(Context& context, Report& report, const Mesh& mesh, cons
         if (annotation.type != AnnotationType::point) row.shown("perimeter / length", number(summary.length));
         std::vector<std::string> attributes;
         for (const Attribute& attribute : annotation.attributes) attributes.push_back(attribute_text(attribute));
-        row("attributes", attributes, joined(attributes, "; ") + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
+        row("attributes", attributes,
+            joined(attributes, "; ") + (annotation.note.empty() ? "" : fmt::format(" [{}]", annotation.note)));
         if (!annotation.note.empty()) row("note", annotation.note);
     }
 }
@@ -82,10 +85,11 @@ struct AnnotationPictures {
     void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
         if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
         if (!labels) return;
-        const FaceLabels found = face_labels(mesh, set);
-        write_labels(labels.path(), found.of_face);
-        if (found.lost > 0)
-            report.note(number(100 * found.lost, 3) + " % of the area has another label than its face: free outlines cut faces");
+        const FaceLabels face_ids = face_labels(mesh, set);
+        write_labels(labels.path(), face_ids.of_face);
+        if (face_ids.lost > 0)
+            report.note(number(100 * face_ids.lost, 3) +
+                        " % of the area has another label than its face: free outlines cut faces");
     }
 };
 
@@ -110,17 +114,17 @@ struct AnnotationApply final : Operation {
     void check() const override {
         if (mesh_labels == static_cast<bool>(recipe))
             fail_usage(mesh_labels ? "--from-ply-labels takes a mesh and an output"
-                                   : "it takes a mesh, a recipe or label file, and an output",
+                                   : "a mesh, a recipe or label file, and an output are needed",
                        mesh_labels ? "leave out the recipe or label file" : "give them, or --from-ply-labels");
         if (edited && !is_document(recipe))
             fail_usage("--edit goes with a recipe", "give a recipe whose steps edit the annotations");
     }
 
     void run(Context& context, Report& report) override {
-        const Vocabulary* known = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
+        const Vocabulary* allowed_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
         const MeshFile& file = *mesh;
         const AnnotationSet set = is_document(recipe) ? follow(context, file) : from_labels(context, file);
-        if (known != nullptr) require_vocabulary(set, *known, recipe ? recipe.file() : mesh.file(), words);
+        if (allowed_words != nullptr) require_vocabulary(set, *allowed_words, recipe ? recipe.file() : mesh.file(), words);
         output.write(set, file.mesh, mesh.file());
         pictures.write(file.mesh, set, report);
         report_annotations(context, report, file.mesh, set);
@@ -200,18 +204,18 @@ struct AnnotationRemap final : Operation {
         const Mesh& source = before->mesh;
         AnnotationSet set;
         std::vector<Index> vertices, faces;
-        const auto known = annotations.annotations_on(source);
+        const auto in_memory = annotations.annotations_on(source);
         context.record([&] {
-            set = known ? *known : read_annotations(annotations.path(), source, reading);
+            set = in_memory ? *in_memory : read_annotations(annotations.path(), source, reading);
             vertices = read_index_map(vertex_map.path(), "vertex", source.number_of_vertices(), target.number_of_vertices());
             if (face_map) faces = read_index_map(face_map.path(), "face", source.number_of_faces(), target.number_of_faces());
         });
-        AnnotationSet moved = remap_annotations(source, set, target, vertices, faces);
-        for (auto& note : lay_free_annotations(source, set, target, moved)) moved.notes.push_back(std::move(note));
-        for (const auto& note : refresh_measures(target, moved).notes) moved.notes.push_back(note);
-        write_annotations(output.path(), moved, target, after.file(), context.provenance());
-        pictures.write(target, moved, report);
-        report_annotations(context, report, target, moved);
+        AnnotationSet remapped = remap_annotations(source, set, target, vertices, faces);
+        for (auto& note : lay_free_annotations(source, set, target, remapped)) remapped.notes.push_back(std::move(note));
+        for (const auto& note : refresh_measures(target, remapped).notes) remapped.notes.push_back(note);
+        write_annotations(output.path(), remapped, target, after.file(), context.provenance());
+        pictures.write(target, remapped, report);
+        report_annotations(context, report, target, remapped);
     }
 
     /// The old mesh may be defective: labels only need its number of faces.

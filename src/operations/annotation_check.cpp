@@ -5,6 +5,8 @@
 #include "ostraka/relation/part_of.h"
 #include "ostraka/relation/rules.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -30,40 +32,44 @@ struct AnnotationCheck final : Operation {
 
     void run(Context&, Report& report) override {
         // An unreadable file is a failure, not a "no".
-        const Vocabulary* known_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
-        const ClassRules* kept_rules = rules ? &rules.load<ClassRules>(read_class_rules) : nullptr;
-        const Mesh& on = mesh->mesh;
-        const auto given = annotations.sources.front().object.as<AnnotationSet>();
-        const Json* document = given ? nullptr : &annotations.load<Json>(read_json);
+        const Vocabulary* vocabulary_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
+        const ClassRules* class_rules = rules ? &rules.load<ClassRules>(read_class_rules) : nullptr;
+        const Mesh& surface = mesh->mesh;
+        const auto in_memory = annotations.sources.front().object.as<AnnotationSet>();
+        const Json* document = in_memory ? nullptr : &annotations.load<Json>(read_json);
         std::vector<Finding> findings;
         std::optional<AnnotationSet> set;
         try {
-            if (given) check_annotations(*given, on, annotations.file());
-            set = given ? *annotations.annotations_on(on) : annotations_from_json(*document, on, annotations.file(), reading);
+            if (in_memory) check_annotations(*in_memory, surface, annotations.file());
+            set = in_memory ? *annotations.annotations_on(surface)
+                            : annotations_from_json(*document, surface, annotations.file(), reading);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
-            findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
+            findings.push_back(
+                {true, "", error.remedy().empty() ? error.problem() : fmt::format("{} ({})", error.problem(), error.remedy())});
         }
         if (set) {
             for (const auto& note : set->notes) findings.push_back({false, "", note});
-            const auto add = [&](std::vector<Finding> more) { findings.insert(findings.end(), more.begin(), more.end()); };
-            add(examine(on, *set));
-            if (!given) add(check_files(*set, on, Path(annotations.file()).parent_path()));
-            if (known_words != nullptr) add(check_against_vocabulary(*set, *known_words, words));
-            if (known_words != nullptr) add(check_parts(on, *set, *known_words));
-            if (kept_rules != nullptr) hold_against(*kept_rules, known_words, on, *set, findings);
+            const auto append = [&](std::vector<Finding> further) {
+                findings.insert(findings.end(), further.begin(), further.end());
+            };
+            append(examine(surface, *set));
+            if (!in_memory) append(check_files(*set, surface, Path(annotations.file()).parent_path()));
+            if (vocabulary_words != nullptr) append(check_against_vocabulary(*set, *vocabulary_words, words));
+            if (vocabulary_words != nullptr) append(check_parts(surface, *set, *vocabulary_words));
+            if (class_rules != nullptr) check_rules(*class_rules, vocabulary_words, surface, *set, findings);
         }
         report.findings(findings);
     }
 
-    void hold_against(const ClassRules& kept, const Vocabulary* known, const Mesh& on, const AnnotationSet& set,
-                      std::vector<Finding>& findings) const {
-        const RelationGraph* stated = graph ? &graph.on(set) : nullptr;
-        for (const BrokenRule& broken : broken_rules(on, set, kept, known, stated, rules.file())) {
+    void check_rules(const ClassRules& class_rules, const Vocabulary* vocabulary_words, const Mesh& surface,
+                     const AnnotationSet& set, std::vector<Finding>& findings) const {
+        const RelationGraph* relationships = graph ? &graph.on(set) : nullptr;
+        for (const BrokenRule& broken : broken_rules(surface, set, class_rules, vocabulary_words, relationships, rules.file())) {
             std::string where;
             for (std::size_t i = 0; i < set.annotations.size(); ++i)
                 if (broken.annotation == set.annotations[i].id) where = "/annotations/" + std::to_string(i);
-            findings.push_back({true, where, "rule '" + broken.rule + "': " + broken.text});
+            findings.push_back({true, where, fmt::format("rule '{}': {}", broken.rule, broken.text)});
         }
     }
 

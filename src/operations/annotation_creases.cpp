@@ -3,6 +3,8 @@
 
 #include "ostraka/select/creases.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -21,8 +23,8 @@ struct AnnotationCreases final : Operation {
 
     void run(Context&, Report& report) override {
         report.set_unit(unit);
-        const Mesh& on = mesh->mesh;
-        const std::vector<Crease> creases = in_file(mesh.file(), [&] { return find_creases(on, options); });
+        const Mesh& surface = mesh->mesh;
+        const std::vector<Crease> creases = in_file(mesh.file(), [&] { return find_creases(surface, options); });
         AnnotationSet set = annotate_creases(creases, regions, unit);
         report.empty_table("creases");
         for (std::size_t i = 0; i < creases.size(); ++i) {
@@ -32,13 +34,16 @@ struct AnnotationCreases final : Operation {
                 "strength", crease.strength, number(crease.strength, 3));
         }
         if (creases.empty()) {
-            report.note("nothing stands out at this scale, so " + output.file() +
-                        " is not written: try another --scale, or a lower --weak and --strong");
+            report.note(fmt::format(
+                "no crease stands out at this scale, so {} is not written: try another --scale, or a lower --weak and --strong",
+                output.file()));
             return report.answer_no();
         }
-        report.line("strength: mean response along the line, in robust deviations of the response over the surface (--weak " +
-                    number(options.weak) + ", --strong " + number(options.strong) + ")");
-        output.write(std::move(set), on, mesh.file());
+        report.line(
+            fmt::format("strength: mean response along the line, in robust deviations of the response over the surface (--weak "
+                        "{}, --strong {})",
+                        number(options.weak), number(options.strong)));
+        output.write(std::move(set), surface, mesh.file());
     }
 
     MeshInput mesh;

@@ -4,6 +4,8 @@
 
 #include "ostraka/interchange/edit.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -15,25 +17,25 @@ namespace {
 EntryName entry_name(const std::string& text) {
     int value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = !text.empty() && code == std::errc() && end == text.data() + text.size();
-    return {whole ? std::optional(value) : std::nullopt, text};
+    const bool is_number = !text.empty() && code == std::errc() && end == text.data() + text.size();
+    return {is_number ? std::optional(value) : std::nullopt, text};
 }
 
 /// Parses a colour: "200,30,60", "200 30 60" or "#c81e3c".
 std::array<int, 3> named_colour(const std::string& text) {
     std::array<int, 3> colour{};
     const bool hexadecimal = text.size() == 7 && text[0] == '#';
-    bool good = true;
+    bool valid = true;
     const char *place = text.data() + (hexadecimal ? 1 : 0), *const end = text.data() + text.size();
     for (std::size_t k = 0; k < 3; ++k) {
         while (!hexadecimal && place != end && (*place == ' ' || (*place == ',' && k > 0))) ++place;
         const auto [next, code] = std::from_chars(place, hexadecimal ? place + 2 : end, colour[k], hexadecimal ? 16 : 10);
-        good = good && code == std::errc() && colour[k] >= 0 && colour[k] <= 255 && (!hexadecimal || next == place + 2);
+        valid = valid && code == std::errc() && colour[k] >= 0 && colour[k] <= 255 && (!hexadecimal || next == place + 2);
         place = next;
     }
     while (place != end && *place == ' ') ++place;
-    if (!good || place != end)
-        fail_usage("the colour '" + printable(text, 60) + "' is not known",
+    if (!valid || place != end)
+        fail_usage(fmt::format("the colour '{}' is not valid", printable(text, 60)),
                    "give red, green and blue from 0 to 255 as 200,30,60 or #c81e3c");
     return colour;
 }
@@ -42,7 +44,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         p.output("output", Kind::annotations, output, "annotations to write");
-        p.input_option("edits", Kind::edit, list, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
+        p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "the annotation to edit: its id, or its tag if no other has it");
         p.options("merge", merge, "another annotation that becomes part of this one; may be given more than once");
         p.options("tag", tag, "new tag");
@@ -67,55 +69,56 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
     }
 
     void check() const override {
-        const bool of_set = object_class || unit || up;
-        if (static_cast<bool>(list) == !annotation.empty() && !(of_set && !list))
+        const bool changes_set = object_class || unit || up;
+        if (static_cast<bool>(edits_file) == !annotation.empty() && !(changes_set && !edits_file))
             fail_usage(
-                "one annotation or a list of edits",
+                "either one annotation or a list of edits is needed",
                 "name an annotation with --annotation, or give --edits FILE, not both; or --set-class, --set-unit, --set-up");
         if (tag && (trimmed(*tag).empty() || printable(*tag) != *tag))
-            fail_usage("--tag is '" + printable(*tag, 60) + "'", "give a word that can be read");
+            fail_usage(fmt::format("--tag is '{}'", printable(*tag, 60)), "give a tag of printable characters");
         if (!annotation.empty()) static_cast<void>(by_options());
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& on = mesh->mesh;
+        const Mesh& surface = mesh->mesh;
         const AnnotationSet& before = set();
         AnnotationSet edited = before;
         std::vector<AnnotationEdit> edits;
-        if (list) edits = list.load<std::vector<AnnotationEdit>>(read_edits);
+        if (edits_file) edits = edits_file.load<std::vector<AnnotationEdit>>(read_edits);
         else if (!annotation.empty()) edits = {by_options()};
         // A number may also be a tag.
-        if (!list && !edits.empty() && edits[0].annotation.id && edited.find(*edits[0].annotation.id) == nullptr)
+        if (!edits_file && !edits.empty() && edits[0].annotation.id && edited.find(*edits[0].annotation.id) == nullptr)
             edits[0].annotation.id.reset();
         for (AnnotationEdit& edit : edits)
-            for (Information& one : edit.information)
-                if (one.is_local() && one.sha256.empty()) one.sha256 = sha256_of_file(beside_output(one.value));
-        std::vector<std::string> notes = edit_annotations(on, edited, edits, list ? list.file() : "flags");
+            for (Information& information_entry : edit.information)
+                if (information_entry.is_local() && information_entry.sha256.empty())
+                    information_entry.sha256 = sha256_of_file(beside_output(information_entry.value));
+        std::vector<std::string> notes = edit_annotations(surface, edited, edits, edits_file ? edits_file.file() : "flags");
         if (object_class) edited.object_class = *object_class;
         if (up) edited.up = direction();
         if (unit && *unit != edited.unit) {
-            rename_unit(on, edited, *unit);
+            rename_unit(surface, edited, *unit);
             notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
         }
         report.notes(notes);
         report("annotations", edited.annotations.size());
         add_differences(report, "changes", differences(before, edited), "nothing changed");
-        output.write(std::move(edited), on, mesh.file());
+        output.write(std::move(edited), surface, mesh.file());
     }
 
     /// Parses "image=photo.jpg".
     static Information referred(const std::string& text) {
         const std::size_t equals = text.find('=');
-        Information one;
-        bool known = false;
+        Information entry;
+        bool is_known_kind = false;
         for (const auto kind :
              {Information::Kind::text, Information::Kind::image, Information::Kind::link, Information::Kind::file})
-            if (equals != std::string::npos && to_string(kind) == text.substr(0, equals)) one.kind = kind, known = true;
-        if (!known || equals + 1 == text.size())
-            fail_usage("the information '" + printable(text, 60) + "' is not KIND=VALUE",
+            if (equals != std::string::npos && to_string(kind) == text.substr(0, equals)) entry.kind = kind, is_known_kind = true;
+        if (!is_known_kind || equals + 1 == text.size())
+            fail_usage(fmt::format("the information '{}' is not KIND=VALUE", printable(text, 60)),
                        "KIND is text, image, link or file: image=photo.jpg");
-        one.value = text.substr(equals + 1);
-        return one;
+        entry.value = text.substr(equals + 1);
+        return entry;
     }
     /// Resolves a file relative to the annotations that refer to it.
     [[nodiscard]] Path beside_output(const std::string& value) const {
@@ -140,7 +143,8 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         for (const auto& text : attributes) {
             const std::size_t equals = text.find('=');
             if (equals == std::string::npos || equals == 0)
-                fail_usage("the attribute '" + text + "' is not NAME=TEXT", "for measures and descriptors use --edits FILE");
+                fail_usage(fmt::format("the attribute '{}' is not NAME=TEXT", text),
+                           "for measures and descriptors use --edits FILE");
             edit.texts.emplace_back(text.substr(0, equals), text.substr(equals + 1));
         }
         for (const auto& text : information) edit.information.push_back(referred(text));
@@ -152,7 +156,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
     }
 
     AnnotationsOutput output;
-    FileInput list;
+    FileInput edits_file;
     std::string annotation, colour;
     std::optional<std::string> tag, note, object_class, unit, up;
     std::optional<int> id;

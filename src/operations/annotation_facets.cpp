@@ -3,6 +3,8 @@
 
 #include "ostraka/reconstruction/fragment_file.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -26,16 +28,16 @@ struct AnnotationFacets final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& on = mesh->mesh;
+        const Mesh& surface = mesh->mesh;
         AnnotationSet set;
-        if (annotations.exists()) set = annotations.on(on);
+        if (annotations.exists()) set = annotations.on(surface);
         if (!unit.empty() && !set.unit.empty() && unit != set.unit)
-            fail_usage("--unit is '" + printable(unit, 60) + "', but the unit of " + annotations.file() + " is '" +
-                           printable(set.unit, 60) + "'",
-                       "leave --unit away");
+            fail_usage(fmt::format("--unit is '{}', but the unit of {} is '{}'", printable(unit, 60), annotations.file(),
+                                   printable(set.unit, 60)),
+                       "leave out --unit");
         if (set.unit.empty()) set.unit = unit;
         report.set_unit(set.unit);
-        const Facets facets = in_file(mesh.file(), [&] { return find_facets(on, options); });
+        const Facets facets = in_file(mesh.file(), [&] { return find_facets(surface, options); });
         report.notes(facets.notes);
         if (probability) probability.write(facets.probability);
         report.empty_table("segments");
@@ -46,15 +48,16 @@ struct AnnotationFacets final : Operation {
         report("shell", facets.shell);
         if (facets.shell) report("thickness", facets.thickness);
         report("confidence", facets.confidence);
-        report.line(!facets.shell ? "a solid: no wall with two sides"
-                                  : "a wall " + number(facets.thickness, 3) +
-                                        (set.unit.empty() ? "" : " " + printable(set.unit, 60)) + " thick");
+        report.line(!facets.shell ? std::string("a solid: no wall with two sides")
+                                  : fmt::format("a wall {}{} thick", number(facets.thickness, 3),
+                                                set.unit.empty() ? "" : " " + printable(set.unit, 60)));
         if (facets.area(Facet::fracture) > 0) {
             update_facet_annotations(set, facets);
-            return output.write(std::move(set), on, mesh.file());
+            return output.write(std::move(set), surface, mesh.file());
         }
-        report.note(std::string(facets.answer == Facets::Answer::whole ? "there is no fracture" : "no fracture is found") +
-                    ", so " + output.file() + " is not written");
+        report.note(fmt::format("{}, so {} is not written",
+                                facets.answer == Facets::Answer::whole ? "there is no fracture" : "no fracture is found",
+                                output.file()));
         report.answer_no();
     }
 

@@ -21,9 +21,9 @@ struct AnnotationInfer final : AnnotatedMeshOperation {
         const auto& words = vocabulary.load<Vocabulary>(read_vocabulary);
         InferenceResult result = infer(set(), words);
         report.empty_table("inferred", false);
-        for (const Inference& one : result.inferred)
-            report.row("inferred")("annotation", one.annotation)("tag", result.annotations.find(one.annotation)->tag)(
-                "attribute", one.attribute)("value", one.value)("rule", one.rule)("why", one.why);
+        for (const Inference& inference : result.inferred)
+            report.row("inferred")("annotation", inference.annotation)("tag", result.annotations.find(inference.annotation)->tag)(
+                "attribute", inference.attribute)("value", inference.value)("rule", inference.rule)("why", inference.why);
         report("contradictions", result.contradictions)("missing", result.missing);
         report.notes(result.missing);
         for (const auto& text : result.contradictions) report.line("contradiction: " + printable(text));

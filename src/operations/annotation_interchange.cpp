@@ -3,12 +3,14 @@
 
 #include "ostraka/interchange/interchange.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
 
 void describe_format(Parameters& p, std::optional<std::string>& format) {
-    p.options("format", format, "format of the file, if its ending does not tell", Choices(interchange_formats()));
+    p.options("format", format, "format of the file, if its extension does not determine it", Choices(interchange_formats()));
 }
 
 struct AnnotationExport final : AnnotatedMeshOperation {
@@ -22,15 +24,15 @@ struct AnnotationExport final : AnnotatedMeshOperation {
 
     void run(Context& context, Report& report) override {
         if (!format) format = guess_interchange_format(output.file());
-        const AnnotationSet& known = set();
+        const AnnotationSet& annotation_set = set();
         const ExportedAnnotations exported =
-            export_annotations(mesh->mesh, known, *format, mesh.file(), context.provenance(), options);
+            export_annotations(mesh->mesh, annotation_set, *format, mesh.file(), context.provenance(), options);
         report.notes(exported.notes);
         report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
                                                                                                        sha256(exported.bytes));
-        const std::size_t all = known.annotations.size(), written = exported.annotations;
-        report.line((written == all ? "" : std::to_string(written) + " of ") + counted(all, "annotation") + " as " + *format +
-                    ", " + std::to_string(exported.bytes.size()) + " bytes");
+        const std::size_t total = annotation_set.annotations.size(), written = exported.annotations;
+        report.line(fmt::format("{}{} as {}, {} bytes", written == total ? "" : fmt::format("{} of ", written),
+                                counted(total, "annotation"), *format, exported.bytes.size()));
         output.write(exported.bytes);
     }
 
@@ -56,11 +58,11 @@ struct AnnotationImport final : Operation {
     void run(Context& context, Report& report) override {
         const auto& bytes = input.load<std::string>(read_file);
         if (!format) format = guess_interchange_format(input.file(), bytes);
-        const Mesh& on = mesh->mesh;
-        const AnnotationSet* base = onto ? &onto.on(on) : nullptr;
+        const Mesh& surface = mesh->mesh;
+        const AnnotationSet* base = onto ? &onto.on(surface) : nullptr;
         PlacedAnnotations placed = [&] {
             try {
-                return import_annotations(on, bytes, *format, input.file(), base, options);
+                return import_annotations(surface, bytes, *format, input.file(), base, options);
             } catch (const Error& error) {
                 // Errors about the mesh name its file.
                 if (error.kind() != ErrorKind::input || error.where() != "mesh") throw;
@@ -70,10 +72,11 @@ struct AnnotationImport final : Operation {
         context.notes("", placed.set.notes);
         report("format", *format)("annotations", placed.set.annotations.size());
         report.empty_table("placed", false);
-        for (const PlacedAnnotation& one : placed.placements)
-            report.row("placed")("id", one.id)("tag", one.tag)("by", one.how)("points", one.points)(
-                "toSurface", one.to_surface, number(one.to_surface, 3))("toVertex", one.to_vertex, number(one.to_vertex, 3));
-        output.write(std::move(placed.set), on, mesh.file());
+        for (const PlacedAnnotation& placement : placed.placements)
+            report.row("placed")("id", placement.id)("tag", placement.tag)("by", placement.how)("points", placement.points)(
+                "toSurface", placement.to_surface, number(placement.to_surface, 3))("toVertex", placement.to_vertex,
+                                                                                    number(placement.to_vertex, 3));
+        output.write(std::move(placed.set), surface, mesh.file());
     }
 
     MeshInput mesh;

@@ -2,6 +2,8 @@
 #include "differences.h"
 #include "operations.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -24,20 +26,20 @@ Report::Row named_row(Report& report, const std::string& table, const Change& ch
 
 }  // namespace
 
-void add_differences(Report& report, const std::string& table, const std::vector<Difference>& list, const std::string& none) {
+void add_differences(Report& report, const std::string& table, const std::vector<Difference>& changes, const std::string& none) {
     report.empty_table(table, false);
-    if (list.empty()) report.line(none);
-    for (const Difference& one : list) {
-        Report::Row row = named_row(report, table, one);
-        row("kind", one.kind == Difference::Kind::added     ? "added"
-                    : one.kind == Difference::Kind::removed ? "removed"
-                                                            : "changed");
+    if (changes.empty()) report.line(none);
+    for (const Difference& change : changes) {
+        Report::Row row = named_row(report, table, change);
+        row("kind", change.kind == Difference::Kind::added     ? "added"
+                    : change.kind == Difference::Kind::removed ? "removed"
+                                                               : "changed");
         std::string counts;
-        if (one.field == "geometry") {
-            row("onlyBefore", one.only_before)("onlyAfter", one.only_after);
-            counts = " (-" + std::to_string(one.only_before) + " +" + std::to_string(one.only_after) + ")";
+        if (change.field == "geometry") {
+            row("onlyBefore", change.only_before)("onlyAfter", change.only_after);
+            counts = fmt::format(" (-{} +{})", change.only_before, change.only_after);
         }
-        row("before", one.before)("after", one.after, one.after + counts);
+        row("before", change.before)("after", change.after, change.after + counts);
     }
 }
 
@@ -53,10 +55,10 @@ struct AnnotationDiff final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const auto list = differences(before.on(mesh->mesh), after.on(mesh->mesh));
-        report("same", list.empty());
-        add_differences(report, "differences", list, "no difference");
-        if (!list.empty()) report.answer_no();
+        const auto changes = differences(before.on(mesh->mesh), after.on(mesh->mesh));
+        report("same", changes.empty());
+        add_differences(report, "differences", changes, "no difference");
+        if (!changes.empty()) report.answer_no();
     }
 
     MeshInput mesh;
@@ -77,29 +79,30 @@ struct AnnotationMerge final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& on = mesh->mesh;
-        const MergedAnnotations merged = merge_annotations(base.on(on), ours.on(on), theirs.on(on), options);
-        const bool settled = merged.settled(options);
+        const Mesh& surface = mesh->mesh;
+        const MergedAnnotations merged = merge_annotations(base.on(surface), ours.on(surface), theirs.on(surface), options);
+        const bool resolved = merged.settled(options);
         report.notes(merged.notes);
-        report("merged", settled)("annotations", merged.set.annotations.size());
+        report("merged", resolved)("annotations", merged.set.annotations.size());
         report.empty_table("conflicts", false);
         for (const Conflict& conflict : merged.conflicts)
             named_row(report, "conflicts", conflict)("base", conflict.base)("ours", conflict.ours)("theirs", conflict.theirs);
         const std::size_t count = merged.conflicts.size();
-        if (settled) {
-            report.line(std::to_string(merged.set.annotations.size()) + " annotations" +
-                        (count == 0 ? "" : ", conflicts settled for " + option_text(options, "prefer")));
-            output.write(merged.set, on, mesh.file());
+        if (resolved) {
+            report.line(fmt::format("{} annotations{}", merged.set.annotations.size(),
+                                    count == 0 ? "" : ", conflicts resolved for " + option_text(options, "prefer")));
+            output.write(merged.set, surface, mesh.file());
             return;
         }
         report.answer_no();
-        const auto any = [&](const std::string& field) {
+        const auto any_conflict = [&](const std::string& field) {
             return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
                                [&](const Conflict& conflict) { return conflict.field == field; });
         };
-        report.line(counted(count, "conflict") + "; nothing written (settle them in the files, or choose with --prefer" +
-                    (any("both added") ? "; --renumber keeps both where both added under one id" : "") +
-                    (any("geometry") ? "; --merge-faces joins regions that both changed" : "") + ")");
+        report.line(fmt::format("{}; nothing written (resolve them in the files, or choose with --prefer{}{})",
+                                counted(count, "conflict"),
+                                any_conflict("both added") ? "; --renumber keeps both where both added under one id" : "",
+                                any_conflict("geometry") ? "; --merge-faces joins regions that both changed" : ""));
     }
 
     MeshInput mesh;

@@ -23,21 +23,21 @@ struct AnnotationSegment final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& on = mesh->mesh;
+        const Mesh& surface = mesh->mesh;
         std::vector<std::int32_t> labels;
         AnnotationSet set = in_file(mesh.file(), [&] {
-            const std::vector<Index> number = segment(on, thickness(on, thickness_options), options);
-            labels.assign(number.begin(), number.end());
+            const std::vector<Index> segment_of_face = segment(surface, thickness(surface, thickness_options), options);
+            labels.assign(segment_of_face.begin(), segment_of_face.end());
             std::map<std::int32_t, std::string> names;
             for (const std::int32_t label : labels) names.try_emplace(label, "segment " + std::to_string(label));
-            return regions_from_labels(on, labels, names);
+            return regions_from_labels(surface, labels, names);
         });
         for (const Annotation& annotation : set.annotations) {
-            const AnnotationSummary summary = summarise(on, annotation);
+            const AnnotationSummary summary = summarise(surface, annotation);
             report.row("segments")("id", annotation.id)("tag", annotation.tag)("faces", summary.elements)("area", summary.area);
         }
         if (labels_out) write_labels(labels_out.path(), labels);
-        output.write(std::move(set), on, mesh.file());
+        output.write(std::move(set), surface, mesh.file());
     }
 
     MeshInput mesh;

@@ -21,23 +21,24 @@ struct AnnotationSmooth final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& on = mesh->mesh;
-        AnnotationSet set = annotations.on(on);
+        const Mesh& surface = mesh->mesh;
+        AnnotationSet set = annotations.on(surface);
         report.set_unit(set.unit);
         std::vector<int> ids;
         for (const std::string& name : names) {
-            const Annotation& one = find_annotation(set, name, annotations.file());
-            ids.push_back(one.id);
-            if (one.type == AnnotationType::point || one.all)
-                report.note(name_of(one) + " has no outline and no line: it stays as it is");
+            const Annotation& annotation = find_annotation(set, name, annotations.file());
+            ids.push_back(annotation.id);
+            if (annotation.type == AnnotationType::point || annotation.all)
+                report.note(name_of(annotation) + " has no outline and no line: it stays as it is");
         }
         report.empty_table("annotations");
-        for (const FairedAnnotation& one : in_file(annotations.file(), [&] { return fair_outlines(on, set, ids, options); }))
-            report.row("annotations")("id", one.id)("tag", set.find(one.id)->tag)("length_before", one.length_before)(
-                "length_after", one.length_after)("area_before", one.area_before)("area_after", one.area_after)(
-                "moved", one.moved)("note", one.note);
-        report.notes(refresh_measures(on, set).notes);
-        output.write(std::move(set), on, mesh.file());
+        for (const FairedAnnotation& faired :
+             in_file(annotations.file(), [&] { return fair_outlines(surface, set, ids, options); }))
+            report.row("annotations")("id", faired.id)("tag", set.find(faired.id)->tag)("length_before", faired.length_before)(
+                "length_after", faired.length_after)("area_before", faired.area_before)("area_after", faired.area_after)(
+                "moved", faired.moved)("note", faired.note);
+        report.notes(refresh_measures(surface, set).notes);
+        output.write(std::move(set), surface, mesh.file());
     }
 
     MeshInput mesh;

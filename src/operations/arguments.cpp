@@ -1,5 +1,7 @@
 #include "operations.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -14,7 +16,8 @@ std::vector<Number> numbers_of(const std::string& text, const std::string& optio
         Number value{};
         const auto [next, code] = std::from_chars(place, end, value);
         if (code != std::errc() || (next != end && *next != ',') || next + 1 == end)
-            fail_usage(option + " is '" + printable(text, 60) + "'", "give numbers with commas between them, like 12,88");
+            fail_usage(fmt::format("{} is '{}'", option, printable(text, 60)),
+                       "give numbers with commas between them, like 12,88");
         numbers.push_back(value);
         place = next == end ? end : next + 1;
     }
@@ -32,12 +35,12 @@ std::array<double, 3> direction_of(const std::string& text, const std::string& o
                 axis.at(k) = sign;
                 return axis;
             }
-    const auto fails = [&](const char* remedy) { fail_usage(option + " is '" + printable(text, 60) + "'", remedy); };
+    const auto fail = [&](const char* remedy) { fail_usage(fmt::format("{} is '{}'", option, printable(text, 60)), remedy); };
     const auto numbers = numbers_of<double>(text, option);
-    if (numbers.size() != 3) fails("give three numbers, like 0,0,1");
+    if (numbers.size() != 3) fail("give three numbers, like 0,0,1");
     for (const double x : numbers)
-        if (!std::isfinite(x)) fails("give finite numbers");
-    if (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) fails("give a vector that is not zero");
+        if (!std::isfinite(x)) fail("give finite numbers");
+    if (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) fail("give a vector that is not zero");
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -47,7 +50,8 @@ Words direction_words(const std::string& option, std::vector<std::string> more) 
     rule.check = [option, names = rule.names, others = rule.others](const std::string& text) {
         if (std::find(names.begin(), names.end(), text) != names.end()) return;
         if (text.find_first_of("0123456789,") == std::string::npos)
-            fail_usage(option + " is '" + printable(text, 60) + "'", "use " + joined(names) + " or " + others);
+            fail_usage(fmt::format("{} is '{}'", option, printable(text, 60)),
+                       fmt::format("use {} or {}", joined(names), others));
         static_cast<void>(direction_of(text, option));
     };
     return rule;
@@ -63,14 +67,13 @@ const Annotation& find_annotation(const AnnotationSet& set, const std::string& n
     int id = 0;
     const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), id);
     if (code == std::errc() && end == name.data() + name.size())
-        if (const Annotation* found = set.find(id)) return *found;
+        if (const Annotation* annotation = set.find(id)) return *annotation;
     std::vector<const Annotation*> tagged;
     for (const Annotation& annotation : set.annotations)
         if (annotation.tag == name) tagged.push_back(&annotation);
     if (tagged.empty()) fail_unknown_annotation(set, name, file);
     if (tagged.size() > 1)
-        fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
-                   "give the id of one");
+        fail_input(file, fmt::format("has {} annotations tagged '{}'", tagged.size(), printable(name, 60)), "give the id of one");
     return *tagged.front();
 }
 

@@ -15,6 +15,8 @@
 #include "ostraka/shape_classes/fragment_thresholds.h"
 #include "ostraka/shape_classes/member_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -31,14 +33,13 @@ struct Assemble final : Operation {
              "\"inner\", \"fracture\" overrides what is found of its facets")
             .many()
             .with_annotations_beside();
-        p.output(
-             "output", Kind::folder, output,
-             "folder for assembly.json and, of each group, group-N.ply (face labels: the number of the fragment), group-N.png, "
-             "group-N.exploded.png (fragments drawn apart) and NAME.placed.ply; pairs that were tried are kept in its folder "
-             "pairs, and not tried again; made if it is missing")
+        p.output("output", Kind::folder, output,
+                 "folder for assembly.json and, for each group, group-N.ply (face labels: the number of the fragment), "
+                 "group-N.png, group-N.exploded.png (fragments drawn apart) and NAME.placed.ply; results of pairs are stored in "
+                 "its subfolder pairs and not computed again; created if missing")
             .flag();
-        p.input_option("template", Kind::template_package, known,
-                       "template of the objects' class: each group is completed by it");
+        p.input_option("template", Kind::template_package, object_template,
+                       "template of the objects' class: each group is completed with it");
         p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "draw no pictures");
         p.options("fresh", fresh, "register all pairs again, whatever an earlier run found").unrecorded();
@@ -46,11 +47,11 @@ struct Assemble final : Operation {
         reading.describe(p.options);
         p.report.schema = "reassembly";
         p.report.people_table("fragments", {"fragment", "facets by", "fracture %", "group", "why alone"});
-        p.report.people_table("joins", {"joined", "confidence", "by the two alone", "contact %", "confirmed by"});
+        p.report.people_table("joins", {"joined", "confidence", "of the pair alone", "contact %", "confirmed by"});
     }
 
     void check() const override {
-        if (class_file && !known) fail_usage("--class needs the template that it was learnt with", "give --template");
+        if (class_file && !object_template) fail_usage("--class needs the template that it was learnt with", "give --template");
     }
 
     void run(Context& context, Report& report) override {
@@ -58,9 +59,9 @@ struct Assemble final : Operation {
         const Path folder = output.open();
         const ResultStore store(is_memory(folder) ? Path() : folder / "pairs");
         const Reassembly result = reassemble(fragments, options, memory_of(store));
-        if (recalled > 0)
-            report.note(std::to_string(recalled) + " of " + std::to_string(asked) + " pairs were tried by an earlier run in " +
-                        output.file() + ": fragments and options are the same");
+        if (pairs_recalled > 0)
+            report.note(fmt::format("{} of {} pairs were tried by an earlier run in {}: fragments and options are the same",
+                                    pairs_recalled, pairs_requested, output.file()));
         write(context, report, result);
     }
 
@@ -73,157 +74,164 @@ private:
     };
 
     void read(Context& context, Report& report) {
-        std::vector<Given> list;
+        std::vector<Given> given_files;
         for (std::size_t k = 0; k < files.size(); ++k) {
             const Path file = files.path(k);
             if (!is_folder(file)) {
-                list.push_back({file, k, false});
+                given_files.push_back({file, k, false});
                 continue;
             }
             const std::vector<std::string> endings = endings_of(Kind::mesh);
-            const std::size_t before = list.size();
+            const std::size_t before = given_files.size();
             std::size_t points = 0;
             for (const std::string& name : files_in(file)) {
                 const std::string ending = extension(name);
-                if (std::find(endings.begin(), endings.end(), ending) != endings.end()) list.push_back({file / name, k, true});
+                if (std::find(endings.begin(), endings.end(), ending) != endings.end())
+                    given_files.push_back({file / name, k, true});
                 points += ending == ".xyz" || ending == ".pts" || ending == ".asc" ? 1 : 0;
             }
             if (points > 0)
-                report.note(std::to_string(points) + " files of points (.xyz, .pts, .asc) in " + printable(file.string()) +
-                            " are not read: name them, or save them as .ply");
-            if (list.size() == before)
+                report.note(
+                    fmt::format("{} files of points (.xyz, .pts, .asc) in {} are not read: name them, or save them as .ply",
+                                points, printable(file.string())));
+            if (given_files.size() == before)
                 fail_input(file.string(), "holds no mesh files",
                            "name the folder that holds the fragments (.ply, .obj, .off, .stl)");
         }
-        if (list.size() < 2)
-            fail_usage("there is one fragment, and nothing to join it with", "name two or more, or their folder");
+        if (given_files.size() < 2) fail_usage("only one fragment is given", "name two or more, or their folder");
         // Makes the result independent of the order of the files.
-        std::stable_sort(list.begin(), list.end(),
+        std::stable_sort(given_files.begin(), given_files.end(),
                          [](const Given& x, const Given& y) { return x.file.stem().string() < y.file.stem().string(); });
-        for (std::size_t k = 1; k < list.size(); ++k)
-            if (list[k].file.stem() == list[k - 1].file.stem())
-                fail_usage("two fragments are called '" + printable(list[k].file.stem().string()) + "'",
+        for (std::size_t k = 1; k < given_files.size(); ++k)
+            if (given_files[k].file.stem() == given_files[k - 1].file.stem())
+                fail_usage(fmt::format("two fragments are called '{}'", printable(given_files[k].file.stem().string())),
                            "rename one of the files");
-        std::vector<FragmentFile> found(list.size());
-        std::vector<std::optional<Error>> problems(list.size());
-        Progress progress("read fragments", list.size());
+        std::vector<FragmentFile> fragment_files(given_files.size());
+        std::vector<std::optional<Error>> problems(given_files.size());
+        Progress progress("read fragments", given_files.size());
         const auto attempt = [&](std::size_t k, const auto& from) {
             try {
-                found[k] = from();
+                fragment_files[k] = from();
             } catch (const Error& error) {
-                if (error.kind() != ErrorKind::input || list.size() < 3) throw;
+                if (error.kind() != ErrorKind::input || given_files.size() < 3) throw;
                 problems[k] = error;
             }
             progress.advance();
         };
-        const auto in_memory = [&](std::size_t k) { return !list[k].listed && files.sources[list[k].slot].object; };
+        const auto in_memory = [&](std::size_t k) { return !given_files[k].listed && files.sources[given_files[k].slot].object; };
         parallel_for(
-            list.size(),
+            given_files.size(),
             [&](std::size_t k) {
-                if (!in_memory(k)) attempt(k, [&] { return read_fragment(list[k].file, reading); });
+                if (!in_memory(k)) attempt(k, [&] { return read_fragment(given_files[k].file, reading); });
             },
             1);
         // The files were read by several threads; record them as inputs here.
         context.record([&] {
-            for (std::size_t k = 0; k < list.size(); ++k)
+            for (std::size_t k = 0; k < given_files.size(); ++k)
                 if (!in_memory(k))
-                    for (const Path& file : found[k].inputs) read_file(file);
+                    for (const Path& file : fragment_files[k].inputs) read_file(file);
         });
-        for (std::size_t k = 0; k < list.size(); ++k) {
+        for (std::size_t k = 0; k < given_files.size(); ++k) {
             if (in_memory(k))
                 attempt(k, [&] {
-                    return files.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, list[k].slot,
-                                                    options_text(reading));
+                    return files.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); },
+                                                    given_files[k].slot, options_text(reading));
                 });
-            const std::string name = list[k].file.stem().string();
+            const std::string name = given_files[k].file.stem().string();
             if (problems[k]) {
                 unreadable.emplace_back(name, problems[k]->problem() + remedy_of(*problems[k]));
                 report.note("left out: " + std::string(problems[k]->what()));
                 continue;
             }
-            context.notes(list[k].file.string(), found[k].notes);
-            found[k].fragment.name = name;
-            fragments.push_back(std::move(found[k].fragment));
-            facets_from.push_back(found[k].facets_from);
+            context.notes(given_files[k].file.string(), fragment_files[k].notes);
+            fragment_files[k].fragment.name = name;
+            fragments.push_back(std::move(fragment_files[k].fragment));
+            facets_from.push_back(fragment_files[k].facets_from);
         }
         if (fragments.size() < 2)
-            fail_input(files.file(0) + (files.size() > 1 ? " and others" : ""),
-                       "only " + std::to_string(fragments.size()) + " of " + std::to_string(list.size()) +
-                           " fragments can be read, and two are needed",
-                       "correct what the notes above name");
-        find_odd(report);
+            fail_input(
+                files.file(0) + (files.size() > 1 ? " and others" : ""),
+                fmt::format("only {} of {} fragments can be read, and two are needed", fragments.size(), given_files.size()),
+                "correct what the notes above name");
+        leave_out_outliers(report);
     }
 
-    static std::string remedy_of(const Error& error) { return error.remedy().empty() ? "" : " (" + error.remedy() + ")"; }
+    static std::string remedy_of(const Error& error) {
+        return error.remedy().empty() ? "" : fmt::format(" ({})", error.remedy());
+    }
 
     /// Leaves out copies and fragments of a very different size, and reports them.
-    void find_odd(Report& report) {
-        for (const OddFragment& odd : odd_fragments(fragments)) {
-            report.note(printable(fragments[odd.fragment].name) + " " + odd.text);
-            if (!odd.left_out) continue;
-            left_out[odd.fragment] = odd.text;
+    void leave_out_outliers(Report& report) {
+        for (const OddFragment& outlier : odd_fragments(fragments)) {
+            report.note(fmt::format("{} {}", printable(fragments[outlier.fragment].name), outlier.text));
+            if (!outlier.left_out) continue;
+            left_out[outlier.fragment] = outlier.text;
             // A fragment without a surface is not joined to others.
-            fragments[odd.fragment].mesh = Mesh();
-            fragments[odd.fragment].facets.clear();
+            fragments[outlier.fragment].mesh = Mesh();
+            fragments[outlier.fragment].facets.clear();
         }
     }
 
     PairMemory memory_of(const ResultStore& store) {
         std::vector<std::string> sums;
-        for (const Fragment& one : fragments) sums.push_back(fragment_checksum(one));
-        const auto key = [sums](std::size_t i, std::size_t j, const PairOptions& how) {
-            return ResultStore::key({sums[i], sums[j], options_text(how) + join_model_version()});
+        for (const Fragment& fragment : fragments) sums.push_back(fragment_checksum(fragment));
+        const auto key = [sums](std::size_t i, std::size_t j, const PairOptions& pair_options) {
+            return ResultStore::key({sums[i], sums[j], options_text(pair_options) + join_model_version()});
         };
         PairMemory memory;
-        memory.recall = [this, key, &store](std::size_t i, std::size_t j, const PairOptions& how) -> std::optional<PairOfMany> {
-            ++asked;
+        memory.recall = [this, key, &store](std::size_t i, std::size_t j,
+                                            const PairOptions& pair_options) -> std::optional<PairOfMany> {
+            ++pairs_requested;
             if (fresh) return {};
-            const std::string known_by = key(i, j, how);
-            const std::optional<Json> found = store.find(known_by.substr(0, 32), known_by);
-            if (!found) return {};
-            ++recalled;
-            return pair_of_many_from_json(*found, i, j);
+            const std::string pair_key = key(i, j, pair_options);
+            const std::optional<Json> stored = store.find(pair_key.substr(0, 32), pair_key);
+            if (!stored) return {};
+            ++pairs_recalled;
+            return pair_of_many_from_json(*stored, i, j);
         };
-        memory.keep = [key, &store](const PairOfMany& pair, const PairOptions& how) {
-            const std::string known_by = key(pair.first, pair.second, how);
+        memory.keep = [key, &store](const PairOfMany& pair, const PairOptions& pair_options) {
+            const std::string pair_key = key(pair.first, pair.second, pair_options);
             Json document;
-            store.keep(known_by.substr(0, 32), known_by, pair_of_many_to_json(pair, document.GetAllocator()));
+            store.keep(pair_key.substr(0, 32), pair_key, pair_of_many_to_json(pair, document.GetAllocator()));
         };
         return memory;
     }
 
     void write(Context& context, Report& report, const Reassembly& result) {
         std::vector<std::string> names;
-        for (const Fragment& one : fragments) names.push_back(one.name);
+        for (const Fragment& fragment : fragments) names.push_back(fragment.name);
         Json document;
         auto& allocator = document.GetAllocator();
         JsonValue content = json_object(allocator, "format", "ostraka-reassembly", "version", 1);
-        JsonValue list(rapidjson::kArrayType);
+        JsonValue fragment_entries(rapidjson::kArrayType);
         const std::vector<GroupAxis> axes = own_axes(fragments, result);
         for (std::size_t k = 0; k < fragments.size(); ++k) {
-            const double broken = fracture_share(fragments[k]);
-            const std::string alone = why_alone(k, result.alone[k], broken);
-            JsonValue one = json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k],
-                                        "fracture", broken, "pose", pose_to_json(result.poses[k], allocator));
-            if (!alone.empty()) add_members(one, allocator, "alone", alone);
-            report_own_axis(axes[k], one, allocator);
-            list.PushBack(one, allocator);
-            report.row("fragments", {names[k], facets_from[k], left_out.contains(k) ? std::string("-") : number(100 * broken, 3),
-                                     result.group[k] < 0 ? std::string("-") : std::to_string(result.group[k] + 1), alone});
+            const double fracture_fraction = fracture_share(fragments[k]);
+            const std::string alone = why_alone(k, result.alone[k], fracture_fraction);
+            JsonValue fragment_entry =
+                json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k], "fracture",
+                            fracture_fraction, "pose", pose_to_json(result.poses[k], allocator));
+            if (!alone.empty()) add_members(fragment_entry, allocator, "alone", alone);
+            report_own_axis(axes[k], fragment_entry, allocator);
+            fragment_entries.PushBack(fragment_entry, allocator);
+            report.row("fragments",
+                       {names[k], facets_from[k], left_out.contains(k) ? std::string("-") : number(100 * fracture_fraction, 3),
+                        result.group[k] < 0 ? std::string("-") : std::to_string(result.group[k] + 1), alone});
         }
         for (const auto& [name, problem] : unreadable) {
-            list.PushBack(json_object(allocator, "name", name, "group", 0, "alone", "cannot be read: " + problem), allocator);
+            fragment_entries.PushBack(json_object(allocator, "name", name, "group", 0, "alone", "cannot be read: " + problem),
+                                      allocator);
             report.row("fragments", {name, std::string("-"), std::string("-"), std::string("-"), "cannot be read: " + problem});
         }
-        add_members(content, allocator, "fragments", list);
-        const JsonValue found = reassembly_to_json(result, names, allocator);
-        for (const auto& member : found.GetObject()) add_members(content, allocator, member.name.GetString(), member.value);
+        add_members(content, allocator, "fragments", fragment_entries);
+        const JsonValue reassembly = reassembly_to_json(result, names, allocator);
+        for (const auto& member : reassembly.GetObject()) add_members(content, allocator, member.name.GetString(), member.value);
         for (const FragmentJoin& join : result.joins)
             report.row("joins", {names[join.first] + " - " + names[join.second], number(join.confidence, 3), number(join.pair, 3),
                                  number(100 * join.evidence.share, 3), join.reason});
-        for (const UndoneJoin& one : result.undone)
-            report.line("not joined: " + printable(names[one.first]) + " and " + printable(names[one.second]) + " (" +
-                        number(one.pair, 2) + " by the two alone): " + one.reason);
+        for (const UndoneJoin& undone : result.undone)
+            report.line(fmt::format("not joined: {} and {} (confidence of the pair alone {}): {}", printable(names[undone.first]),
+                                    printable(names[undone.second]), number(undone.pair, 2), undone.reason));
         for (int g = 0; g < result.groups(); ++g) {
             JsonValue& group = content["groups"][static_cast<unsigned>(g)];
             report_group_axis(report, fragments, result, g, group, content["joins"], allocator);
@@ -233,51 +241,53 @@ private:
         output.write("assembly.json", content);
         if (result.pairs_left > 0)
             report.note(
-                "not all pairs were tried, but " + std::to_string(result.pairs_tried) + " of " +
-                std::to_string(result.pairs_tried + result.pairs_left) +
-                ", whose breaks fit best when compared quickly; a join of two others is only found where both are joined " +
-                "to the same group (--partners tries more)");
-        const std::size_t joined =
+                fmt::format("not all pairs were tried, but {} of {}, whose fracture surfaces fit best in a quick comparison; a "
+                            "join of two others is only found where both are joined to the same group (--partners tries more)",
+                            result.pairs_tried, result.pairs_tried + result.pairs_left));
+        const std::size_t joined_count =
             static_cast<std::size_t>(std::count_if(result.group.begin(), result.group.end(), [](int g) { return g >= 0; }));
-        report.line(std::to_string(joined) + " of " + std::to_string(fragments.size() + unreadable.size()) +
-                    " fragments are in " + std::to_string(result.groups()) + (result.groups() == 1 ? " group; " : " groups; ") +
-                    std::to_string(fragments.size() + unreadable.size() - joined) + " stay alone");
+        report.line(fmt::format("{} of {} fragments are in {} {}; {} stay alone", joined_count,
+                                fragments.size() + unreadable.size(), result.groups(), result.groups() == 1 ? "group" : "groups",
+                                fragments.size() + unreadable.size() - joined_count));
         if (result.groups() == 0) report.answer_no();
     }
 
     /// Why a fragment is not joined, in terms of the files: includes where its facets came from.
-    [[nodiscard]] std::string why_alone(std::size_t k, const std::string& reason, double broken) const {
+    [[nodiscard]] std::string why_alone(std::size_t k, const std::string& reason, double fracture_fraction) const {
         if (left_out.contains(k)) return left_out.at(k);
         if (reason.empty() || fragments[k].mesh.number_of_faces() < static_cast<std::size_t>(options.min_faces) ||
-            (broken > 0 && broken < 1))
+            (fracture_fraction > 0 && fracture_fraction < 1))
             return reason;
-        const std::string beside = fragments[k].name + ".ant.json", &from = facets_from[k];
-        if (broken > 0)
-            return "all of its surface is called fracture (by " + from +
-                   "), so that its break has no edge; mark what is not broken " + "as regions \"outer\" or \"inner\" in " +
-                   beside;
-        if (from == "nowhere")
-            return "no break was looked for, because its surface is open or --facets says so: give --facets auto, or mark a "
-                   "region " +
-                   std::string("\"fracture\" in ") + beside;
-        if (from == "annotations") return beside + " names no region \"fracture\" that has faces: mark one";
-        return "no break is found on it, it may be whole; if it is not, mark a region \"fracture\" in " + beside;
+        const std::string annotation_file = fragments[k].name + ".ant.json", &source = facets_from[k];
+        if (fracture_fraction > 0)
+            return fmt::format(
+                "all of its surface is classified as fracture (by {}), so that its fracture surface has no border; mark what is "
+                "intact as regions \"outer\" or \"inner\" in {}",
+                source, annotation_file);
+        if (source == "nowhere")
+            return fmt::format(
+                "no fracture surface was searched for, because its surface is open or --facets excludes it: give --facets auto, "
+                "or mark a region \"fracture\" in {}",
+                annotation_file);
+        if (source == "annotations") return annotation_file + " names no region \"fracture\" that has faces: mark one";
+        return "no fracture surface is found on it, it may be whole; if it is not, mark a region \"fracture\" in " +
+               annotation_file;
     }
 
     static double fracture_share(const Fragment& fragment) {
-        double broken = 0, all = 0;
+        double fracture_area = 0, total_area = 0;
         for (const Face f : fragment.mesh.faces()) {
             const double area = face_area(fragment.mesh, f);
-            all += area;
-            if (!fragment.facets.empty() && fragment.facets[f] == Facet::fracture) broken += area;
+            total_area += area;
+            if (!fragment.facets.empty() && fragment.facets[f] == Facet::fracture) fracture_area += area;
         }
-        return all > 0 ? broken / all : 0;
+        return total_area > 0 ? fracture_area / total_area : 0;
     }
 
     void write_group(Context& context, Report& report, const Reassembly& result, int g, JsonValue& entry,
                      JsonAllocator& allocator) {
         TriangleSoup soup;
-        Fragment whole;
+        Fragment joined_group;
         MeshExtras extras;
         Scene scene;
         std::size_t shown = 0;
@@ -288,30 +298,30 @@ private:
             MeshExtras facets;
             for (const Facet facet : fragments[k].facets) facets.face_labels.push_back(static_cast<std::int32_t>(facet));
             output.write(fragments[k].name + ".placed.ply", placed, facets);
-            const TriangleSoup own = to_soup(placed);
+            const TriangleSoup fragment_soup = to_soup(placed);
             const auto offset = static_cast<Index>(soup.points.size());
             begins.push_back(offset);
-            soup.points.insert(soup.points.end(), own.points.begin(), own.points.end());
+            soup.points.insert(soup.points.end(), fragment_soup.points.begin(), fragment_soup.points.end());
             const Rgb colour = category_colour(shown);
-            for (auto triangle : own.triangles) {
+            for (auto triangle : fragment_soup.triangles) {
                 for (Index& v : triangle) v += offset;
                 soup.triangles.push_back(triangle);
                 extras.face_labels.push_back(static_cast<std::int32_t>(k + 1));
                 scene.face_colours.push_back(colour);
             }
-            whole.facets.insert(whole.facets.end(), fragments[k].facets.begin(), fragments[k].facets.end());
-            constexpr std::size_t named = 16;
-            if (shown < named) scene.legend.push_back({fragments[k].name, colour, LegendMark::area});
+            joined_group.facets.insert(joined_group.facets.end(), fragments[k].facets.begin(), fragments[k].facets.end());
+            constexpr std::size_t max_legend_entries = 16;
+            if (shown < max_legend_entries) scene.legend.push_back({fragments[k].name, colour, LegendMark::area});
             ++shown;
         }
         const std::string name = "group-" + std::to_string(g + 1);
-        whole.name = name;
-        whole.mesh = build_mesh(soup);
-        output.write(name + ".ply", whole.mesh, extras);
+        joined_group.name = name;
+        joined_group.mesh = build_mesh(soup);
+        output.write(name + ".ply", joined_group.mesh, extras);
         add_members(entry, allocator, "mesh", name + ".ply");
         if (!no_pictures) {
             if (shown > scene.legend.size())
-                scene.legend.push_back({"and " + std::to_string(shown - scene.legend.size()) + " more", clay, LegendMark::point});
+                scene.legend.push_back({fmt::format("and {} more", shown - scene.legend.size()), clay, LegendMark::point});
             RenderOptions drawing;
             drawing.views = "six";
             drawing.size = "1500x1000";
@@ -322,7 +332,7 @@ private:
                 draw_apart(soup, begins);
             }
         }
-        if (known) complete(context, report, whole, name, entry, allocator);
+        if (object_template) complete(context, report, joined_group, name, entry, allocator);
     }
 
     /// Moves fragments away from their common centre, so that fracture surfaces are visible.
@@ -334,40 +344,40 @@ private:
                 sum += Eigen::Vector3d(soup.points[i][0], soup.points[i][1], soup.points[i][2]);
             return Eigen::Vector3d(sum / static_cast<double>(std::max<std::size_t>(1, end - begin)));
         };
-        constexpr double apart = 0.4;  // fraction of the distance from the centre
-        const Eigen::Vector3d whole = middle(0, soup.points.size());
+        constexpr double separation = 0.4;  // fraction of the distance from the centre
+        const Eigen::Vector3d centre = middle(0, soup.points.size());
         for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
-            const Eigen::Vector3d way = apart * (middle(begins[k], begins[k + 1]) - whole);
+            const Eigen::Vector3d shift = separation * (middle(begins[k], begins[k + 1]) - centre);
             for (std::size_t i = begins[k]; i < begins[k + 1]; ++i)
-                for (int c = 0; c < 3; ++c) soup.points[i][static_cast<std::size_t>(c)] += way[c];
+                for (int c = 0; c < 3; ++c) soup.points[i][static_cast<std::size_t>(c)] += shift[c];
         }
     }
 
-    void complete(Context& context, Report& report, const Fragment& whole, const std::string& name, JsonValue& entry,
+    void complete(Context& context, Report& report, const Fragment& joined_group, const std::string& name, JsonValue& entry,
                   JsonAllocator& allocator) {
-        if (!known->annotations) fail_input(known.file(), "has no annotations", "pack them");
+        if (!object_template->annotations) fail_input(object_template.file(), "has no annotations", "pack them");
         std::optional<ShapePrior> prior;
         if (class_file) {
             const ShapeClass& learnt = class_file.load<ShapeClass>(read_class);
-            check_topology(learnt, class_file.file(), known->mesh->mesh, known.file());
+            check_topology(learnt, class_file.file(), object_template->mesh->mesh, object_template.file());
             prior = prior_of(learnt.modes);
         }
-        const RelationGraph& graph = class_template(*known).graph;
-        const Reconstruction completed =
-            reconstruct(known->mesh->mesh, *known->annotations, graph, {&whole}, {}, {}, prior ? &*prior : nullptr);
+        const RelationGraph& graph = class_template(*object_template).graph;
+        const Reconstruction completed = reconstruct(object_template->mesh->mesh, *object_template->annotations, graph,
+                                                     {&joined_group}, {}, {}, prior ? &*prior : nullptr);
         for (const auto& notes : completed.notes) context.notes(name, notes);
         add_members(entry, allocator, "completion", to_string(completed.verdict), "observed", completed.observed_share);
         if (!completed.undecided.empty()) add_members(entry, allocator, "because", completed.undecided);
-        report.line(name + " on the template: " + to_string(completed.verdict) +
-                    (completed.undecided.empty() ? "" : ", because " + completed.undecided) + "; observed " +
-                    number(100 * completed.observed_share, 3) + " % of the surface");
+        report.line(fmt::format("{} on the template: {}{}; observed {} % of the surface", name, to_string(completed.verdict),
+                                completed.undecided.empty() ? "" : ", because " + completed.undecided,
+                                number(100 * completed.observed_share, 3)));
         if (completed.points.empty()) return;
         write_completed(output, name + ".completed.ply", completed.object);
         add_members(entry, allocator, "completed", name + ".completed.ply");
     }
 
     FileInput files, class_file;
-    TemplateInput known;
+    TemplateInput object_template;
     FolderOutput output;
     ReassemblyOptions options;
     FragmentFileOptions reading;
@@ -376,7 +386,7 @@ private:
     std::vector<std::string> facets_from;
     std::vector<std::pair<std::string, std::string>> unreadable;  ///< name and problem
     std::map<std::size_t, std::string> left_out;                  ///< reason for each excluded fragment
-    std::size_t asked = 0, recalled = 0;                          ///< numbers of pairs
+    std::size_t pairs_requested = 0, pairs_recalled = 0;          ///< numbers of pairs
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "file_attribute.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -31,7 +33,7 @@ struct FindAxis final : Operation {
                        "give an annotation file and --annotation ID or TAG, or neither for the whole mesh");
         const std::string kind = extension(output.file());
         if (!output.file().empty() && kind != ".json" && kind != ".obj")
-            fail_usage("'" + output.file() + "' is not a file of axes", "end its name in .json or .obj");
+            fail_usage(fmt::format("'{}' is not an axis file", output.file()), "end its name in .json or .obj");
         attribute.check(output, ".json");
         if (attribute && names.size() > 1)
             fail_usage("--annotations-out with several parts", "name the one part whose attribute the axis is");
@@ -52,7 +54,7 @@ struct FindAxis final : Operation {
     }
 
     void write_attribute(const Axis& axis, const std::string& checksum, Report& report) const {
-        if (!axis.found) return report.note("there is no axis, so " + attribute.file() + " is not written");
+        if (!axis.found) return report.note(fmt::format("there is no axis, so {} is not written", attribute.file()));
         AnnotationSet set;
         if (annotations) set = annotations.on(mesh->mesh);
         const int holder =
@@ -60,14 +62,14 @@ struct FindAxis final : Operation {
         attribute.write(std::move(set), holder, output, {"axis", "", checksum}, mesh, report);
     }
 
-    [[nodiscard]] Axis find(const Mesh& whole, std::string& unit) const {
+    [[nodiscard]] Axis find(const Mesh& surface, std::string& unit) const {
         std::vector<Index> faces;
         if (!annotations) {
-            faces.resize(whole.number_of_faces());
+            faces.resize(surface.number_of_faces());
             std::iota(faces.begin(), faces.end(), Index{0});
-            return in_file(mesh.file(), [&] { return find_axis(whole, faces, options); });
+            return in_file(mesh.file(), [&] { return find_axis(surface, faces, options); });
         }
-        const AnnotationSet& set = annotations.on(whole);
+        const AnnotationSet& set = annotations.on(surface);
         unit = set.unit;
         std::vector<Point> rim;
         for (const auto& name : names) {
@@ -75,23 +77,23 @@ struct FindAxis final : Operation {
             if (annotation.type == AnnotationType::region)
                 faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
             else
-                for (const Index v : touched_vertices(whole, annotation)) rim.push_back(whole.point(Vertex(v)));
+                for (const Index v : touched_vertices(surface, annotation)) rim.push_back(surface.point(Vertex(v)));
         }
         if (!rim.empty() && !faces.empty())
             fail_usage("regions and curves have no axis together", "name regions only, or lines and points only");
         if (!rim.empty()) return circle_axis(rim);
         std::sort(faces.begin(), faces.end());
         faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-        return in_file(annotations.file(), [&] { return find_axis(whole, faces, options); });
+        return in_file(annotations.file(), [&] { return find_axis(surface, faces, options); });
     }
 
     static void report_result(Report& report, const Axis& axis, const std::string& unit) {
         auto& allocator = report.allocator();
-        const auto three = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
+        const auto coordinates = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
         report("found", axis.found, axis.found ? "found" : "none");
         if (axis.found) {
-            report("point", three(axis.point))("direction", three(axis.direction));
-            const auto point = [&](const Point& p) { return json_value(three(p), allocator); };
+            report("point", coordinates(axis.point))("direction", coordinates(axis.direction));
+            const auto point = [&](const Point& p) { return json_value(coordinates(p), allocator); };
             report("polylines",
                    json_list(axis.lines, allocator, [&](const auto& line) { return json_list(line, allocator, point); }));
         } else {
@@ -101,11 +103,11 @@ struct FindAxis final : Operation {
         report("quality", axis.quality, number(axis.quality, 4));
         JsonValue figures(rapidjson::kArrayType);
         for (const auto& figure : axis.figures) {
-            const std::string in = figure.unit == "length" ? unit : figure.unit;
+            const std::string shown_unit = figure.unit == "length" ? unit : figure.unit;
             JsonValue entry = json_object(allocator, "name", figure.name, "value", figure.value);
-            if (!in.empty()) add_members(entry, allocator, "unit", in);
+            if (!shown_unit.empty()) add_members(entry, allocator, "unit", shown_unit);
             figures.PushBack(entry, allocator);
-            report.people(figure.name, number(figure.value) + (in.empty() ? "" : " " + in));
+            report.people(figure.name, number(figure.value) + (shown_unit.empty() ? "" : " " + shown_unit));
         }
         report("figures", std::move(figures));
         if (!axis.found) report.line("has no axis: " + axis.reason);

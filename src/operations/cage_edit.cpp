@@ -4,6 +4,8 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/semantic/edit.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -22,20 +24,20 @@ struct CageEdit final : Operation {
         const Mesh& rest = cage->mesh;
         const Json& steps = *edit;
         refuse_annotations(steps);
-        const AnnotationSet none;
-        const Coordinates own{"own", WeightMatrix::Identity(rest.number_of_vertices(), rest.number_of_vertices()), {}};
-        const auto states = follow_edit(steps, {rest, none, &rest, &own}, edit.file());
+        const AnnotationSet no_annotations;
+        const Coordinates identity{"own", WeightMatrix::Identity(rest.number_of_vertices(), rest.number_of_vertices()), {}};
+        const auto states = follow_edit(steps, {rest, no_annotations, &rest, &identity}, edit.file());
         Mesh moved = rest;
-        std::size_t touched = 0;
+        std::size_t moved_count = 0;
         if (!states.empty()) {
             for (const Vertex v : moved.vertices()) moved.point(v) = states.back().handles[v];
-            touched = static_cast<std::size_t>(std::count(states.back().touched.begin(), states.back().touched.end(), true));
+            moved_count = static_cast<std::size_t>(std::count(states.back().touched.begin(), states.back().touched.end(), true));
         }
         const bool intersects = !check_cage(moved, Mesh()).intersections.empty();
-        report("steps", states.size())("moved", touched)("intersects", intersects);
-        report.line(counted(states.size(), "step") + ", " + std::to_string(touched) + " of " +
-                    std::to_string(moved.number_of_vertices()) + " vertices moved");
-        if (intersects) report.note("the moved cage intersects itself, which deforms a mesh all the same, but may fold it");
+        report("steps", states.size())("moved", moved_count)("intersects", intersects);
+        report.line(
+            fmt::format("{}, {} of {} vertices moved", counted(states.size(), "step"), moved_count, moved.number_of_vertices()));
+        if (intersects) report.note("the moved cage intersects itself: it still deforms a mesh, but may fold it");
         output.write(std::move(moved), cage->extras);
     }
 
@@ -46,8 +48,8 @@ struct CageEdit final : Operation {
         for (rapidjson::SizeType i = 0; i < steps->Size(); ++i) {
             const JsonValue* select = (*steps)[i].IsObject() ? find_member((*steps)[i], "select") : nullptr;
             if (select != nullptr && select->IsObject() && find_member(*select, "annotation") != nullptr)
-                fail_input(edit.file() + ", /steps/" + std::to_string(i),
-                           "selects by annotation, and 'cage edit' knows no annotations",
+                fail_input(fmt::format("{}, /steps/{}", edit.file(), i),
+                           "selects by annotation, but 'cage edit' reads no annotations",
                            "select cageVertices, box or all, or use 'ostraka deform'");
         }
     }

@@ -5,6 +5,8 @@
 #include "ostraka/coords/influence.h"
 #include "ostraka/render/colour_scale.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,7 +18,7 @@ namespace {
 /// The triangles of a cage; a note reports if its polygons were triangulated.
 const Mesh& triangles_of_cage(const MeshInput& cage, Report& report) {
     if (!cage->triangle_polygon.empty())
-        report.note("the cage's polygons were cut into " + std::to_string(cage->mesh.number_of_faces()) + " triangles");
+        report.note(fmt::format("the cage's polygons were cut into {} triangles", cage->mesh.number_of_faces()));
     return cage->mesh;
 }
 
@@ -58,31 +60,31 @@ struct CageCoordinates final : Operation {
         const auto row = [&](const char* property, const std::string& value, const char* meaning) {
             report.row("", {property, value, meaning});
         };
-        const auto share = [](double part) { return number(100 * part, 4) + " %"; };
+        const auto percent = [](double part) { return number(100 * part, 4) + " %"; };
         const auto on_cage = [&](const char* property, const std::optional<double>& value, const char* meaning) {
             row(property, value ? number(*value, 3) : "-", value ? meaning : "not defined on the cage");
         };
         row("partition of unity", number(c.partition, 3), "largest |sum of a point's weights - 1|");
         row("linear precision", number(c.linear, 3), "largest error of a point at rest, in diagonals of the cage");
         on_cage("Lagrange property", c.lagrange, "largest deviation at the cage's vertices");
-        on_cage("linear on edges", c.edges, "largest deviation at three points an edge");
-        on_cage("linear on faces", c.on_faces, "largest deviation at three points a face");
-        row("negative weights", share(c.negative), "of all");
-        row("points with one", share(c.negative_rows), "of all");
-        row("least, most", number(c.minimum) + ", " + number(c.maximum), "weight");
+        on_cage("linear on edges", c.edges, "largest deviation at three points per edge");
+        on_cage("linear on faces", c.on_faces, "largest deviation at three points per face");
+        row("negative weights", percent(c.negative), "of all");
+        row("points with one", percent(c.negative_rows), "of all");
+        row("min, max", fmt::format("{}, {}", number(c.minimum), number(c.maximum)), "weight");
         row("negative sum", number(c.negative_sum), "largest of a point");
-        row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
+        row("locality", fmt::format("{} mean, {} max", number(c.carriers_mean, 4), c.carriers_max),
             "weights that carry 95 % at a point");
-        if (coordinates.is_sparse()) row("stored", share(coordinates.stored_share()), "of the weights; the others are zero");
+        if (coordinates.is_sparse()) row("stored", percent(coordinates.stored_share()), "of the weights; the others are zero");
         std::vector<std::string> phases;
         for (const auto& [phase, seconds] : coordinates.seconds) {
             report.run("seconds." + phase, seconds);
-            phases.push_back(phase + " " + number(seconds, 3) + " s");
+            phases.push_back(fmt::format("{} {} s", phase, number(seconds, 3)));
         }
         if (!phases.empty()) row("time", joined(phases), "of each phase");
         report("storedShare", coordinates.stored_share());
         const double factor = amplification(coordinates);
-        row("amplification", number(factor, 3), "a point moves at most so many times as far as the cage");
+        row("amplification", number(factor, 3), "upper bound on how far a point moves, relative to the cage");
         report("amplification", factor)("outside", cage.outside.size())("crossed", cage.crossing.size())(
             "cageIntersections", cage.intersections.size());
         std::vector<std::string> objections = unfit_for_deformation(cage, coordinates);
@@ -122,8 +124,10 @@ struct CageInfluence final : Operation {
             fail_usage(annotations ? "--annotations without an annotation" : "--annotation without a file",
                        "give both --annotations FILE and --annotation ID");
         if (!annotation.empty() && cage_vertex)
-            fail_usage("--cage-vertex with --annotation", "ask for the influence of the one or on the other");
-        if (annotation.empty() && threshold) fail_usage("--threshold without --annotation", "it chooses cage vertices for one");
+            fail_usage("--cage-vertex with --annotation",
+                       "give one of them: influence of a cage vertex, or influence on an annotation");
+        if (annotation.empty() && threshold)
+            fail_usage("--threshold without --annotation", "add --annotation, for which it selects cage vertices");
         if (threshold && !std::isfinite(*threshold)) fail_usage("--threshold is not finite", "give a number");
     }
 
@@ -131,22 +135,22 @@ struct CageInfluence final : Operation {
         const Mesh &subject = mesh->mesh, &around = triangles_of_cage(cage, report);
         const Coordinates& coordinates = weights.of(subject, around);
         const bool on_cage = static_cast<bool>(annotations);
-        std::string what;
+        std::string quantity;
         std::vector<double> values;
         if (cage_vertex) {
             values = influence_of(coordinates, *cage_vertex);
-            what = "weight of cage vertex " + std::to_string(*cage_vertex);
+            quantity = "weight of cage vertex " + std::to_string(*cage_vertex);
         } else if (on_cage) {
             const Annotation& chosen = find_annotation(annotations.on(subject), annotation, annotations.file());
             values = influence_on(coordinates, touched_vertices(subject, chosen), by);
-            what = (by == InfluenceBy::max ? "largest weight on '" : "sum of the weights on '") + chosen.tag + "'";
+            quantity = fmt::format("{} on '{}'", by == InfluenceBy::max ? "largest weight" : "sum of the weights", chosen.tag);
         } else {
             for (const Index count : carriers(coordinates.vertex)) values.push_back(count);
-            what = "cage vertices that carry 95 %";
+            quantity = "cage vertices that carry 95 %";
         }
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        report("what", what)("on", on_cage ? "cage" : "mesh")("min", *low)("max", *high);
-        if (on_cage) list(report, values);
+        report("what", quantity)("on", on_cage ? "cage" : "mesh")("min", *low)("max", *high);
+        if (on_cage) report_strongest(report, values);
         const ColourScale scale = scale_of({&values}, "the weights");
         MeshExtras extras;
         for (const double value : values) {
@@ -159,7 +163,7 @@ struct CageInfluence final : Operation {
     }
 
     /// Cage vertices above the threshold, or the ten strongest.
-    void list(Report& report, const std::vector<double>& values) const {
+    void report_strongest(Report& report, const std::vector<double>& values) const {
         std::vector<Index> order(values.size());
         std::iota(order.begin(), order.end(), Index{0});
         std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] > values[b]; });

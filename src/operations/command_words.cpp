@@ -2,6 +2,8 @@
 
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -13,8 +15,9 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
     // The longest order whose arguments are all given; otherwise the first order, without the missing arguments.
     const std::vector<std::string>* order = &orders.front();
     std::size_t length = 0;
-    for (const auto& one : orders)
-        if (one.size() > length && std::all_of(one.begin(), one.end(), given)) order = &one, length = one.size();
+    for (const auto& candidate : orders)
+        if (candidate.size() > length && std::all_of(candidate.begin(), candidate.end(), given))
+            order = &candidate, length = candidate.size();
     std::vector<std::string> words;
     for (const auto word : words_of(operation)) words.emplace_back(word);
     const auto text = [](const JsonValue& value) {
@@ -26,7 +29,7 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
     };
     for (const std::string& name : *order)
         if (const JsonValue* value = find_member(settings, name); value != nullptr && value->IsArray())
-            for (const auto& one : value->GetArray()) words.push_back(text(one));
+            for (const auto& element : value->GetArray()) words.push_back(text(element));
         else if (value != nullptr) words.push_back(text(*value));
     for (const auto& member : settings.GetObject()) {
         const std::string name = text_of(member.name);
@@ -34,7 +37,7 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
         const auto add = [&](const JsonValue& value) {
             const std::string word = text(value);
             if (word.empty() || (word[0] == '-' && !number_of(word))) {
-                words.push_back("--" + name + "=" + word);
+                words.push_back(fmt::format("--{}={}", name, word));
             } else {
                 words.push_back("--" + name);
                 words.push_back(word);
@@ -45,7 +48,7 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
             if (member.value.GetBool()) words.push_back("--" + name);
             else if (option != nullptr && option->initial == "true") words.push_back("--no-" + name);
         } else if (member.value.IsArray()) {
-            for (const auto& one : member.value.GetArray()) add(one);
+            for (const auto& element : member.value.GetArray()) add(element);
         } else {
             add(member.value);
         }

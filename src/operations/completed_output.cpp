@@ -4,7 +4,7 @@ namespace ostraka {
 
 void write_completed(const FolderOutput& folder, const std::string& name, const CompletedObject& object) {
     MeshExtras extras;
-    WriteOptions how;
+    WriteOptions write_options;
     FaceValues fragment{"fragment", {}}, distance{"distance", {}}, confidence{"confidence", {}};
     for (std::size_t f = 0; f < object.origin.size(); ++f) {
         const Origin origin = object.origin[f];
@@ -16,8 +16,8 @@ void write_completed(const FolderOutput& folder, const std::string& name, const 
         distance.values.push_back(static_cast<float>(object.distance[f]));
         confidence.values.push_back(static_cast<float>(object.confidence[f]));
     }
-    how.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
-    folder.write(name, object.mesh, extras, how);
+    write_options.face_values = {std::move(fragment), std::move(distance), std::move(confidence)};
+    folder.write(name, object.mesh, extras, write_options);
 }
 
 }  // namespace ostraka

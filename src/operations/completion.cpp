@@ -7,96 +7,98 @@ namespace ostraka {
 
 namespace {
 
-/// Adds files and folders whose names begin with `begun`.
-void add_files(std::vector<std::string>& list, const std::string& begun, const std::vector<std::string>& endings) {
-    const std::size_t slash = begun.rfind('/');
-    const std::string folder = slash == std::string::npos ? "" : begun.substr(0, slash + 1);
+/// Adds files and folders whose names begin with `prefix`.
+void add_files(std::vector<std::string>& candidates, const std::string& prefix, const std::vector<std::string>& endings) {
+    const std::size_t slash = prefix.rfind('/');
+    const std::string folder = slash == std::string::npos ? "" : prefix.substr(0, slash + 1);
     std::error_code code;
     for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
          entry.increment(code)) {
         const std::string name = folder + entry->path().filename().string();
-        std::error_code own;
-        if (!name.starts_with(begun)) continue;
-        if (entry->is_directory(own)) list.push_back(name + "/");
+        std::error_code entry_error;
+        if (!name.starts_with(prefix)) continue;
+        if (entry->is_directory(entry_error)) candidates.push_back(name + "/");
         else if (endings.empty() ||
                  std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return name.ends_with(ending); }))
-            list.push_back(name);
+            candidates.push_back(name);
     }
 }
 
 /// Adds the tags of the annotation files among the words.
-void add_tags(std::vector<std::string>& list, const std::vector<std::string>& words) {
+void add_tags(std::vector<std::string>& candidates, const std::vector<std::string>& words) {
     for (const std::string& word : words) {
         if (!word.ends_with(".ant.json")) continue;
         try {
             const Json document = read_json(word);
             const JsonValue* annotations = document.IsObject() ? find_member(document, "annotations") : nullptr;
             if (annotations == nullptr || !annotations->IsArray()) continue;
-            for (const auto& one : annotations->GetArray())
-                if (const JsonValue* tag = one.IsObject() ? find_member(one, "tag") : nullptr; tag != nullptr && tag->IsString())
-                    list.emplace_back(tag->GetString());
+            for (const auto& annotation : annotations->GetArray())
+                if (const JsonValue* tag = annotation.IsObject() ? find_member(annotation, "tag") : nullptr;
+                    tag != nullptr && tag->IsString())
+                    candidates.emplace_back(tag->GetString());
         } catch (const Error&) {  // unreadable files give no tags
             continue;
         }
     }
 }
 
-void add_flags(std::vector<std::string>& list, const Call& call) {
+void add_flags(std::vector<std::string>& candidates, const Call& call) {
     for (const Slot* slot : call.parameters().slots())
-        if (!slot->is_positional) list.push_back("--" + slot->name);
+        if (!slot->is_positional) candidates.push_back("--" + slot->name);
     for (const Option& option : call.parameters().options)
         if (!option.is_positional)
-            list.push_back((option.type() == OptionType::boolean && option.initial == "true" ? "--no-" : "--") + option.name);
-    for (const CommonFlag& common : common_flags) list.push_back(std::string("--") + common.name);
+            candidates.push_back((option.type() == OptionType::boolean && option.initial == "true" ? "--no-" : "--") +
+                                 option.name);
+    for (const CommonFlag& common : common_flags) candidates.push_back(std::string("--") + common.name);
 }
 
 }  // namespace
 
 std::vector<std::string> completions(const std::vector<std::string>& words) {
     if (words.empty()) return {};
-    std::vector<std::string> list;
-    const std::string& begun = words.back();
-    if (words.size() == 1 && std::string("workbench").starts_with(begun)) list.emplace_back("workbench");
-    const OperationEntry* named = nullptr;
+    std::vector<std::string> candidates;
+    const std::string& prefix = words.back();
+    if (words.size() == 1 && std::string("workbench").starts_with(prefix)) candidates.emplace_back("workbench");
+    const OperationEntry* operation = nullptr;
     std::size_t length = 0;
     for (const OperationEntry& entry : operations()) {
         std::istringstream stream(entry.name);
-        std::size_t same = 0;
+        std::size_t matched = 0;
         std::string word;
-        bool agrees = true;
+        bool matches = true;
         while (stream >> word) {
-            if (same + 1 < words.size() && words[same] == word) {
-                ++same;
+            if (matched + 1 < words.size() && words[matched] == word) {
+                ++matched;
                 continue;
             }
-            agrees = false;
-            if (same + 1 == words.size() && word.starts_with(begun)) list.push_back(word);
+            matches = false;
+            if (matched + 1 == words.size() && word.starts_with(prefix)) candidates.push_back(word);
             break;
         }
-        if (agrees && same > length) named = &entry, length = same;
+        if (matches && matched > length) operation = &entry, length = matched;
     }
-    if (named != nullptr) {
-        const Call call(*named);
-        list.clear();
+    if (operation != nullptr) {
+        const Call call(*operation);
+        candidates.clear();
         const std::string& before = words[words.size() - 2];
         const auto flag_of = [](const std::string& word) { return word.starts_with("--") ? word.substr(2) : std::string(); };
         const std::string flag = flag_of(before);
         const Option* option = flag.empty() ? nullptr : call.parameters().options.find(flag);
         const Slot* slot = flag.empty() ? nullptr : call.parameters().slot(flag);
         const std::vector<std::string> named_values = option == nullptr ? std::vector<std::string>() : option->names();
-        const bool takes_dash =
-            std::any_of(named_values.begin(), named_values.end(), [&](const std::string& one) { return one.starts_with(begun); });
-        if (begun.starts_with("-") && !takes_dash) {
-            add_flags(list, call);
+        const bool takes_dash = std::any_of(named_values.begin(), named_values.end(),
+                                            [&](const std::string& value) { return value.starts_with(prefix); });
+        if (prefix.starts_with("-") && !takes_dash) {
+            add_flags(candidates, call);
         } else if (flag == "show") {
-            list = {"table", "json", "csv", "markdown"};
+            candidates = {"table", "json", "csv", "markdown"};
         } else if (flag == "threads") {
-            list.clear();
+            candidates.clear();
         } else if (slot != nullptr) {
-            add_files(list, begun, endings_of(slot->kind));
+            add_files(candidates, prefix, endings_of(slot->kind));
         } else if (option != nullptr && option->type() != OptionType::boolean) {
-            if (!named_values.empty()) list = named_values;
-            else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(list, words);
+            if (!named_values.empty()) candidates = named_values;
+            else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(candidates, words);
         } else {
             // The next positional argument.
             std::size_t place = 0;
@@ -109,14 +111,16 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             }
             const auto& order = call.parameters().orders.front();
             const Slot* next = order.empty() ? nullptr : call.parameters().slot(order[std::min(place, order.size() - 1)]);
-            if (next != nullptr) add_files(list, begun, endings_of(next->kind));
+            if (next != nullptr) add_files(candidates, prefix, endings_of(next->kind));
         }
     }
     // Words with control characters cannot be typed.
-    std::erase_if(list, [&](const std::string& one) { return !one.starts_with(begun) || printable(one) != one; });
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
+    std::erase_if(candidates, [&](const std::string& candidate) {
+        return !candidate.starts_with(prefix) || printable(candidate) != candidate;
+    });
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    return candidates;
 }
 
 std::string completion_script(Shell shell) {

@@ -3,6 +3,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <span>
 
@@ -68,10 +70,12 @@ JsonValue size_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
 JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
     JsonValue result = json_object(allocator, "sound", d.defects().empty(), "defects", d.defects());
     for (const auto& [name, count] : diagnosis_counts) add_members(result, allocator, name, d.*count);
-    const auto pair = [&](const auto& of) { return json_value(std::array{of.first, of.second}, allocator); };
+    const auto pair = [&](const auto& crossing) { return json_value(std::array{crossing.first, crossing.second}, allocator); };
     const auto component = [&](const ComponentDiagnosis& part) { return component_json(part, allocator); };
-    const auto loop = [&](const auto& one) { return json_object(allocator, "edges", one.edges, "length", one.length); };
-    const auto first = [](const auto& list) { return std::span(list).first(std::min(max_listed, list.size())); };
+    const auto loop = [&](const auto& border_loop) {
+        return json_object(allocator, "edges", border_loop.edges, "length", border_loop.length);
+    };
+    const auto first = [](const auto& items) { return std::span(items).first(std::min(max_listed, items.size())); };
     add_members(result, allocator, "closed", d.closed(), "manifold", d.manifold(), "oriented", d.oriented(), "euler", d.euler(),
                 "self_intersections", d.self_intersections_checked ? std::optional(d.self_intersections) : std::nullopt,
                 "self_intersections_complete", d.self_intersections_complete, "self_intersection_examples",
@@ -84,15 +88,17 @@ JsonValue to_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
 std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d) {
     std::vector<std::pair<std::string, std::string>> rows;
     const auto add = [&](const char* name, const ReportText& value) { rows.emplace_back(name, value.text); };
-    const auto triple = [](const std::array<double, 3>& v) { return number(v[0]) + " x " + number(v[1]) + " x " + number(v[2]); };
-    const auto first = [](const auto& list, std::size_t maximum, const auto& text_of) {
+    const auto triple = [](const std::array<double, 3>& v) {
+        return fmt::format("{} x {} x {}", number(v[0]), number(v[1]), number(v[2]));
+    };
+    const auto first = [](const auto& items, std::size_t maximum, const auto& text_of) {
         std::vector<std::string> texts;
-        for (std::size_t i = 0; i < std::min(maximum, list.size()); ++i) texts.push_back(text_of(list[i]));
+        for (std::size_t i = 0; i < std::min(maximum, items.size()); ++i) texts.push_back(text_of(items[i]));
         return joined(texts);
     };
     const auto genus = [](const auto& part) { return part.genus() < 0 ? "-" : std::to_string(part.genus()); };
-    const auto loop = [](const auto& one) {
-        return "length " + number(one.length) + " in " + std::to_string(one.edges) + " edges";
+    const auto loop = [](const auto& border_loop) {
+        return fmt::format("length {} in {} edges", number(border_loop.length), border_loop.edges);
     };
     add("vertices", d.vertices);
     add("edges", d.edges);
@@ -118,14 +124,15 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
                                   : (d.self_intersections_complete ? "" : "at least ") + std::to_string(d.self_intersections));
     add("area", number(d.area, 8));
     add("volume", number(d.volume, 8) + (d.closed() && d.oriented() ? "" : " (a signed sum: not closed and oriented)"));
-    add("edge length", number(d.shortest_edge) + " to " + number(d.longest_edge) + ", mean " + number(d.mean_edge));
+    add("edge length", fmt::format("{} to {}, mean {}", number(d.shortest_edge), number(d.longest_edge), number(d.mean_edge)));
     if (d.edges > 0) {
-        add("box", triple({d.box.xmax() - d.box.xmin(), d.box.ymax() - d.box.ymin(), d.box.zmax() - d.box.zmin()}) + " from (" +
-                       number(d.box.xmin()) + ", " + number(d.box.ymin()) + ", " + number(d.box.zmin()) + ")");
+        add("box", fmt::format("{} from ({}, {}, {})",
+                               triple({d.box.xmax() - d.box.xmin(), d.box.ymax() - d.box.ymin(), d.box.zmax() - d.box.zmin()}),
+                               number(d.box.xmin()), number(d.box.ymin()), number(d.box.zmin())));
         add("oriented box", triple(d.oriented_box.sides));
     }
     add("diagonal", number(d.diagonal));
-    add("unit, a guess", d.unit.unit + " (" + d.unit.reason + ")");
+    add("unit, a guess", fmt::format("{} ({})", d.unit.unit, d.unit.reason));
     const std::string verdict = joined(d.defects(), "; ");
     add("verdict", verdict.empty() ? (d.self_intersections_checked ? "closed, oriented, manifold, no self-intersection"
                                                                    : "closed, oriented, manifold; self-intersections not checked")
@@ -135,7 +142,7 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
 
 void declare_diagnosis(ReportLayout& layout) {
     layout.values(boolean("sound"), texts("defects"));
-    for (const auto& one : diagnosis_counts) layout.values(integer(one.name));
+    for (const auto& diagnosis_count : diagnosis_counts) layout.values(integer(diagnosis_count.name));
     layout.values(integer("euler"), integer("component_count"), integer("border_loop_count"), boolean("closed"),
                   boolean("manifold"), boolean("oriented"), boolean("self_intersections_complete"), any("self_intersections"),
                   any("self_intersection_examples"), any("components"), any("border_loops"), any("size"));

@@ -9,6 +9,6 @@ namespace ostraka {
 /// Declares a table of differences.
 void declare_differences(ReportLayout& layout, const std::string& table);
 /// Fills the table; without differences, people see the text `none`.
-void add_differences(Report& report, const std::string& table, const std::vector<Difference>& list, const std::string& none);
+void add_differences(Report& report, const std::string& table, const std::vector<Difference>& changes, const std::string& none);
 
 }  // namespace ostraka

@@ -3,6 +3,8 @@
 #include "ostraka/core/ids.h"
 #include "ostraka/core/safe_path.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -16,7 +18,7 @@ Path folder_of(const std::string& file) { return resolved(std::filesystem::absol
 void FileAttribute::describe(Parameters& p, const std::string& name) {
     p.output_option("annotations-out", Kind::annotations, output_,
                     "annotations to write (.ant.json): an attribute names the file, with its checksum");
-    p.options("name", name_, "name of that attribute; \"" + name + "\" if left out");
+    p.options("name", name_, fmt::format("name of that attribute; \"{}\" if left out", name));
     p.report.values(integer("annotation"), text("attribute"));
 }
 
@@ -26,37 +28,39 @@ void FileAttribute::check(const Slot& file, const std::string& ending) const {
     if (!file) fail_usage("--annotations-out without --output", "name the file that the attribute refers to");
     if (file.sources.front().file.empty() || output_.sources.front().file.empty()) return;  // in memory
     if (extension(file.file()) != ending)
-        fail_usage("'" + printable(file.file(), 60) + "' cannot be the value of an attribute", "end its name in " + ending);
+        fail_usage(fmt::format("'{}' cannot be the value of an attribute", printable(file.file(), 60)),
+                   "end its name in " + ending);
     if (!is_inside(Path(file.file()), folder_of(output_.file())))
-        fail_usage("'" + printable(file.file(), 60) + "' lies outside of the folder of '" + printable(output_.file(), 60) + "'",
-                   "write both to one folder: annotations name files relative to themselves");
+        fail_usage(
+            fmt::format("'{}' lies outside of the folder of '{}'", printable(file.file(), 60), printable(output_.file(), 60)),
+            "write both to one folder: annotations name files relative to themselves");
 }
 
 void FileAttribute::write(AnnotationSet set, int holder, const Slot& file, const Value& value, const MeshInput& mesh,
                           Report& report) const {
     Annotation& annotation = *set.find(holder);
-    const std::string called = name_.empty() ? value.name : name_;
+    const std::string attribute_name = name_.empty() ? value.name : name_;
     auto& attributes = annotation.attributes;
     auto place = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& attribute) {
-        return attribute.name == called && attribute.type == AttributeType::descriptor;
+        return attribute.name == attribute_name && attribute.type == AttributeType::descriptor;
     });
     if (place == attributes.end()) {
         Attribute attribute;
         attribute.id = next_free_id(attributes);
-        attribute.name = called;
+        attribute.name = attribute_name;
         attribute.type = AttributeType::descriptor;
         place = attributes.insert(attributes.end(), std::move(attribute));
     }
     place->descriptor = {};
     place->descriptor.unit = value.unit;
     place->descriptor.sha256 = value.sha256;
-    const Source& written = file.sources.front();
-    place->descriptor.file = written.file.empty() || output_.sources.front().file.empty()
+    const Source& source = file.sources.front();
+    place->descriptor.file = source.file.empty() || output_.sources.front().file.empty()
                                  ? Path(file.file()).filename().string()
-                                 : resolved(written.file).lexically_relative(folder_of(output_.file())).string();
-    report("annotation", annotation.id)("attribute", called);
-    report.line(name_of(annotation) + " has the attribute '" + printable(called, 60) + "' in '" +
-                printable(place->descriptor.file, 60) + "'");
+                                 : resolved(source.file).lexically_relative(folder_of(output_.file())).string();
+    report("annotation", annotation.id)("attribute", attribute_name);
+    report.line(fmt::format("{} has the attribute '{}' in '{}'", name_of(annotation), printable(attribute_name, 60),
+                            printable(place->descriptor.file, 60)));
     output_.write(std::move(set), mesh->mesh, mesh.file());
 }
 

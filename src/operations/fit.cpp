@@ -9,6 +9,8 @@
 #include "ostraka/shape_classes/fragment_thresholds.h"
 #include "ostraka/shape_classes/member_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -19,7 +21,7 @@ namespace {
 
 struct Fit final : Operation {
     void describe(Parameters& p) override {
-        p.input("template", Kind::template_package, known, "template of the object's class (.template.json)");
+        p.input("template", Kind::template_package, object_template, "template of the object's class (.template.json)");
         p.input(
              "fragments", Kind::mesh, files,
              "a mesh file, or points without faces, for each fragment; NAME.ant.json beside it are its annotations: points with "
@@ -27,14 +29,14 @@ struct Fit final : Operation {
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
-                 "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing")
+                 "folder for completed.ply, completed.ant.json and fit.assembly.json; created if missing")
             .flag();
         p.input_option("assembly", Kind::assembly, assembly,
-                       "an assembly: its matches of annotations with \"stated\": true hold");
+                       "an assembly: its matches of annotations with \"stated\": true are used as given");
         p.input_option(
             "class", Kind::shape_class, class_file,
-            "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
-            "members that look so where one does; thresholds that are not told are those of its members");
+            "a class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is "
+            "completed from its members that resemble the fragments; thresholds that are not specified are those of its members");
         p.options("fresh", fresh, "search poses again, whatever an earlier fit in the folder found").unrecorded();
         p.options("placed", placed, "also write each fragment in its pose: NAME.placed.ply");
         vocabulary.describe(p, as_template_words);
@@ -48,40 +50,41 @@ struct Fit final : Operation {
     }
 
     void check() const override {
-        std::set<std::string> taken;
+        std::set<std::string> file_names;
         for (std::size_t k = 0; k < files.size(); ++k)
-            if (const std::string name = Path(files.file(k)).stem().string(); !taken.insert(name).second)
-                fail_usage("two fragments are called '" + name + "'", "rename one of the files");
+            if (const std::string name = Path(files.file(k)).stem().string(); !file_names.insert(name).second)
+                fail_usage(fmt::format("two fragments are called '{}'", name), "rename one of the files");
         if (class_file && options.fit.space != NonRigidOptions::Space::mesh)
-            fail_usage("--class changes the template's shape, and its cage does not follow", "leave --class or --space out");
+            fail_usage("--class changes the template's shape, and its cage does not follow", "leave out --class or --space");
     }
 
     void run(Context& context, Report& report) override {
-        check_usable(*known, known.file());
-        if (!known->annotations) fail_input(known.file(), "has no annotations", "pack them: what is common is found by them");
-        const Mesh& mesh = known->mesh->mesh;
-        names.template_file = known.file_name();
+        check_usable(*object_template, object_template.file());
+        if (!object_template->annotations)
+            fail_input(object_template.file(), "has no annotations", "pack them: they identify corresponding parts");
+        const Mesh& mesh = object_template->mesh->mesh;
+        names.template_file = object_template.file_name();
         std::vector<std::vector<StatedMatch>> stated = read_fragments(context, report);
-        const RelationGraph& graph = class_template(*known).graph;
+        const RelationGraph& graph = class_template(*object_template).graph;
         std::optional<ShapePrior> prior;
         const ShapeClass* learnt = nullptr;
         if (class_file) {
             learnt = &class_file.load<ShapeClass>(read_class);
-            check_topology(*learnt, class_file.file(), mesh, known.file());
+            check_topology(*learnt, class_file.file(), mesh, object_template.file());
             prior = prior_of(learnt->modes);
             if (learnt->modes.variances.empty())
-                report.note(class_file.file() + " has no modes (one member, or all of one shape): its mean shape alone counts");
+                report.note(class_file.file() + " has no modes (one member, or all of one shape): only its mean shape is used");
         }
-        used = take_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
+        used_thresholds = take_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
         std::optional<TemplateCage> cage;
         if (options.fit.space != NonRigidOptions::Space::mesh) {
-            context.record([&] { cage = in_file(known.file(), [&] { return cage_of(*known); }); });
+            context.record([&] { cage = in_file(object_template.file(), [&] { return cage_of(*object_template); }); });
             if (!cage) {
                 report.note("the template has no cage: one of 200 vertices was made around it");
                 cage = made_cage(mesh);
             }
         }
-        Reconstructor reconstructor(mesh, *known->annotations, graph, options, prior ? &*prior : nullptr,
+        Reconstructor reconstructor(mesh, *object_template->annotations, graph, options, prior ? &*prior : nullptr,
                                     cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
         // Results must not overwrite fragments; checked before the work starts.
@@ -89,15 +92,15 @@ struct Fit final : Operation {
             static_cast<void>(output.in(name));
         for (const std::string& name : names.fragments) static_cast<void>(output.in(name + ".placed.ply"));
         PoseSearches& searches = reconstructor.searches();
-        if (!fresh) remember(searches, report);
+        if (!fresh) reuse_searches(searches, report);
         const Reconstruction result = reconstructor.run();
         if (searches.reused() > 0)
-            report.note(std::to_string(searches.reused()) + " of " + std::to_string(searches.reused() + searches.made()) +
-                        " searches of poses are those of an earlier fit in " + output.file() +
-                        ": template, fragment and options are the same");
+            report.note(fmt::format(
+                "{} of {} pose searches are reused from an earlier fit in {}: template, fragment and options are the same",
+                searches.reused(), searches.reused() + searches.made(), output.file()));
         if (const double scale = result.placement.scale;
             result.placement.any() && (scale > options.placement.unit_ratio || scale * options.placement.unit_ratio < 1))
-            report.note("the template is scaled by " + number(scale, 4) + ": are all files in one unit?");
+            report.note(fmt::format("the template is scaled by {}: are all files in one unit?", number(scale, 4)));
         write(context, report, result, searches);
         report_result(report, result);
         for (const auto& [phase, time] : result.seconds) report.run("seconds." + phase, time);
@@ -109,58 +112,64 @@ struct Fit final : Operation {
         std::vector<std::vector<StatedMatch>> stated;
         if (assembly) validate(*assembly, "assembly", assembly.file());
         for (std::size_t k = 0; k < files.size(); ++k) {
-            const FragmentFile& one = files.load<FragmentFile>([&](const Path& file) { return read_fragment(file, reading); }, k,
-                                                               options_text(reading));
-            context.notes(files.file(k), one.notes);
-            fragments.push_back(&one.fragment);
+            const FragmentFile& fragment_file = files.load<FragmentFile>(
+                [&](const Path& file) { return read_fragment(file, reading); }, k, options_text(reading));
+            context.notes(files.file(k), fragment_file.notes);
+            fragments.push_back(&fragment_file.fragment);
             if (vocabulary) {
-                renamed.push_back(one.fragment);
-                vocabulary.words().rename_like(renamed.back().annotations, *known->annotations);
+                renamed.push_back(fragment_file.fragment);
+                vocabulary.words().rename_like(renamed.back().annotations, *object_template->annotations);
                 fragments.back() = &renamed.back();
             }
-            names.fragments.push_back(one.fragment.name);
-            stated.push_back(assembly ? stated_matches(*assembly, *fragments.back(), *known->annotations, assembly.file())
-                                      : std::vector<StatedMatch>());
-            if (one.fragment.facets.empty()) continue;
+            names.fragments.push_back(fragment_file.fragment.name);
+            stated.push_back(assembly
+                                 ? stated_matches(*assembly, *fragments.back(), *object_template->annotations, assembly.file())
+                                 : std::vector<StatedMatch>());
+            if (fragment_file.fragment.facets.empty()) continue;
             std::array<double, 3> area{};
-            for (const Face face : one.fragment.mesh.faces())
-                area.at(static_cast<std::size_t>(one.fragment.facets[face])) += face_area(one.fragment.mesh, face);
-            const auto share = [&](std::size_t i) { return number(100 * area.at(i) / (area[0] + area[1] + area[2]), 3) + " %"; };
-            report.line(printable(one.fragment.name) + ": facets by " + one.facets_from + ": outer " + share(0) + ", inner " +
-                        share(1) + ", fracture " + share(2));
+            for (const Face face : fragment_file.fragment.mesh.faces())
+                area.at(static_cast<std::size_t>(fragment_file.fragment.facets[face])) +=
+                    face_area(fragment_file.fragment.mesh, face);
+            const auto percent = [&](std::size_t i) {
+                return number(100 * area.at(i) / (area[0] + area[1] + area[2]), 3) + " %";
+            };
+            report.line(fmt::format("{}: facets by {}: outer {}, inner {}, fracture {}", printable(fragment_file.fragment.name),
+                                    fragment_file.facets_from, percent(0), percent(1), percent(2)));
         }
         if (assembly)
             for (const std::string& name : unused_statements(*assembly, names.fragments))
-                report.note(assembly.file() + " states matches of '" + name + "', which is no fragment here");
+                report.note(fmt::format("{} states matches of '{}', which is not one of the fragments", assembly.file(), name));
         for (std::size_t k = 0; k < files.size(); ++k)
-            if (const std::string& ours = known->annotations->unit, &theirs = fragments[k]->annotations.unit;
-                !ours.empty() && !theirs.empty() && ours != theirs)
-                fail_input(files.file(k), "is in " + printable(theirs) + ", and the template in " + printable(ours),
-                           "bring all files to one unit");
+            if (const std::string& template_unit = object_template->annotations->unit,
+                &fragment_unit = fragments[k]->annotations.unit;
+                !template_unit.empty() && !fragment_unit.empty() && template_unit != fragment_unit)
+                fail_input(files.file(k),
+                           fmt::format("is in {}, and the template in {}", printable(fragment_unit), printable(template_unit)),
+                           "convert all files to one unit");
         return stated;
     }
 
     static constexpr const char* searches_file = "fit.searches.json";
 
     /// Adds pose searches stored by an earlier fit in the folder. The key of each decides whether it is used.
-    void remember(PoseSearches& searches, Report& report) const {
+    void reuse_searches(PoseSearches& searches, Report& report) const {
         const Path file = output.in(searches_file);
         if (!file_exists(file)) return;
         try {
             const std::size_t damaged = searches.add(read_json(file), file.string());
             if (damaged > 0)
-                report.note(std::to_string(damaged) + " searches in " + file.string() +
-                            " were changed since they were made: they are made anew");
+                report.note(fmt::format("{} searches in {} were changed since they were stored: they are computed again", damaged,
+                                        file.string()));
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled) throw;
-            report.note(file.string() + " is not used, and written anew: " + error.problem());
+            report.note(fmt::format("{} is not used, and is written again: {}", file.string(), error.problem()));
         }
     }
 
     void write(Context& context, Report& report, const Reconstruction& result, const PoseSearches& searches) const {
         Json document;
         JsonValue content = assembly_to_json(result, names, document.GetAllocator());
-        add_members(content, document.GetAllocator(), "thresholds", thresholds_to_json(used, document.GetAllocator()));
+        add_members(content, document.GetAllocator(), "thresholds", thresholds_to_json(used_thresholds, document.GetAllocator()));
         report.values(content);
         output.write("fit.assembly.json", content);
         if (!searches.empty()) output.write(searches_file, searches.to_json(document.GetAllocator()));
@@ -168,80 +177,84 @@ struct Fit final : Operation {
             write_completed(output, "completed.ply", result.object);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
-                report.note(names.fragments[static_cast<std::size_t>(note.fragment)] + ": " + note.text +
-                            "; the template's triangles show what was seen of it");
-            AnnotationSet carried = carry_annotations(known->mesh->mesh, *known->annotations, result);
-            report.notes(refresh_measures(result.object.mesh, carried).notes);
-            output.write("completed.ant.json", carried, result.object.mesh, "completed.ply");
+                report.note(fmt::format("{}: {}; the template's triangles show what was observed of it",
+                                        names.fragments[static_cast<std::size_t>(note.fragment)], note.text));
+            AnnotationSet carried_annotations =
+                carry_annotations(object_template->mesh->mesh, *object_template->annotations, result);
+            report.notes(refresh_measures(result.object.mesh, carried_annotations).notes);
+            output.write("completed.ant.json", carried_annotations, result.object.mesh, "completed.ply");
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
-            if (const FragmentPlacement& one = result.placement.fragments[k]; one.problem.empty())
-                output.write(names.fragments[k] + ".placed.ply", moved(fragments[k]->mesh, one.pose));
+            if (const FragmentPlacement& placement = result.placement.fragments[k]; placement.problem.empty())
+                output.write(names.fragments[k] + ".placed.ply", moved(fragments[k]->mesh, placement.pose));
     }
 
     void report_result(Report& report, const Reconstruction& result) const {
         for (std::size_t k = 0; k < names.fragments.size(); ++k) report_fragment(report, result, k);
         if (result.rotations) report_rotations(report, *result.rotations);
-        report.line("scale of the template " + number(result.placement.scale, 4) + "; observed " +
-                    number(100 * result.observed_share, 3) + " % of the surface");
+        report.line(fmt::format("scale of the template {}; observed {} % of the surface", number(result.placement.scale, 4),
+                                number(100 * result.observed_share, 3)));
         if (result.crossings > 0)
-            report.line(std::to_string(result.crossings) +
-                        " pairs of faces cross each other that did not in the template: look at the picture; a larger --detail "
-                        "may help");
+            report.line(fmt::format(
+                "{} pairs of faces intersect that did not in the template: look at the picture; a larger --detail may help",
+                result.crossings));
         for (const ConstraintReport& constraint : result.constraints) report_constraint(report, result, constraint);
-        for (const UsedThreshold& one : used)
-            if (one.from == "class")
-                report.line("--" + one.option + " " + number(one.value, 3) + " as " + std::to_string(one.members) +
-                            " members of the class have it");
+        for (const UsedThreshold& threshold : used_thresholds)
+            if (threshold.from == "class")
+                report.line(fmt::format("--{} {} from {} members of the class", threshold.option, number(threshold.value, 3),
+                                        threshold.members));
         for (const Objection& objection : result.objections)
-            report.line((objection.fragment >= 0
-                             ? "against " + printable(names.fragments[static_cast<std::size_t>(objection.fragment)]) + ": "
-                             : "constraint " + std::to_string(objection.constraint) + ": ") +
-                        printable(objection.text));
+            report.line(objection.fragment >= 0
+                            ? fmt::format("against {}: {}",
+                                          printable(names.fragments[static_cast<std::size_t>(objection.fragment)]),
+                                          printable(objection.text))
+                            : fmt::format("constraint {}: {}", objection.constraint, printable(objection.text)));
         report.line(to_string(result.verdict) + (result.undecided.empty() ? "" : ": cannot decide, because " + result.undecided));
     }
 
     void report_fragment(Report& report, const Reconstruction& result, std::size_t k) const {
-        const FragmentPlacement& one = result.placement.fragments[k];
+        const FragmentPlacement& placement = result.placement.fragments[k];
         const PoseSearchResult* search =
             k < result.searched.size() && result.searched[k].has_value() ? &*result.searched[k] : nullptr;
         std::size_t count = 0;
-        std::string wrong;
-        for (const LandmarkResidual& landmark : one.landmarks) {
+        std::string wrong_landmarks;
+        for (const LandmarkResidual& landmark : placement.landmarks) {
             count += landmark.used ? 1 : 0;
-            if (!landmark.used && one.problem.empty() && search == nullptr) wrong += (wrong.empty() ? "" : ", ") + landmark.name;
+            if (!landmark.used && placement.problem.empty() && search == nullptr)
+                wrong_landmarks += (wrong_landmarks.empty() ? "" : ", ") + landmark.name;
         }
-        report.row(
-            "fragments",
-            {names.fragments[k],
-             !one.problem.empty() ? "left out"
-             : search == nullptr
-                 ? "placed"
-                 : "found, confidence " + number(search->confidence, 3) +
-                       (search->slippable.kind == SlippableKind::none ? "" : "; open: " + search->slippable.text()),
-             std::to_string(count) + " of " + std::to_string(one.landmarks.size()),
-             one.problem.empty() ? number(one.residual, 3) : "-", one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
+        report.row("fragments",
+                   {names.fragments[k],
+                    !placement.problem.empty() ? "left out"
+                    : search == nullptr
+                        ? "placed"
+                        : fmt::format("found, confidence {}{}", number(search->confidence, 3),
+                                      search->slippable.kind == SlippableKind::none ? "" : "; open: " + search->slippable.text()),
+                    fmt::format("{} of {}", count, placement.landmarks.size()),
+                    placement.problem.empty() ? number(placement.residual, 3) : "-",
+                    placement.own_scale > 0 ? number(placement.own_scale, 4) : "-", wrong_landmarks});
     }
 
     /// Reports the joints that decided the rotations, and the fragments without a joint.
     void report_rotations(Report& report, const RotationMatch& rotations) const {
         for (const BreakJoint& joint : rotations.joints)
-            report.row("joints", {names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
-                                      names.fragments[static_cast<std::size_t>(joint.second)],
+            report.row("joints", {fmt::format("{} - {}", names.fragments[static_cast<std::size_t>(joint.first)],
+                                              names.fragments[static_cast<std::size_t>(joint.second)]),
                                   number(joint.rotation, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),
                                   number(joint.residual, 3), joint.carries ? number(joint.confidence, 2) : "-",
                                   !joint.carries  ? "closes a cycle"
                                   : joint.decided ? "decided"
                                                   : "not decided"});
         for (std::size_t k = 0; k < names.fragments.size() && k < rotations.notes.size(); ++k)
-            if (!rotations.notes[k].empty()) report.line(printable(names.fragments[k]) + ": " + printable(rotations.notes[k]));
+            if (!rotations.notes[k].empty())
+                report.line(fmt::format("{}: {}", printable(names.fragments[k]), printable(rotations.notes[k])));
     }
 
     static void report_constraint(Report& report, const Reconstruction& result, const ConstraintReport& constraint) {
         std::vector<std::string> words = deviation_texts(constraint);
         if (!constraint.text.empty()) words.insert(words.begin(), constraint.text);
-        const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& one) {
-            return one.kind == ObjectionKind::constraint && one.constraint == constraint.id;
+        const bool objected = std::any_of(result.objections.begin(), result.objections.end(), [&](const Objection& objection) {
+            return objection.kind == ObjectionKind::constraint && objection.constraint == constraint.id;
         });
         report.row("constraints", {constraint.id, constraint.type,
                                    !constraint.used                                    ? "left out"
@@ -250,7 +263,7 @@ struct Fit final : Operation {
                                    joined(words, "; ")});
     }
 
-    TemplateInput known;
+    TemplateInput object_template;
     FileInput files, class_file;
     JsonInput assembly;
     FolderOutput output;
@@ -263,7 +276,7 @@ struct Fit final : Operation {
     std::deque<Fragment> renamed;  ///< fragments with the tags of the template
     std::vector<const Fragment*> fragments;
     AssemblyNames names;
-    std::vector<UsedThreshold> used;
+    std::vector<UsedThreshold> used_thresholds;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include "ostraka/measure/solid.h"
 #include "ostraka/slicing/clay.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace ostraka {
@@ -34,14 +36,14 @@ struct MeasureClay final : Operation {
         }
         const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
         const ClayVolume clay = in_file(mesh.file(), [&] { return clay_volume(mesh->mesh, frame, options); });
-        const double own = closed_volume(mesh->mesh);
+        const double mesh_volume = closed_volume(mesh->mesh);
         for (const Figure& figure : figures_of(clay)) {
-            const bool known = !std::isnan(figure.value);
-            report(figure.name, known ? JsonValue(figure.value) : JsonValue());
-            report.people(figure.name, known ? number(figure.value) + unit_text(figure.unit) : "unknown");
+            const bool is_known = !std::isnan(figure.value);
+            report(figure.name, is_known ? JsonValue(figure.value) : JsonValue());
+            report.people(figure.name, is_known ? number(figure.value) + unit_text(figure.unit) : "unknown");
         }
-        report("unit", length_unit)("volume of the mesh", own);
-        report.line(sentence(clay, own));
+        report("unit", length_unit)("volume of the mesh", mesh_volume);
+        report.line(sentence(clay, mesh_volume));
         add_notes(report, clay);
         if (std::isnan(clay.maximum)) report.answer_no();
     }
@@ -66,40 +68,44 @@ struct MeasureClay final : Operation {
                 {"slices read against their orientation", double(clay.reversed ? clay.slices : clay.turned), ""}};
     }
 
-    [[nodiscard]] std::string unit_text(const std::string& of) const {
-        return of.empty() || length_unit.empty() ? "" : " " + length_unit + of.substr(std::string("length").size());
+    [[nodiscard]] std::string unit_text(const std::string& measured_unit) const {
+        return measured_unit.empty() || length_unit.empty()
+                   ? ""
+                   : " " + length_unit + measured_unit.substr(std::string("length").size());
     }
 
     /// "12345 mm^3 (12.3 cm^3)": large volumes also in a larger unit.
     [[nodiscard]] std::string volume(double value) const {
         std::string text = number(value) + unit_text("length^3");
         const double cubic_cm = length_unit == "mm" ? value / 1000 : length_unit == "cm" ? value : 0;
-        if (cubic_cm >= 1000) text += " (" + number(cubic_cm / 1000, 3) + " litres)";
-        else if (length_unit == "mm" && cubic_cm >= 1) text += " (" + number(cubic_cm, 3) + " cm^3)";
+        if (cubic_cm >= 1000) text += fmt::format(" ({} litres)", number(cubic_cm / 1000, 3));
+        else if (length_unit == "mm" && cubic_cm >= 1) text += fmt::format(" ({} cm^3)", number(cubic_cm, 3));
         return text;
     }
 
-    [[nodiscard]] std::string sentence(const ClayVolume& clay, double own) const {
-        std::string text = std::isnan(clay.maximum)   ? "the clay is not known"
-                           : std::isnan(clay.minimum) ? "clay: at most " + volume(clay.maximum)
-                                                      : "clay: between " + volume(clay.minimum) + " and " + volume(clay.maximum);
-        if (std::isnan(own)) return text + "; the mesh is open, so that it has no volume of its own";
-        return text + "; the mesh is closed, and its own volume is " + volume(own);
+    [[nodiscard]] std::string sentence(const ClayVolume& clay, double mesh_volume) const {
+        std::string text = std::isnan(clay.maximum) ? "the amount of clay is unknown"
+                           : std::isnan(clay.minimum)
+                               ? "clay: at most " + volume(clay.maximum)
+                               : fmt::format("clay: between {} and {}", volume(clay.minimum), volume(clay.maximum));
+        if (std::isnan(mesh_volume)) return text + "; the mesh is open, so that it has no volume of its own";
+        return fmt::format("{}; the mesh is closed, and its own volume is {}", text, volume(mesh_volume));
     }
 
     static void add_notes(Report& report, const ClayVolume& clay) {
-        const auto some = [&](int count, const std::string& what) {
-            if (count > 0) report.note(std::to_string(count) + " slices have " + what);
+        const auto note_slices = [&](int count, const std::string& problem) {
+            if (count > 0) report.note(fmt::format("{} slices have {}", count, problem));
         };
         if (std::isnan(clay.minimum) && !std::isnan(clay.maximum))
-            report.note("no wall is seen, so there is no least: give one with --wall");
-        some(clay.without_outline, "no closed outline: taken as between their neighbours");
-        some(clay.crossing,
-             "contours that cross, since parts of the mesh pass through each other: the most is a bound that may count them "
-             "twice, the least takes them as nothing (ostraka mesh repair --wrap makes one surface of them)");
-        some(clay.turned,
-             "contours that ran against their nesting, as a cavity does that is oriented outwards: read by their nesting");
-        if (clay.reversed) report.note("the mesh is inside out: read the other way round (ostraka mesh repair mends it)");
+            report.note("no wall is visible, so there is no minimum: give a wall thickness with --wall");
+        note_slices(clay.without_outline, "no closed outline: interpolated between their neighbours");
+        note_slices(clay.crossing,
+                    "contours that cross, since parts of the mesh pass through each other: the maximum may count them twice, the "
+                    "minimum does not count them (ostraka mesh repair --wrap makes one surface of them)");
+        note_slices(clay.turned,
+                    "contours whose orientation contradicts their nesting, such as a cavity that is oriented outwards: their "
+                    "nesting is used");
+        if (clay.reversed) report.note("the mesh is inside out: its orientation is reversed (ostraka mesh repair corrects it)");
         if (clay.slices == 0) report.note("no slice meets the mesh: it has no height along this direction; give another --up");
         else if (std::isnan(clay.maximum))
             report.note(

@@ -1,14 +1,16 @@
 #include "measured_object.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 Slot& MeasuredObject::describe(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
-    Slot& named = p.input_option("annotations", Kind::annotations, annotations,
-                                 "its annotations (.ant.json); the whole object is measured if left out");
+    Slot& annotations_slot = p.input_option("annotations", Kind::annotations, annotations,
+                                            "its annotations (.ant.json); the whole object is measured if left out");
     p.output_option("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)");
-    p.options("unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
-    return named;
+    p.options("unit", unit, "unit of the coordinates, if the annotations do not state it (any text, such as mm)");
+    return annotations_slot;
 }
 
 AnnotationSet MeasuredObject::read(Report& report) const {
@@ -16,15 +18,15 @@ AnnotationSet MeasuredObject::read(Report& report) const {
     if (annotations) set = annotations.on(mesh->mesh);
     else ensure_root(set, mesh->mesh);
     if (!unit.empty() && !set.unit.empty() && set.unit != unit)
-        report.note("the annotations are in " + set.unit + ", not in " + unit + "; theirs counts");
+        report.note(fmt::format("the annotations are in {}, not in {}; their unit is used", set.unit, unit));
     if (set.unit.empty()) set.unit = unit;
     return set;
 }
 
-Annotation& MeasuredObject::one(AnnotationSet& set, const std::string& name) const {
+Annotation& MeasuredObject::require_annotation(AnnotationSet& set, const std::string& name) const {
     if (!annotations)
-        fail_usage("--annotation '" + printable(name, 60) + "' names a part of " + printable(mesh.file(), 60) +
-                       ", but no annotation file is given",
+        fail_usage(fmt::format("--annotation '{}' names a part of {}, but no annotation file is given", printable(name, 60),
+                               printable(mesh.file(), 60)),
                    "add --annotations FILE");
     return *set.find(find_annotation(set, name, file()).id);
 }

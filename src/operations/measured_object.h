@@ -18,7 +18,7 @@ struct MeasuredObject {
     /// The annotations to change, with the unit set.
     AnnotationSet read(Report& report) const;
     /// Finds an annotation by id, or by tag if it is unique. Throws Error (usage) if no annotations are given.
-    [[nodiscard]] Annotation& one(AnnotationSet& set, const std::string& name) const;
+    [[nodiscard]] Annotation& require_annotation(AnnotationSet& set, const std::string& name) const;
     /// The file to name in messages: the annotations, or else the mesh.
     [[nodiscard]] std::string file() const { return annotations ? annotations.file() : mesh.file(); }
     /// Writes the annotations if the output is requested.

@@ -1,6 +1,8 @@
 // mesh convert
 #include "operations.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -9,7 +11,7 @@ namespace {
 
 struct MeshConvert final : Operation {
     void describe(Parameters& p) override {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; of tetrahedra .mesh, .vtu");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; tetrahedra: .mesh, .vtu");
         p.output("output", Kind::mesh, output.with_encoding(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: the source polygon of each triangle");
@@ -46,26 +48,25 @@ struct MeshConvert final : Operation {
     /// Writes the polygons of a file whose triangulation gives exactly these triangles in this order, with the shape of the
     /// mesh.
     void keep_polygons(const TriangleSoup& soup, WriteOptions& writing, Report& report) {
-        PolygonSoup given = polygons_of.take_polygons();
-        const std::vector<Index> corner = given.corners, begin = given.polygon_begin;
-        const std::size_t vertices = given.points.size();
-        const TriangulatedSoup cut = triangulate(std::move(given));
-        const auto fail = [&](const std::string& what) {
-            fail_input(polygons_of.file(), what, "give the file that the mesh was read from at first");
+        PolygonSoup polygon_soup = polygons_of.take_polygons();
+        const std::vector<Index> polygon_corners = polygon_soup.corners, polygon_begin = polygon_soup.polygon_begin;
+        const std::size_t vertices = polygon_soup.points.size();
+        const TriangulatedSoup triangulated = triangulate(std::move(polygon_soup));
+        const auto fail = [&](const std::string& problem) {
+            fail_input(polygons_of.file(), problem, "give the file that the mesh was originally read from");
         };
-        if (vertices != soup.points.size())
-            fail("has " + std::to_string(vertices) + " vertices, and the mesh " + std::to_string(soup.points.size()));
-        if (cut.soup.triangles.size() != soup.triangles.size())
-            fail("gives " + std::to_string(cut.soup.triangles.size()) + " triangles, and the mesh has " +
-                 std::to_string(soup.triangles.size()));
+        if (vertices != soup.points.size()) fail(fmt::format("has {} vertices, and the mesh {}", vertices, soup.points.size()));
+        if (triangulated.soup.triangles.size() != soup.triangles.size())
+            fail(fmt::format("gives {} triangles, and the mesh has {}", triangulated.soup.triangles.size(),
+                             soup.triangles.size()));
         Index last = no_index;
         for (Index t = 0; t < soup.triangles.size(); ++t) {
-            const Index polygon = cut.triangle_polygon.empty() ? t : cut.triangle_polygon[t];
-            const std::vector<Index> corners(corner.begin() + begin[polygon], corner.begin() + begin[polygon + 1]);
+            const Index polygon = triangulated.triangle_polygon.empty() ? t : triangulated.triangle_polygon[t];
+            const std::vector<Index> corners(polygon_corners.begin() + polygon_begin[polygon],
+                                             polygon_corners.begin() + polygon_begin[polygon + 1]);
             for (const Index v : soup.triangles[t])
                 if (std::find(corners.begin(), corners.end(), v) == corners.end())
-                    fail("has a polygon " + std::to_string(polygon) + " that triangle " + std::to_string(t) +
-                         " of the mesh was not cut from");
+                    fail(fmt::format("has a polygon {} that triangle {} of the mesh was not cut from", polygon, t));
             if (polygon == last) continue;
             last = polygon;
             writing.polygons.push_back(corners);

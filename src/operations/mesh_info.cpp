@@ -2,6 +2,8 @@
 #include "diagnosis.h"
 #include "operations.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -65,7 +67,7 @@ struct MeshInfo final : Operation {
         rows.insert(rows.begin() + 2, {{"polygons", std::to_string(polygon_count)},
                                        {"polygons with fewer than three corners", std::to_string(degenerate)}});
         rows.insert(rows.end() - 1, {"holds", extras.empty() ? "nothing but the geometry" : joined(extras)});
-        for (const auto& [what, value] : rows) report.people(what, value);
+        for (const auto& [quantity, value] : rows) report.people(quantity, value);
         if (diagnosis.border_edges > 0) note_cracks(triangles.soup, diagnosis, report);
         if (!sound) report.answer_no();
     }
@@ -77,9 +79,10 @@ struct MeshInfo final : Operation {
         if (!(width > 0)) return;
         const double joining = std::max(width, std::min(2 * width, 0.3 * diagnosis.mean_edge));
         report("crack_width", width);
-        report.note("the surface has cracks along its edges: most points of its border have another one within " +
-                    number(width, 2) + " (join them: ostraka mesh repair " + input.file() + " OUTPUT --merge-distance " +
-                    digits(joining / diagnosis.diagonal, 2) + ")");
+        report.note(
+            fmt::format("the surface has cracks along its edges: most points of its border have another one within {} (join "
+                        "them: ostraka mesh repair {} OUTPUT --merge-distance {})",
+                        number(width, 2), input.file(), digits(joining / diagnosis.diagonal, 2)));
     }
 
     MeshInput input;

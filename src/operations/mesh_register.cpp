@@ -5,6 +5,8 @@
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/registration/pose_json.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -26,28 +28,28 @@ struct MeshRegister final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh &from = source->mesh, &onto = target->mesh;
-        const MeshRegistration found = registered(source, target, options);
-        const double diagonal = box_diagonal(onto);
-        const Eigen::AngleAxisd turn(found.motion.rotation);
-        const auto list = [](const Eigen::Vector3d& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
-        const SurfaceAgreement& agreement = found.agreement;
-        report("verdict", to_string(found.verdict))("matrix", pose_to_json(found.motion, report.allocator()))(
-            "scale", found.motion.scale)("rotation", turn.angle() / degree)("axis", list(turn.axis()))(
-            "translation", list(found.motion.translation))(
+        const Mesh &source_mesh = source->mesh, &target_mesh = target->mesh;
+        const MeshRegistration registration = registered(source, target, options);
+        const double diagonal = box_diagonal(target_mesh);
+        const Eigen::AngleAxisd rotation(registration.motion.rotation);
+        const auto coordinates = [](const Eigen::Vector3d& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+        const SurfaceAgreement& agreement = registration.agreement;
+        report("verdict", to_string(registration.verdict))("matrix", pose_to_json(registration.motion, report.allocator()))(
+            "scale", registration.motion.scale)("rotation", rotation.angle() / degree)("axis", coordinates(rotation.axis()))(
+            "translation", coordinates(registration.motion.translation))(
             "rms", agreement.rms,
-            number(agreement.rms, 4) + " (" + number(100 * agreement.rms / diagonal, 3) + " % of the diagonal)")(
+            fmt::format("{} ({} % of the diagonal)", number(agreement.rms, 4), number(100 * agreement.rms / diagonal, 3)))(
             "rmsOfDiagonal", agreement.rms / diagonal)("largest", agreement.largest)("share", agreement.share)(
-            "close", agreement.close)("tolerance", found.tolerance)("mirroredRms", found.mirrored.rms)("mirroredShare",
-                                                                                                       found.mirrored.share)(
-            "others", json_list(found.others, report.allocator(), [&](const Motion& pose) {
+            "close", agreement.close)("tolerance", registration.tolerance)("mirroredRms", registration.mirrored.rms)(
+            "mirroredShare", registration.mirrored.share)(
+            "others", json_list(registration.others, report.allocator(), [&](const Motion& pose) {
                 return pose_to_json(pose, report.allocator());
-            }))("slides", found.slippable.kind == SlippableKind::none ? "" : found.slippable.text());
-        report.notes(remarks_on(found));
-        report.line(in_words(found, diagonal));
-        if (found.verdict != RegistrationVerdict::aligned) return report.answer_no();
-        if (matrix) matrix.write(pose_to_json(found.motion, report.allocator()));
-        if (output) output.write(moved(from, found.motion), source->extras);
+            }))("slides", registration.slippable.kind == SlippableKind::none ? "" : registration.slippable.text());
+        report.notes(remarks_on(registration));
+        report.line(in_words(registration, diagonal));
+        if (registration.verdict != RegistrationVerdict::aligned) return report.answer_no();
+        if (matrix) matrix.write(pose_to_json(registration.motion, report.allocator()));
+        if (output) output.write(moved(source_mesh, registration.motion), source->extras);
     }
 
     MeshInput source, target;

@@ -19,7 +19,7 @@ struct MeshRepair final : Operation {
                         "JSON file to write: old vertex to new vertex, -1 for dropped");
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: old triangle to new triangle, -1 for dropped");
-        p.output_option("report", Kind::report, written, "JSON file to write: the report of --json");
+        p.output_option("report", Kind::report, report_file, "JSON file to write: the report of --json");
         options.describe(p.options);
         p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));
         p.report.table("steps", text("step"), any("counts"));
@@ -27,10 +27,10 @@ struct MeshRepair final : Operation {
     }
 
     void run(Context& context, Report& report) override {
-        const TriangulatedSoup read = triangulate(input.take_polygons());
-        RepairResult repaired = in_file(input.file(), [&] { return repair(read.soup, read.extras, options); });
+        const TriangulatedSoup triangles = triangulate(input.take_polygons());
+        RepairResult repaired = in_file(input.file(), [&] { return repair(triangles.soup, triangles.extras, options); });
         if (extension(output.file()) == ".stl") prepare_for_stl(repaired);
-        context.notes("", read.notes);
+        context.notes("", triangles.notes);
         report.notes(repaired.notes);
         const bool sound = repaired.after.defects().empty();
         if (!sound) report.answer_no();
@@ -45,29 +45,29 @@ struct MeshRepair final : Operation {
         report.people("verdict", rows_of(repaired.after).back().second);
 
         output.write(repaired.mesh, repaired.extras);
-        const auto map = [&](const char* kind, const std::vector<Index>& to, std::size_t count) {
-            return IndexMap{kind, to, count, {}, repaired.maps_by_distance};
+        const auto map = [&](const char* kind, const std::vector<Index>& indices, std::size_t count) {
+            return IndexMap{kind, indices, count, {}, repaired.maps_by_distance};
         };
         if (vertex_map) vertex_map.write(map("vertex", repaired.vertex_map, repaired.mesh.number_of_vertices()));
         if (face_map) face_map.write(map("face", repaired.face_map, repaired.mesh.number_of_faces()));
-        if (!written) return;
+        if (!report_file) return;
         report.set_provenance(context.provenance());
-        written.write(report.to_json());
+        report_file.write(report.to_json());
     }
 
     static void show(Report& report, const char* title, const MeshDiagnosis& diagnosis, const std::vector<std::string>& shown) {
         report.line(title);
-        for (const auto& [what, value] : rows_of(diagnosis))
-            if (std::find(shown.begin(), shown.end(), what) != shown.end()) report.people(what, value);
+        for (const auto& [quantity, value] : rows_of(diagnosis))
+            if (std::find(shown.begin(), shown.end(), quantity) != shown.end()) report.people(quantity, value);
     }
 
     static void report_result(Report& report, const RepairStep& step) {
         JsonValue counts(rapidjson::kObjectType);
         std::string name = step.name;  // shown once, beside its first count
-        for (const auto& [what, count] : step.counts) {
-            add_members(counts, report.allocator(), what, count);
+        for (const auto& [quantity, count] : step.counts) {
+            add_members(counts, report.allocator(), quantity, count);
             if (count == 0) continue;
-            report.row("", {name, what, count});
+            report.row("", {name, quantity, count});
             name.clear();
         }
         if (!name.empty()) report.row("", {name, "nothing to do", "-"});
@@ -77,7 +77,7 @@ struct MeshRepair final : Operation {
     MeshInput input;
     MeshOutput output;
     IndexMapOutput vertex_map, face_map;
-    JsonOutput written;
+    JsonOutput report_file;
     RepairOptions options;
 };
 

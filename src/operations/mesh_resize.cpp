@@ -5,6 +5,8 @@
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/transfer/bound_mesh.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -38,7 +40,7 @@ struct MeshResizeBound : MeshResize {
                        "give both --annotations and --annotations-out, or neither");
         const std::string kind = extension(output.file());
         if (annotations_out && (kind == ".stl" || kind == ".glb"))
-            fail_usage("a " + kind + " file does not keep the vertices that annotations name",
+            fail_usage(fmt::format("a {} file does not keep the vertices that annotations refer to", kind),
                        "write the mesh as .ply, .obj or .off");
     }
 
@@ -83,15 +85,15 @@ struct MeshResizeBound : MeshResize {
         };
         report.line("");
         report.empty_table("annotations");
-        for (const BoundMesh::Change& one : changes) {
+        for (const BoundMesh::Change& change : changes) {
             Report::Row row = report.row("annotations");
-            row("id", one.id)("tag", one.tag)("type", to_string(one.type));
-            for (const auto& [when, size] : {std::pair{"before.", one.before}, {"after.", one.after}})
+            row("id", change.id)("tag", change.tag)("type", to_string(change.type));
+            for (const auto& [when, size] : {std::pair{"before.", change.before}, {"after.", change.after}})
                 row(std::string(when) + "elements", size.elements)(std::string(when) + "area", size.area)(
                     std::string(when) + "length", size.length);
-            row.shown("change of area", percent(one.before.area, one.after.area));
-            row.shown("change of length", percent(one.before.length, one.after.length));
-            row("degenerate", one.degenerate)("note", one.note);
+            row.shown("change of area", percent(change.before.area, change.after.area));
+            row.shown("change of length", percent(change.before.length, change.after.length));
+            row("degenerate", change.degenerate)("note", change.note);
         }
     }
 
@@ -130,7 +132,7 @@ struct MeshSimplify final : MeshResizeBound {
         report("reached", result.reached)("stop_reason", result.stop_reason)("collapses", result.collapses)(
             "outlines_broken", result.outlines_broken)("isolated_dropped", result.isolated_dropped);
         if (!result.reached) {
-            report.note("the wanted number could not be reached: " + result.stop_reason);
+            report.note("the requested number of vertices could not be reached: " + result.stop_reason);
             report.answer_no();
         }
         if (result.outlines_broken) report.note("outlines or lines had to be merged to reach the number");
@@ -183,8 +185,10 @@ struct MeshRemesh final : MeshResize {
         report("reached", result.reached)("target_edge_length", result.target_edge_length)(
             "vertices_before_adjustment", result.remeshed)("deviation", result.deviation);
         if (!result.reached) {
-            report.note("the wanted number could not be reached: stopped at " + std::to_string(result.mesh.number_of_vertices()) +
-                        " vertices, fewer would change the topology or turn faces over");
+            report.note(
+                fmt::format("the requested number of vertices could not be reached: stopped at {} vertices, fewer would change "
+                            "the topology or flip faces",
+                            result.mesh.number_of_vertices()));
             report.answer_no();
         }
         output.write(std::move(result.mesh));

@@ -18,10 +18,10 @@ struct Operations final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        bool any = false;
+        bool any_matching = false;
         for (const OperationEntry& entry : operations()) {
             if (!std::string(entry.name).starts_with(name)) continue;
-            any = true;
+            any_matching = true;
             Report::Row row = report.row("operations");
             JsonValue declaration = Call(entry).declaration(report.allocator());
             for (auto& member : declaration.GetObject()) {
@@ -30,20 +30,20 @@ struct Operations final : Operation {
                 else row(key, std::move(member.value));
             }
         }
-        if (!any) static_cast<void>(find_operation(name));
+        if (!any_matching) static_cast<void>(find_operation(name));
         if (pages)
-            for (const std::string& word : command_pages()) put(pages, word + ".md", commands_page(word));
+            for (const std::string& word : command_pages()) write_text(pages, word + ".md", commands_page(word));
         if (manuals)
-            for (const OperationEntry& entry : operations()) put(manuals, manual_name(entry) + ".1", manual_page(entry));
+            for (const OperationEntry& entry : operations()) write_text(manuals, manual_name(entry) + ".1", manual_page(entry));
         if (shells) {
-            put(shells, "ostraka", completion_script(Shell::bash));
-            put(shells, "_ostraka", completion_script(Shell::zsh));
-            put(shells, "ostraka.fish", completion_script(Shell::fish));
+            write_text(shells, "ostraka", completion_script(Shell::bash));
+            write_text(shells, "_ostraka", completion_script(Shell::zsh));
+            write_text(shells, "ostraka.fish", completion_script(Shell::fish));
         }
     }
 
     /// Keeps other files in the folder, which may belong to the user.
-    static void put(const FolderOutput& folder, const std::string& file, const std::string& text) {
+    static void write_text(const FolderOutput& folder, const std::string& file, const std::string& text) {
         folder.open(0, false);
         write_file(folder.in(file), text);
     }

@@ -72,7 +72,7 @@ private:
     FileInput file_;
 };
 inline constexpr const char* as_template_words =
-    "by which tags of objects are those of the template: of one concept in any language, or narrower";
+    "by which tags of objects match those of the template: the same concept in any language, or a narrower one";
 
 /// The annotation with this id, or with this tag if it is unique. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);

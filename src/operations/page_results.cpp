@@ -5,6 +5,8 @@
 #include "ostraka/io/ply.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -27,17 +29,17 @@ Json copy_of(const JsonValue& value) {
 }
 
 /// Adds the single values of a record; names of nested records are joined by '.'.
-void add_cells(const JsonValue& record, const std::string& before, Cells& cells) {
+void add_cells(const JsonValue& record, const std::string& prefix, Cells& cells) {
     for (const auto& [key, value] : record.GetObject()) {
-        const std::string name = before + key.GetString();
+        const std::string name = prefix + key.GetString();
         if (value.IsObject()) {
             add_cells(value, name + ".", cells);
         } else if (value.IsBool()) {
             cells.emplace_back(name, cell_of(std::string(value.GetBool() ? "yes" : "no")));
         } else if (value.IsArray()) {
             std::vector<std::string> texts;
-            for (const JsonValue& one : value.GetArray())
-                if (one.IsString()) texts.push_back(one.GetString());
+            for (const JsonValue& element : value.GetArray())
+                if (element.IsString()) texts.push_back(element.GetString());
             if (texts.size() == value.Size() && !texts.empty()) cells.emplace_back(name, cell_of(joined(texts, ", ")));
         } else {
             cells.emplace_back(name, copy_of(value));
@@ -51,11 +53,11 @@ std::optional<double> finite_in(const JsonValue& object, const char* name) {
 }
 
 /// Value per triangle, taken from its polygon.
-std::vector<double> of_triangles(const std::vector<double>& of_polygons, const MeshFile& mesh) {
-    if (mesh.triangle_polygon.empty()) return of_polygons;
+std::vector<double> triangle_values(const std::vector<double>& polygon_values, const MeshFile& mesh) {
+    if (mesh.triangle_polygon.empty()) return polygon_values;
     std::vector<double> values;
     for (const Index polygon : mesh.triangle_polygon)
-        values.push_back(polygon < of_polygons.size() ? of_polygons[polygon] : std::nan(""));
+        values.push_back(polygon < polygon_values.size() ? polygon_values[polygon] : std::nan(""));
     return values;
 }
 
@@ -98,30 +100,30 @@ PageSlices page_slices(const JsonValue& document, const std::string& where) {
     slices.unit = text_in(document, "unit");
     const auto& levels = document["slices"].GetArray();
     for (const NamedDescriptor& descriptor : list_descriptors(SliceDescriptors{})) {
-        const bool told = std::any_of(levels.begin(), levels.end(), [&](const JsonValue& level) {
+        const bool is_defined = std::any_of(levels.begin(), levels.end(), [&](const JsonValue& level) {
             return finite_in(level["descriptors"], descriptor.name).has_value();
         });
         const std::string_view kind = descriptor.unit;
         const std::string unit = slices.unit.empty() || kind.empty() ? "" : kind == "area" ? slices.unit + "²" : slices.unit;
-        if (told) slices.columns.push_back({descriptor.name, title_of(descriptor.name), unit});
+        if (is_defined) slices.columns.push_back({descriptor.name, title_of(descriptor.name), unit});
     }
-    for (const JsonValue& from : levels) {
+    for (const JsonValue& source : levels) {
         PageSlices::Level& level = slices.levels.emplace_back();
-        level.height = from["height"].GetDouble();
-        const JsonValue& frame = from["frame"];
+        level.height = source["height"].GetDouble();
+        const JsonValue& frame = source["frame"];
         level.origin = triple_of(frame["origin"]);
         const std::array<double, 3> normal = triple_of(frame["normal"]);
         for (std::size_t k = 0; k < 3; ++k) level.origin[k] += level.height * normal[k];
         level.u = triple_of(frame["u"]);
         level.v = triple_of(frame["v"]);
         for (const PageSlices::Column& column : slices.columns)
-            level.values.push_back(finite_in(from["descriptors"], column.name.c_str()));
-        for (const JsonValue& contour : from["contours"].GetArray()) {
-            PageSlices::Contour& to = level.contours.emplace_back();
-            to.closed = flag_in(contour, "closed");
-            to.hole = flag_in(contour, "hole");
+            level.values.push_back(finite_in(source["descriptors"], column.name.c_str()));
+        for (const JsonValue& contour : source["contours"].GetArray()) {
+            PageSlices::Contour& target = level.contours.emplace_back();
+            target.closed = flag_in(contour, "closed");
+            target.hole = flag_in(contour, "hole");
             for (const JsonValue& point : contour["points"].GetArray())
-                to.points.push_back({point[0].GetDouble(), point[1].GetDouble()});
+                target.points.push_back({point[0].GetDouble(), point[1].GetDouble()});
         }
     }
     std::stable_sort(slices.levels.begin(), slices.levels.end(),
@@ -133,61 +135,64 @@ PageSlices page_slices(const JsonValue& document, const std::string& where) {
 
 std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set) {
     std::vector<PageConstraint> constraints;
-    for (const JsonValue& from : list_in(result, "constraints")) {
-        if (!from.IsObject() || find_member(from, "parts") == nullptr || find_member(from, "verdict") == nullptr) continue;
-        PageConstraint& one = constraints.emplace_back();
-        one.type = text_in(from, "type");
-        for (const JsonValue& part : list_in(from, "parts"))
+    for (const JsonValue& record : list_in(result, "constraints")) {
+        if (!record.IsObject() || find_member(record, "parts") == nullptr || find_member(record, "verdict") == nullptr) continue;
+        PageConstraint& constraint = constraints.emplace_back();
+        constraint.type = text_in(record, "type");
+        for (const JsonValue& part : list_in(record, "parts"))
             for (std::size_t i = 0; i < set.annotations.size(); ++i)
-                if (set.annotations[i].tag == text_of(part)) one.members.push_back(i);
-        one.weight = number_or(from, "weight", 1);
-        one.hard = flag_in(from, "hard");
-        one.before = text_in(from, "before");
-        one.verdict = text_in(from, "verdict");
-        if (one.verdict == "holds" || one.verdict == "fails") one.holds = one.verdict == "holds";
-        one.text = text_in(from, "text");
-        for (const JsonValue& deviation : list_in(from, "deviations"))
+                if (set.annotations[i].tag == text_of(part)) constraint.members.push_back(i);
+        constraint.weight = number_or(record, "weight", 1);
+        constraint.hard = flag_in(record, "hard");
+        constraint.before = text_in(record, "before");
+        constraint.verdict = text_in(record, "verdict");
+        if (constraint.verdict == "holds" || constraint.verdict == "fails") constraint.holds = constraint.verdict == "holds";
+        constraint.text = text_in(record, "text");
+        for (const JsonValue& deviation : list_in(record, "deviations"))
             if (deviation.IsObject())
-                one.deviations.push_back({text_in(deviation, "quantity"), finite_in(deviation, "before"),
-                                          finite_in(deviation, "value"), finite_in(deviation, "tolerance"),
-                                          text_in(deviation, "unit")});
-        if (const JsonValue* residual = find_member(from, "residual"); residual != nullptr && residual->IsObject())
+                constraint.deviations.push_back({text_in(deviation, "quantity"), finite_in(deviation, "before"),
+                                                 finite_in(deviation, "value"), finite_in(deviation, "tolerance"),
+                                                 text_in(deviation, "unit")});
+        if (const JsonValue* residual = find_member(record, "residual"); residual != nullptr && residual->IsObject())
             if (const auto mean = finite_in(*residual, "mean"), largest = finite_in(*residual, "max"); mean && largest)
-                one.residual = {*mean, *largest};
+                constraint.residual = {*mean, *largest};
     }
     return constraints;
 }
 
 std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set) {
     std::vector<PageVerdict> verdicts;
-    const auto place_of = [&](const JsonValue& id, std::vector<std::size_t>& members) {
+    const auto find_members = [&](const JsonValue& id, std::vector<std::size_t>& members) {
         for (std::size_t i = 0; i < set.annotations.size(); ++i)
             if (id.IsInt() && set.annotations[i].id == id.GetInt()) members.push_back(i);
     };
-    for (const JsonValue& from : list_in(result, "rules")) {
-        if (!from.IsObject()) continue;
-        PageVerdict& one = verdicts.emplace_back(PageVerdict{"rule", text_in(from, "rule"), {}, false, text_in(from, "text")});
-        if (const JsonValue* id = find_member(from, "annotation")) place_of(*id, one.members);
+    for (const JsonValue& record : list_in(result, "rules")) {
+        if (!record.IsObject()) continue;
+        PageVerdict& entry =
+            verdicts.emplace_back(PageVerdict{"rule", text_in(record, "rule"), {}, false, text_in(record, "text")});
+        if (const JsonValue* id = find_member(record, "annotation")) find_members(*id, entry.members);
     }
-    for (const JsonValue& from : list_in(result, "relationships")) {
-        if (!from.IsObject() || find_member(from, "verdict") == nullptr) continue;
-        const bool constraint = flag_in(from, "isConstraint");
-        const std::string type = text_in(from, "type");
-        PageVerdict& one = verdicts.emplace_back();
-        one.kind = !constraint ? "relation" : type == "proportion" ? "canon" : "constraint";
-        one.name = type;
-        for (const JsonValue& id : list_in(from, "annotations")) place_of(id, one.members);
-        if (const std::string verdict = text_in(from, "verdict"); verdict != "unknown") one.holds = verdict == "holds";
-        if (const JsonValue* parameters = find_member(from, "parameters"); parameters != nullptr && parameters->IsObject())
+    for (const JsonValue& record : list_in(result, "relationships")) {
+        if (!record.IsObject() || find_member(record, "verdict") == nullptr) continue;
+        const bool constraint = flag_in(record, "isConstraint");
+        const std::string type = text_in(record, "type");
+        PageVerdict& entry = verdicts.emplace_back();
+        entry.kind = !constraint ? "relation" : type == "proportion" ? "canon" : "constraint";
+        entry.name = type;
+        for (const JsonValue& id : list_in(record, "annotations")) find_members(id, entry.members);
+        if (const std::string verdict = text_in(record, "verdict"); verdict != "unknown") entry.holds = verdict == "holds";
+        if (const JsonValue* parameters = find_member(record, "parameters"); parameters != nullptr && parameters->IsObject())
             for (const JsonValue& deviation : list_in(*parameters, "deviations")) {
                 const auto value = deviation.IsObject() ? finite_in(deviation, "value") : std::nullopt;
                 if (!value) continue;
                 const auto tolerance = finite_in(deviation, "tolerance");
                 const std::string unit = text_in(deviation, "unit");
-                one.text += (one.text.empty() ? "" : "; ") + text_in(deviation, "quantity") + " " + number(*value, 4) +
-                            (tolerance ? " (at most " + number(*tolerance, 4) + ")" : "") + (unit.empty() ? "" : " " + unit);
+                entry.text += fmt::format("{}{} {}{}{}", entry.text.empty() ? "" : "; ", text_in(deviation, "quantity"),
+                                          number(*value, 4), tolerance ? fmt::format(" (at most {})", number(*tolerance, 4)) : "",
+                                          unit.empty() ? "" : " " + unit);
             }
-        if (const std::string text = text_in(from, "text"); !text.empty()) one.text += (one.text.empty() ? "" : "; ") + text;
+        if (const std::string text = text_in(record, "text"); !text.empty())
+            entry.text += (entry.text.empty() ? "" : "; ") + text;
     }
     return verdicts;
 }
@@ -196,11 +201,11 @@ std::vector<std::string> page_conflicts(const JsonValue& result) {
     std::vector<std::string> texts;
     const auto constraints = list_in(result, "constraints");
     const auto name = [&](int id) {
-        for (const JsonValue& one : constraints)
-            if (one.IsObject() && number_or(one, "id", -1) == id) {
+        for (const JsonValue& constraint : constraints)
+            if (constraint.IsObject() && number_or(constraint, "id", -1) == id) {
                 std::vector<std::string> parts;
-                for (const JsonValue& part : list_in(one, "parts")) parts.push_back(text_of(part));
-                return text_in(one, "type") + " of " + joined(parts, ", ");
+                for (const JsonValue& part : list_in(constraint, "parts")) parts.push_back(text_of(part));
+                return fmt::format("{} of {}", text_in(constraint, "type"), joined(parts, ", "));
             }
         return "constraint " + std::to_string(id);
     };
@@ -210,26 +215,27 @@ std::vector<std::string> page_conflicts(const JsonValue& result) {
         for (const JsonValue& id : list_in(conflict, "freed"))
             if (id.IsNumber()) freed.push_back(name(static_cast<int>(id.GetDouble())));
         const std::string subject = name(static_cast<int>(number_or(conflict, "id", -1)));
-        texts.push_back(freed.empty() ? subject + " cannot hold" : subject + " would hold without " + joined(freed, "; "));
+        texts.push_back(freed.empty() ? subject + " cannot hold"
+                                      : fmt::format("{} would hold without {}", subject, joined(freed, "; ")));
     }
     return texts;
 }
 
-std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title, const std::set<std::string>& but) {
+std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title, const std::set<std::string>& omitted) {
     std::vector<PageTable> tables;
     PageTable single;
     single.title = title;
     single.columns = {"quantity", "value"};
     Cells singles;
     JsonAllocator allocator;
-    JsonValue rest(rapidjson::kObjectType);
+    JsonValue single_values(rapidjson::kObjectType);
     for (const auto& [key, value] : result.GetObject()) {
         const std::string name = key.GetString();
-        if (but.contains(name) || name == "format" || name == "version" || name == "provenance") continue;
+        if (omitted.contains(name) || name == "format" || name == "version" || name == "provenance") continue;
         const bool records = value.IsArray() && !value.Empty() &&
-                             std::all_of(value.Begin(), value.End(), [](const JsonValue& one) { return one.IsObject(); });
+                             std::all_of(value.Begin(), value.End(), [](const JsonValue& element) { return element.IsObject(); });
         if (!records) {
-            add_member(rest, name, JsonValue(value, allocator), allocator);
+            add_member(single_values, name, JsonValue(value, allocator), allocator);
             continue;
         }
         PageTable& table = tables.emplace_back();
@@ -244,13 +250,14 @@ std::vector<PageTable> record_tables(const JsonValue& result, const std::string&
         for (Cells& cells : rows) {
             PageTable::Row& row = table.rows.emplace_back();
             for (const std::string& column : table.columns) {
-                const auto found = std::find_if(cells.begin(), cells.end(), [&](const auto& one) { return one.first == column; });
-                if (found == cells.end()) row.cells.emplace_back();
-                else row.cells.push_back(std::move(found->second));
+                const auto match =
+                    std::find_if(cells.begin(), cells.end(), [&](const auto& named_cell) { return named_cell.first == column; });
+                if (match == cells.end()) row.cells.emplace_back();
+                else row.cells.push_back(std::move(match->second));
             }
         }
     }
-    add_cells(rest, "", singles);
+    add_cells(single_values, "", singles);
     for (auto& [name, cell] : singles) {
         PageTable::Row& row = single.rows.emplace_back();
         row.cells.push_back(cell_of(title_of(name)));
@@ -272,8 +279,8 @@ void PageNames::add(const std::string& object, const AnnotationSet* set) {
     for (std::size_t i = 0; i < set->annotations.size(); ++i) {
         const std::string& tag = set->annotations[i].tag;
         // A tag of several objects links to none.
-        if (const auto [found, fresh] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !fresh)
-            found->second = {-1, -1};
+        if (const auto [position, inserted] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !inserted)
+            position->second = {-1, -1};
     }
 }
 
@@ -283,18 +290,18 @@ void PageNames::link(PageTable& table) const {
             if (cell.IsString() && row.object < 0) row.object = object(cell.GetString());
         for (const Json& cell : row.cells) {
             if (!cell.IsString() || row.annotation >= 0) continue;
-            const auto found = annotations_.find(cell.GetString());
-            if (found == annotations_.end() || found->second.first < 0) continue;
-            if (row.object < 0) row.object = found->second.first;
-            if (row.object == found->second.first) row.annotation = found->second.second;
+            const auto position = annotations_.find(cell.GetString());
+            if (position == annotations_.end() || position->second.first < 0) continue;
+            if (row.object < 0) row.object = position->second.first;
+            if (row.object == position->second.first) row.annotation = position->second.second;
         }
     }
 }
 
 int PageNames::object(const std::string& text) const {
-    auto found = objects_.find(text);
-    if (found == objects_.end() && is_mesh_name(text)) found = objects_.find(Path(text).stem().string());
-    return found == objects_.end() ? -1 : found->second;
+    auto entry = objects_.find(text);
+    if (entry == objects_.end() && is_mesh_name(text)) entry = objects_.find(Path(text).stem().string());
+    return entry == objects_.end() ? -1 : entry->second;
 }
 
 PageTable csv_table(const Path& file, const std::string& name) {
@@ -325,7 +332,8 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
     };
     const std::size_t vertices = mesh.mesh.number_of_vertices();
     const auto has = [&](const char* name) {
-        return std::any_of(numbers.faces.begin(), numbers.faces.end(), [&](const PlyColumn& one) { return one.name == name; });
+        return std::any_of(numbers.faces.begin(), numbers.faces.end(),
+                           [&](const PlyColumn& column) { return column.name == name; });
     };
     const std::vector<std::int32_t>& labels = mesh.extras.face_labels;
     const bool completed = has("distance") && has("confidence") && labels.size() == mesh.mesh.number_of_faces() &&
@@ -339,57 +347,57 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
                         {{"observed", {186, 120, 82}}, {"interpolated", {214, 180, 120}}, {"hypothesis", {170, 180, 190}}}});
     for (PlyColumn& column : numbers.vertices) add(column.name, std::move(column.values), vertices);
     for (PlyColumn& column : numbers.faces) {
-        const std::vector<double> values = of_triangles(column.values, mesh);
+        const std::vector<double> values = triangle_values(column.values, mesh);
         if (values.size() == mesh.mesh.number_of_faces()) add(column.name, vertex_means(mesh.mesh, values), vertices);
     }
     return maps;
 }
 
-PageMap simplified_map(const PageMap& map, const std::vector<Index>& to, std::size_t vertices) {
-    PageMap made{map.name, map.label, {}, map.categories};
+PageMap simplified_map(const PageMap& map, const std::vector<Index>& new_index, std::size_t vertices) {
+    PageMap simplified{map.name, map.label, {}, map.categories};
     if (!map.categories.empty()) {
         // Majority vote of the merged vertices; ties go to the lowest category.
         const std::size_t count = map.categories.size();
         std::vector<std::uint32_t> votes(vertices * count, 0);
         for (std::size_t i = 0; i < map.values.size(); ++i)
-            if (to[i] != no_index && map.values[i] >= 0 && map.values[i] < static_cast<double>(count))
-                ++votes[to[i] * count + static_cast<std::size_t>(map.values[i])];
+            if (new_index[i] != no_index && map.values[i] >= 0 && map.values[i] < static_cast<double>(count))
+                ++votes[new_index[i] * count + static_cast<std::size_t>(map.values[i])];
         for (std::size_t v = 0; v < vertices; ++v) {
             const auto begin = votes.begin() + static_cast<std::ptrdiff_t>(v * count);
-            const auto most = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(count));
-            made.values.push_back(*most > 0 ? static_cast<double>(most - begin) : std::nan(""));
+            const auto winner = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(count));
+            simplified.values.push_back(*winner > 0 ? static_cast<double>(winner - begin) : std::nan(""));
         }
-        return made;
+        return simplified;
     }
     Means means(vertices);
     for (std::size_t i = 0; i < map.values.size(); ++i)
-        if (to[i] != no_index) means.add(to[i], map.values[i]);
-    made.values = means.values();
-    return made;
+        if (new_index[i] != no_index) means.add(new_index[i], map.values[i]);
+    simplified.values = means.values();
+    return simplified;
 }
 
 bool is_completed(const std::vector<PageMap>& maps) {
     return !maps.empty() && maps.front().name == "origin" && !maps.front().categories.empty();
 }
 
-std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& of_faces) {
+std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& face_values) {
     Means means(mesh.number_of_vertices());
     for (const Face face : mesh.faces())
-        for (const Vertex v : corners(mesh, face)) means.add(v.idx(), of_faces[face.idx()]);
+        for (const Vertex v : corners(mesh, face)) means.add(v.idx(), face_values[face.idx()]);
     return means.values();
 }
 
 bool are_apart(const Mesh& mesh, const AnnotationSet& regions) {
-    constexpr int none = -1;
-    std::vector<int> of(mesh.number_of_vertices(), none);
+    constexpr int no_region = -1;
+    std::vector<int> region_of_vertex(mesh.number_of_vertices(), no_region);
     std::size_t covered = 0;
     for (const Annotation& region : regions.annotations) {
         if (region.type != AnnotationType::region) return false;
         covered += region.faces.size();
         for (const Index face : region.faces)
             for (const Vertex v : corners(mesh, Face(face))) {
-                if (of[v.idx()] != none && of[v.idx()] != region.id) return false;
-                of[v.idx()] = region.id;
+                if (region_of_vertex[v.idx()] != no_region && region_of_vertex[v.idx()] != region.id) return false;
+                region_of_vertex[v.idx()] = region.id;
             }
     }
     return regions.annotations.size() > 1 && covered == mesh.number_of_faces();

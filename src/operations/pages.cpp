@@ -3,6 +3,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -14,10 +16,11 @@ std::string first_word_of(const std::string& name) { return name.substr(0, name.
 /// Allowed values as text: "0.05 to 1", "one of a, b", "a whole number".
 std::string allowed_for_page(const Option& option) {
     if (const auto* range = std::get_if<Range>(&option.rule))
-        return ostraka::digits(range->min, 6) + " to " + ostraka::digits(range->max, 6);
+        return fmt::format("{} to {}", ostraka::digits(range->min, 6), ostraka::digits(range->max, 6));
     if (const auto* choices = std::get_if<Choices>(&option.rule)) return joined(choices->names);
     if (std::holds_alternative<Words>(option.rule)) return option.allowed();
-    if (option.type() == OptionType::boolean) return option.initial == "true" ? "on, `--no-" + option.name + "`" : "switch";
+    if (option.type() == OptionType::boolean)
+        return option.initial == "true" ? fmt::format("on, `--no-{}`", option.name) : "switch";
     static constexpr const char* types[]{"", "whole number", "number", "text", "text", "texts", "numbers", "whole numbers"};
     return types[static_cast<std::size_t>(option.type())];
 }
@@ -31,13 +34,13 @@ std::string initial_for_page(const Option& option) {
 /// Wraps text to lines of at most 120 characters.
 std::string wrapped(const std::string& text, const std::string& indent = {}) {
     std::string result, line;
-    std::size_t at = 0;
-    while (at <= text.size()) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        const std::string word = text.substr(at, end - at);
+    std::size_t position = 0;
+    while (position <= text.size()) {
+        const std::size_t end = std::min(text.find(' ', position), text.size());
+        const std::string word = text.substr(position, end - position);
         if (!line.empty() && line.size() + 1 + word.size() > 120) result += line + "\n", line = indent + word;
         else line += (line.empty() ? "" : " ") + word;
-        at = end + 1;
+        position = end + 1;
     }
     return result + line + "\n";
 }
@@ -51,23 +54,23 @@ void add_fields(std::string& page, const std::vector<Field>& fields, const std::
     static constexpr const char* types[]{"boolean", "whole number", "number", "text", "numbers", "texts", "structure"};
     for (const Field& field : fields) {
         if (field.key.empty()) continue;
-        std::string about = types[static_cast<std::size_t>(field.type)];
-        if (!field.unit.empty()) about += ", " + field.unit;
-        page += wrapped(indent + "- `" + field.key + "`: " + about, indent + "  ");
+        std::string type_text = types[static_cast<std::size_t>(field.type)];
+        if (!field.unit.empty()) type_text += ", " + field.unit;
+        page += wrapped(fmt::format("{}- `{}`: {}", indent, field.key, type_text), indent + "  ");
     }
 }
 
 std::string operation_section(const OperationEntry& entry) {
     const Call call(entry);
-    std::string page = "## " + std::string(entry.name) + "\n\n";
+    std::string page = fmt::format("## {}\n\n", entry.name);
     page += sentence(entry.help) + "\n```sh\n";
     for (const auto& order : call.parameters().orders) page += usage_of(call, order) + "\n";
     page += "```\n\n";
     for (const Slot* slot : call.parameters().slots()) {
-        const bool named = !call.parameters().in_some_order(slot->name);
-        page += wrapped("- `" + std::string(named ? "--" : "") + slot->name + "` (" +
-                            (slot->role == Role::input ? "input" : "output") + ", " + to_string(slot->kind) +
-                            (slot->needed ? "" : ", optional") + (slot->repeated ? ", repeatable" : "") + "): " + slot->help,
+        const bool by_flag = !call.parameters().in_some_order(slot->name);
+        page += wrapped(fmt::format("- `{}{}` ({}, {}{}{}): {}", by_flag ? "--" : "", slot->name,
+                                    slot->role == Role::input ? "input" : "output", to_string(slot->kind),
+                                    slot->needed ? "" : ", optional", slot->repeated ? ", repeatable" : "", slot->help),
                         "  ");
     }
     std::string group = "-";
@@ -76,20 +79,20 @@ std::string operation_section(const OperationEntry& entry) {
             group = option.group;
             page += "\n" + (group.empty() ? std::string("Options:") : group + ":") + "\n\n";
         }
-        std::string line = "- `" + std::string(option.is_positional ? "" : "--") + option.name + "` (" +
-                           allowed_for_page(option) + (option.unit.empty() ? "" : "; " + option.unit);
+        std::string line = fmt::format("- `{}{}` ({}{}", option.is_positional ? "" : "--", option.name, allowed_for_page(option),
+                                       option.unit.empty() ? "" : "; " + option.unit);
         if (const std::string initial = initial_for_page(option); !initial.empty()) line += "; " + initial;
-        page += wrapped(line + (option.needed ? "; required" : "") + "): " + option.help, "  ");
+        page += wrapped(fmt::format("{}{}): {}", line, option.needed ? "; required" : "", option.help), "  ");
     }
     const ReportLayout& report = call.parameters().report;
     page += "\nReport (`--json`, member `result`):";
-    if (!report.schema.empty()) page += " as `doc/schema/" + report.schema + ".schema.json` has it.";
+    if (!report.schema.empty()) page += fmt::format(" as specified by `doc/schema/{}.schema.json`.", report.schema);
     page += "\n\n";
     add_fields(page, report.of_values, "");
     if (report.checks) page += "- `sound`, `defects`, `findings`: what the check found\n";
     for (const auto& table : report.tables) {
         if (table.key.empty()) continue;
-        page += "- `" + table.key + "`: a list of objects" + (table.title.empty() ? "" : ", " + table.title) + "\n";
+        page += fmt::format("- `{}`: a list of objects{}\n", table.key, table.title.empty() ? "" : ", " + table.title);
         add_fields(page, table.columns, "  ");
     }
     return page + "- `notes`: texts\n";
@@ -122,9 +125,9 @@ std::string usage_of(const Call& call, const std::vector<std::string>& order) {
         text += slot != nullptr && !slot->needed && call.parameters().orders.size() == 1 ? " [" + upper + "]" : " " + upper;
     }
     for (const Slot* slot : call.parameters().slots())
-        if (slot->needed && !slot->is_positional) text += " --" + slot->name + " FILE";
+        if (slot->needed && !slot->is_positional) text += fmt::format(" --{} FILE", slot->name);
     for (const Option& option : call.parameters().options)
-        if (option.needed && !option.is_positional) text += " --" + option.name + " VALUE";
+        if (option.needed && !option.is_positional) text += fmt::format(" --{} VALUE", option.name);
     return text + " [options]";
 }
 
@@ -137,12 +140,12 @@ std::vector<std::string> command_pages() {
 }
 
 std::string commands_page(const std::string& first_word) {
-    std::string page = "# ostraka " + first_word + "\n\n";
+    std::string page = fmt::format("# ostraka {}\n\n", first_word);
     for (const OperationGroup& group : operation_groups())
         if (group.name == first_word) page += sentence(group.help) + "\n";
     page += wrapped(
-        "Made from the table of operations; `--json`, `--show`, `--quiet`, `--threads` and `--help` go with each. Exit codes: 0 "
-        "done, 1 failed, 2 wrong usage, 3 done but the answer is \"no\", 130 cancelled.");
+        "Generated from the table of operations. Every operation also accepts `--json`, `--show`, `--quiet`, `--threads` and "
+        "`--help`. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but the answer is \"no\", 130 cancelled.");
     for (const OperationEntry& entry : operations())
         if (first_word_of(entry.name) == first_word) page += "\n" + operation_section(entry);
     return page;
@@ -157,21 +160,20 @@ std::string manual_name(const OperationEntry& entry) {
 std::string manual_page(const OperationEntry& entry) {
     const Call call(entry);
     const std::string name = manual_name(entry);
-    std::string page = ".TH " + name + " 1 \"\" \"ostraka " + version() + "\" \"Ostraka\"\n.SH NAME\n" + troff(name) + " \\- " +
-                       troff(entry.help) + "\n.SH SYNOPSIS\n";
-    for (const auto& order : call.parameters().orders) page += ".B " + troff(usage_of(call, order)) + "\n.br\n";
+    std::string page = fmt::format(".TH {} 1 \"\" \"ostraka {}\" \"Ostraka\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n", name,
+                                   version(), troff(name), troff(entry.help));
+    for (const auto& order : call.parameters().orders) page += fmt::format(".B {}\n.br\n", troff(usage_of(call, order)));
     page += ".SH FILES AND OBJECTS\n";
     for (const Slot* slot : call.parameters().slots())
-        page +=
-            ".TP\n.B " + troff((call.parameters().in_some_order(slot->name) ? "" : "--") + slot->name) + "\n" +
-            troff(std::string(slot->role == Role::input ? "Input, " : "Output, ") + to_string(slot->kind) + ": " + slot->help) +
-            "\n";
+        page += fmt::format(
+            ".TP\n.B {}\n{}\n", troff((call.parameters().in_some_order(slot->name) ? "" : "--") + slot->name),
+            troff(fmt::format("{}, {}: {}", slot->role == Role::input ? "Input" : "Output", to_string(slot->kind), slot->help)));
     page += ".SH OPTIONS\n";
     for (const Option& option : call.parameters().options) {
-        std::string about = allowed_for_page(option) + (option.unit.empty() ? "" : "; " + option.unit);
-        if (const std::string initial = initial_for_page(option); !initial.empty()) about += "; default " + initial;
-        page += ".TP\n.B " + troff((option.is_positional ? "" : "--") + option.name) + "\n" +
-                troff(option.help + " (" + about + ")") + "\n";
+        std::string rule = allowed_for_page(option) + (option.unit.empty() ? "" : "; " + option.unit);
+        if (const std::string initial = initial_for_page(option); !initial.empty()) rule += "; default " + initial;
+        page += fmt::format(".TP\n.B {}\n{}\n", troff((option.is_positional ? "" : "--") + option.name),
+                            troff(fmt::format("{} ({})", option.help, rule)));
     }
     return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 wrong usage, 3 done but the answer is no, 130 cancelled.\n";
 }

@@ -5,6 +5,8 @@
 #include "ostraka/reassembly/odd_fragments.h"
 #include "ostraka/reconstruction/fragment_file.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -19,8 +21,8 @@ struct PairFragments final : Operation {
         p.input("second", Kind::mesh, second, "the fragment that is moved; the same applies to its annotations")
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
-                 "folder for second.ply (the second fragment where it belongs; face labels 0 outer, 1 inner, 2 fracture) and "
-                 "pair.json; made if it is missing")
+                 "folder for second.ply (the second fragment in its pose; face labels 0 outer, 1 inner, 2 fracture) and "
+                 "pair.json; created if missing")
             .flag();
         options.describe(p.options);
         reading.describe(p.options);
@@ -33,14 +35,14 @@ struct PairFragments final : Operation {
         if (const Path folder = output.file(); is_folder(folder))
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);
-        const auto prepared = [&](const FileInput& slot, const Fragment& fragment) {
+        const auto prepare = [&](const FileInput& slot, const Fragment& fragment) {
             return in_file(slot.file(), [&] { return PreparedBreak(fragment, options); });
         };
-        BreakPair pair = pair_breaks(prepared(first, a.fragment), prepared(second, b.fragment), options);
-        for (const OddFragment& odd : odd_fragments({a.fragment, b.fragment})) {
-            report.note(printable((odd.fragment == 0 ? first : second).file()) + " " + odd.text);
-            if (!odd.left_out) continue;
-            pair.undecided = "the second " + odd.text;
+        BreakPair pair = pair_breaks(prepare(first, a.fragment), prepare(second, b.fragment), options);
+        for (const OddFragment& outlier : odd_fragments({a.fragment, b.fragment})) {
+            report.note(fmt::format("{} {}", printable((outlier.fragment == 0 ? first : second).file()), outlier.text));
+            if (!outlier.left_out) continue;
+            pair.undecided = "the second " + outlier.text;
             pair.confidence = 0;
         }
         const JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), report.allocator());
@@ -51,15 +53,17 @@ struct PairFragments final : Operation {
 
         for (const auto& [slot, file, fracture] :
              {std::tuple{&first, &a, pair.fracture_a}, std::tuple{&second, &b, pair.fracture_b}})
-            report.line(printable(slot->file()) + ": facets by " + file->facets_from + ", fracture " + number(fracture, 4));
+            report.line(
+                fmt::format("{}: facets by {}, fracture {}", printable(slot->file()), file->facets_from, number(fracture, 4)));
         std::size_t count = 0;
-        for (const PairCandidate& one : pair.candidates) {
-            report.row("", {++count, number(one.score, 3), number(100 * one.contact, 3), number(100 * one.rim, 3),
-                            number(one.residual, 3), number(100 * one.penetration, 2)});
+        for (const PairCandidate& candidate : pair.candidates) {
+            report.row("",
+                       {++count, number(candidate.score, 3), number(100 * candidate.contact, 3), number(100 * candidate.rim, 3),
+                        number(candidate.residual, 3), number(100 * candidate.penetration, 2)});
         }
         const std::string confidence = "confidence " + number(pair.confidence, 2);
-        report.line(pair.decided() ? "they go together as in pose 1, " + confidence
-                                   : "cannot decide, because " + pair.undecided + " (" + confidence + ")");
+        report.line(pair.decided() ? "they join as in pose 1, " + confidence
+                                   : fmt::format("cannot decide, because {} ({})", pair.undecided, confidence));
         if (!pair.decided()) report.answer_no();
     }
 

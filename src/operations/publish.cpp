@@ -11,6 +11,7 @@
 #include "ostraka/io/glb.h"
 #include "ostraka/page/page.h"
 
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -20,29 +21,29 @@ namespace ostraka {
 namespace {
 
 /// Maps points of the mesh to positions in a viewer of the GLB, whose node rotates and scales the mesh.
-class ShownPlace {
+class ViewerTransform {
 public:
-    explicit ShownPlace(const std::string& file) {
+    explicit ViewerTransform(const std::string& file) {
         const glb::Reader reader(file, "model.glb");
         for (const JsonValue& node : list_in(reader.document(), "nodes")) {
             const auto rotation = list_in(node, "rotation");
             if (rotation.Size() == 4)
-                turn_ = Eigen::Quaterniond(rotation[3].GetDouble(), rotation[0].GetDouble(), rotation[1].GetDouble(),
-                                           rotation[2].GetDouble());
+                rotation_ = Eigen::Quaterniond(rotation[3].GetDouble(), rotation[0].GetDouble(), rotation[1].GetDouble(),
+                                               rotation[2].GetDouble());
             if (const auto scale = list_in(node, "scale"); scale.Size() == 3) scale_ = scale[0].GetDouble();
         }
     }
     [[nodiscard]] Eigen::Vector3d operator()(const Point& p) const {
-        return scale_ * (turn_ * Eigen::Vector3d(p.x(), p.y(), p.z()));
+        return scale_ * (rotation_ * Eigen::Vector3d(p.x(), p.y(), p.z()));
     }
 
 private:
-    Eigen::Quaterniond turn_{1, 0, 0, 0};
+    Eigen::Quaterniond rotation_{1, 0, 0, 0};
     double scale_ = 1;
 };
 
 /// A position on the annotation: for a region the centroid of the face nearest to its centre, for a line its middle vertex.
-std::optional<Point> place_on(const Mesh& mesh, const Annotation& annotation) {
+std::optional<Point> label_position(const Mesh& mesh, const Annotation& annotation) {
     if (!annotation.points.empty()) return mesh.point(Vertex(annotation.points.front()));
     if (!annotation.polylines.empty() && !annotation.polylines.front().empty()) {
         const auto& line = annotation.polylines.front();
@@ -64,7 +65,7 @@ std::optional<Point> place_on(const Mesh& mesh, const Annotation& annotation) {
 struct Publish final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
-        p.output("folder", Kind::folder, folder, "folder to write; made if it is missing");
+        p.output("folder", Kind::folder, folder, "folder to write; created if missing");
         p.options("address", address, "where the folder will be served, such as https://museum.example/pot");
         p.options("title", title, "title of the object; otherwise the name of the mesh");
         p.options("rights", rights, "address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
@@ -73,98 +74,106 @@ struct Publish final : AnnotatedMeshOperation {
     }
 
     void check() const override {
-        for (const auto& [name, value, wanted] : {std::tuple("address", address, true), std::tuple("rights", rights, false)}) {
-            const bool good = (value.starts_with("https://") || value.starts_with("http://")) &&
-                              value.find_first_of(" <>\"\\^`{|}#?\x7f") == std::string::npos && value.size() > 8 &&
-                              std::all_of(value.begin(), value.end(), [](unsigned char c) { return c >= 32; });
-            if (!good && (wanted || !value.empty()))
-                fail_usage("--" + std::string(name) + " '" + value + "' is no address of the web",
+        for (const auto& [name, value, required] : {std::tuple("address", address, true), std::tuple("rights", rights, false)}) {
+            const bool valid = (value.starts_with("https://") || value.starts_with("http://")) &&
+                               value.find_first_of(" <>\"\\^`{|}#?\x7f") == std::string::npos && value.size() > 8 &&
+                               std::all_of(value.begin(), value.end(), [](unsigned char c) { return c >= 32; });
+            if (!valid && (required || !value.empty()))
+                fail_usage(fmt::format("--{} '{}' is not a web address", name, value),
                            "give one that begins with https:// and has neither blanks nor # and ?");
         }
     }
 
     void run(Context& context, Report& report) override {
-        const Mesh& on = mesh->mesh;
-        const AnnotationSet& known = set();
+        const Mesh& surface = mesh->mesh;
+        const AnnotationSet& annotation_set = set();
         const std::string name = title.empty() ? Path(mesh.file_name()).stem().string() : title;
         folder.open();
         std::vector<std::string> notes;
-        const std::string model = feature_glb(on, known, mesh.file(), context.provenance(), notes);
+        const std::string model = feature_glb(surface, annotation_set, mesh.file(), context.provenance(), notes);
         report.notes(notes);
         write_file(folder.in("model.glb"), model);
-        write_file(folder.in("annotations.jsonld"), web_annotations(on, known, mesh.file(), context.provenance()));
-        write_png(folder.in("thumbnail.png"), thumbnail(on, &known, "400x300"));
+        write_file(folder.in("annotations.jsonld"), web_annotations(surface, annotation_set, mesh.file(), context.provenance()));
+        write_png(folder.in("thumbnail.png"), thumbnail(surface, &annotation_set, "400x300"));
         Page page(name);
-        PageObject shown;
-        shown.name = name;
-        const AlongEdges along_edges(on, known);  // free outlines are shown on the mesh cut along them
-        shown.mesh = &along_edges.mesh();
-        shown.annotations = &along_edges.annotations();
-        page.add(shown);
-        if (!known.annotations.empty()) page.add(annotation_table(on, known, 0, name));
+        PageObject page_object;
+        page_object.name = name;
+        const AlongEdges along_edges(surface, annotation_set);  // free outlines are shown on the mesh cut along them
+        page_object.mesh = &along_edges.mesh();
+        page_object.annotations = &along_edges.annotations();
+        page.add(page_object);
+        if (!annotation_set.annotations.empty()) page.add(annotation_table(surface, annotation_set, 0, name));
         write_file(folder.in("index.html"), page.html(context.provenance().to_line()));
         std::size_t placed = 0;
-        const Json document = manifest(on, known, name, ShownPlace(model), placed);
+        const Json document = manifest(surface, annotation_set, name, ViewerTransform(model), placed);
         write_json(folder.in("manifest.json"), document);
-        report("manifest", at("manifest.json"))("annotations", placed);
+        report("manifest", url("manifest.json"))("annotations", placed);
     }
 
-    [[nodiscard]] std::string at(const std::string& place) const { return address + (address.ends_with('/') ? "" : "/") + place; }
+    [[nodiscard]] std::string url(const std::string& place) const {
+        return address + (address.ends_with('/') ? "" : "/") + place;
+    }
 
     /// IIIF Presentation API 4: one Scene with the GLB painted into it, and one comment at a position of each annotation.
-    Json manifest(const Mesh& on, const AnnotationSet& known, const std::string& name, const ShownPlace& place,
-                  std::size_t& placed) const {
+    Json manifest(const Mesh& surface, const AnnotationSet& annotation_set, const std::string& name,
+                  const ViewerTransform& to_viewer, std::size_t& placed) const {
         Json document;
         document.SetObject();
         auto& a = document.GetAllocator();
         const auto words = [&](const std::string& text) {
             return json_object(a, "none", json_list_of(json_string(printable(text, 2000), a), a));
         };
-        const auto one = [&](JsonValue value) { return json_list_of(std::move(value), a); };
-        const std::string scene = at("scene");
+        const auto list_of_one = [&](JsonValue value) { return json_list_of(std::move(value), a); };
+        const std::string scene = url("scene");
         const auto scene_reference = [&] { return json_object(a, "id", scene, "type", "Scene"); };
         JsonValue comments(rapidjson::kArrayType);
-        for (const Annotation& annotation : known.annotations) {
-            const auto where = place_on(on, annotation);
-            if (!where) continue;
-            const Eigen::Vector3d p = place(*where);
+        for (const Annotation& annotation : annotation_set.annotations) {
+            const auto position = label_position(surface, annotation);
+            if (!position) continue;
+            const Eigen::Vector3d p = to_viewer(*position);
             std::string text = annotation.tag.empty() ? "annotation " + std::to_string(annotation.id) : annotation.tag;
             if (!annotation.note.empty()) text += ": " + annotation.note;
             for (const Attribute& attribute : annotation.attributes)
                 if (attribute.type == AttributeType::measure && attribute.measure.value)
-                    text += "; " + attribute.name + " " + digits(*attribute.measure.value, 5) +
-                            (attribute.measure.unit.empty() ? "" : " " + attribute.measure.unit);
+                    text += fmt::format("; {} {}{}", attribute.name, digits(*attribute.measure.value, 5),
+                                        attribute.measure.unit.empty() ? "" : " " + attribute.measure.unit);
             JsonValue selector = json_object(a, "type", "PointSelector", "x", p.x(), "y", p.y(), "z", p.z());
-            JsonValue target = json_object(a, "id", at("annotation/" + std::to_string(annotation.id) + "/target"), "type",
-                                           "SpecificResource", "source", scene_reference(), "selector", one(std::move(selector)));
+            JsonValue target =
+                json_object(a, "id", url(fmt::format("annotation/{}/target", annotation.id)), "type", "SpecificResource",
+                            "source", scene_reference(), "selector", list_of_one(std::move(selector)));
             JsonValue body = json_object(a, "type", "TextualBody", "value", printable(text, 2000), "format", "text/plain");
             comments.PushBack(
-                json_object(a, "id", at("annotation/" + std::to_string(annotation.id)), "type", "Annotation", "motivation",
+                json_object(a, "id", url("annotation/" + std::to_string(annotation.id)), "type", "Annotation", "motivation",
                             std::array{"commenting"}, "body", std::move(body), "target", std::move(target)),
                 a);
             ++placed;
         }
-        JsonValue model = json_object(a, "id", at("model.glb"), "type", "Model", "format", "model/gltf-binary");
-        JsonValue painting = json_object(a, "id", at("painting/1"), "type", "Annotation", "motivation", std::array{"painting"},
+        JsonValue model = json_object(a, "id", url("model.glb"), "type", "Model", "format", "model/gltf-binary");
+        JsonValue painting = json_object(a, "id", url("painting/1"), "type", "Annotation", "motivation", std::array{"painting"},
                                          "body", std::move(model), "target", scene_reference());
-        JsonValue painted = json_object(a, "id", at("painting"), "type", "AnnotationPage", "items", one(std::move(painting)));
-        JsonValue shown = json_object(a, "id", scene, "type", "Scene", "label", words(name), "items", one(std::move(painted)));
+        JsonValue painted =
+            json_object(a, "id", url("painting"), "type", "AnnotationPage", "items", list_of_one(std::move(painting)));
+        JsonValue scene_item =
+            json_object(a, "id", scene, "type", "Scene", "label", words(name), "items", list_of_one(std::move(painted)));
         if (!comments.Empty())
-            add_members(shown, a, "annotations",
-                        one(json_object(a, "id", at("comments"), "type", "AnnotationPage", "items", std::move(comments))));
-        add_members(document, a, "@context", "http://iiif.io/api/presentation/4/context.json", "id", at("manifest.json"), "type",
+            add_members(
+                scene_item, a, "annotations",
+                list_of_one(json_object(a, "id", url("comments"), "type", "AnnotationPage", "items", std::move(comments))));
+        add_members(document, a, "@context", "http://iiif.io/api/presentation/4/context.json", "id", url("manifest.json"), "type",
                     "Manifest", "label", words(name));
         if (!rights.empty()) add_members(document, a, "rights", rights);
         if (!credit.empty())
             add_members(document, a, "requiredStatement", json_object(a, "label", words("credit"), "value", words(credit)));
         add_members(
             document, a, "thumbnail",
-            one(json_object(a, "id", at("thumbnail.png"), "type", "Image", "format", "image/png", "width", 400, "height", 300)),
-            "rendering", one(json_object(a, "id", at("index.html"), "type", "Text", "label", words(name), "format", "text/html")),
+            list_of_one(
+                json_object(a, "id", url("thumbnail.png"), "type", "Image", "format", "image/png", "width", 400, "height", 300)),
+            "rendering",
+            list_of_one(json_object(a, "id", url("index.html"), "type", "Text", "label", words(name), "format", "text/html")),
             "seeAlso",
-            one(json_object(a, "id", at("annotations.jsonld"), "type", "Dataset", "format", "application/ld+json", "profile",
-                            "http://www.w3.org/ns/anno.jsonld", "label", words("annotations"))),
-            "items", one(std::move(shown)));
+            list_of_one(json_object(a, "id", url("annotations.jsonld"), "type", "Dataset", "format", "application/ld+json",
+                                    "profile", "http://www.w3.org/ns/anno.jsonld", "label", words("annotations"))),
+            "items", list_of_one(std::move(scene_item)));
         return document;
     }
 

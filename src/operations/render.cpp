@@ -6,6 +6,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/render/render.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -51,45 +53,44 @@ struct Render final : Operation {
     void check() const override {
         if (!picture.file().empty()) static_cast<void>(picture_kind(picture.file()));
         if (options.deep && !picture.file().empty() && picture_kind(picture.file()) != PictureKind::pixels)
-            fail_usage("--deep with '" + picture.file() + "'", "16 bits a channel are for .png");
+            fail_usage(fmt::format("--deep with '{}'", picture.file()), "16 bits per channel need a .png picture");
         if (turntable.size() > 0 && !options.views.empty())
             fail_usage("--turntable with --views", "give one view: the turn begins there");
         for (const auto& [flag, count] : {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()},
                                           std::pair{"cage", cages.size()}, std::pair{"title", titles.size()}})
             if (count != 0 && count != meshes.size())
-                fail_usage("--" + std::string(flag) + " is given " + std::to_string(count) + " times for " +
-                               std::to_string(meshes.size()) + " meshes",
-                           "give it once a mesh, in their order; 'none' for a mesh that has none");
+                fail_usage(fmt::format("--{} is given {} times for {} meshes", flag, count, meshes.size()),
+                           "give it once per mesh, in their order; 'none' for a mesh that has none");
         const bool is_range =
             map_range.size() == 2 && std::isfinite(map_range[0]) && std::isfinite(map_range[1]) && map_range[0] < map_range[1];
         if (!map_range.empty() && !is_range)
-            fail_usage("the map range is not possible", "use SMALLEST,LARGEST such as --map-range 0,2.5");
+            fail_usage("the map range is not valid", "use SMALLEST,LARGEST such as --map-range 0,2.5");
         check_render_options(options);
     }
 
     void run(Context& context, Report& report) override {
-        RenderOptions how = options;
+        RenderOptions render_options = options;
         const Stopwatch reading;
         std::vector<Scene> scenes;
-        for (std::size_t k = 0; k < meshes.size(); ++k) scenes.push_back(read(context, k, how));
-        if (const std::string map = first_map(); !map.empty()) how.scale = common_scale(scenes, map);
-        if (how.fit == RenderOptions::Fit::all && units_differ(scenes)) {
+        for (std::size_t k = 0; k < meshes.size(); ++k) scenes.push_back(read(context, k, render_options));
+        if (const std::string map = first_map(); !map.empty()) render_options.scale = common_scale(scenes, map);
+        if (render_options.fit == RenderOptions::Fit::all && units_differ(scenes)) {
             report.note("the objects have different units: each is drawn at a scale of its own");
-            how.fit = RenderOptions::Fit::each;
+            render_options.fit = RenderOptions::Fit::each;
         }
         report.run("readSeconds", reading.seconds());
         // If there are labels, the values of measures are placed beside the object instead of between the pins.
-        if (how.labels)
+        if (render_options.labels)
             for (Scene& scene : scenes)
                 for (SceneMarker& marker : scene.markers)
                     if (marker.through) marker.label.clear();
         const PictureKind kind = picture.file().empty() ? PictureKind::pixels : picture_kind(picture.file());
-        const Rendering rendering = render(scenes, how, kind);
+        const Rendering rendering = render(scenes, render_options, kind);
         report.run("buildSeconds", rendering.build_seconds);
         report.run("drawSeconds", rendering.draw_seconds);
         const Stopwatch writing;
         write(picture.path(), rendering);
-        if (turntable.size() > 0) write_turn(scenes, how, kind);
+        if (turntable.size() > 0) write_turn(scenes, render_options, kind);
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
         report("picture", picture.file_name())("width", rendering.width)("height", rendering.height);
@@ -111,13 +112,15 @@ struct Render final : Operation {
     }
 
     /// Renders one full revolution of the camera, starting at the view of the picture.
-    void write_turn(const std::vector<Scene>& scenes, RenderOptions how, PictureKind kind) const {
+    void write_turn(const std::vector<Scene>& scenes, RenderOptions render_options, PictureKind kind) const {
         turntable.open();
-        const View begin = parse_view(how.view);
+        const View begin = parse_view(render_options.view);
         const std::string ending = kind == PictureKind::pixels ? ".png" : kind == PictureKind::svg ? ".svg" : ".pdf";
         for (std::uint64_t i = 0; i < frames; ++i) {
-            how.view = number(begin.azimuth + 360.0 * double(i) / double(frames), 17) + "," + number(begin.elevation, 17);
-            write(turntable.in(padded(i + 1, std::max<std::uint64_t>(9999, frames)) + ending), render(scenes, how, kind));
+            render_options.view =
+                fmt::format("{},{}", number(begin.azimuth + 360.0 * double(i) / double(frames), 17), number(begin.elevation, 17));
+            write(turntable.in(padded(i + 1, std::max<std::uint64_t>(9999, frames)) + ending),
+                  render(scenes, render_options, kind));
         }
     }
 
@@ -125,7 +128,7 @@ struct Render final : Operation {
     enum class ColourBy { automatic, labels, colours, none };
 
     /// Reads the k-th object; its annotations give the up direction unless the options do.
-    Scene read(Context& context, std::size_t k, RenderOptions& how) const {
+    Scene read(Context& context, std::size_t k, RenderOptions& render_options) const {
         Scene scene;
         MeshExtras extras;
         std::vector<Index> triangle_polygon;
@@ -150,10 +153,12 @@ struct Render final : Operation {
             AnnotationStyle style;
             style.smooth = outlines == Outlines::smooth;
             style.measures = measures;
-            style.painted = how.drawing == RenderOptions::Drawing::surface || how.drawing == RenderOptions::Drawing::points;
+            style.painted = render_options.drawing == RenderOptions::Drawing::surface ||
+                            render_options.drawing == RenderOptions::Drawing::points;
             draw_annotations(scene, mesh, set, style);
-            if (how.up == "auto" && set.up) how.up = up_words(set);
-        } else if (!maps.has(k) && how.drawing != RenderOptions::Drawing::lines && how.drawing != RenderOptions::Drawing::wire) {
+            if (render_options.up == "auto" && set.up) render_options.up = up_words(set);
+        } else if (!maps.has(k) && render_options.drawing != RenderOptions::Drawing::lines &&
+                   render_options.drawing != RenderOptions::Drawing::wire) {
             colour_by_file(scene, extras, meshes.file(k));
         }
         if (cages.has(k)) draw_cage(scene, cages.get(k).mesh);
@@ -165,8 +170,8 @@ struct Render final : Operation {
         std::vector<std::int32_t> labels = extras.face_labels;
         if (labels.empty())
             for (const auto& [a, b, c] : scene.mesh.triangles) {  // majority label of the corners, else the label of the first
-                const auto& of = extras.vertex_labels;
-                labels.push_back(of[b] == of[c] ? of[b] : of[a]);
+                const auto& corner_labels = extras.vertex_labels;
+                labels.push_back(corner_labels[b] == corner_labels[c] ? corner_labels[b] : corner_labels[a]);
             }
         std::map<std::int32_t, Rgb> colours;
         for (const auto label : labels) colours[label];
@@ -176,9 +181,9 @@ struct Render final : Operation {
             colour = colours.size() > 1 ? category_colour(index) : Rgb{neutral_colour[0], neutral_colour[1], neutral_colour[2]};
             ++index;
             scene.legend.push_back({"label " + std::to_string(label), colour, LegendMark::area});
-            SceneLabel& named = scene.labels.emplace_back(SceneLabel{scene.legend.back().text, colour});
+            SceneLabel& label_entry = scene.labels.emplace_back(SceneLabel{scene.legend.back().text, colour});
             for (std::size_t face = 0; face < labels.size(); ++face)
-                if (labels[face] == label) named.faces.push_back(static_cast<Index>(face));
+                if (labels[face] == label) label_entry.faces.push_back(static_cast<Index>(face));
         }
         for (const auto label : labels) scene.face_colours.push_back(colours[label]);
     }
@@ -212,11 +217,11 @@ struct Render final : Operation {
         } else {
             const std::string points = std::to_string(vertices) + " vertices", faces = std::to_string(triangles) + " faces";
             fail_input(maps.file(k),
-                       "holds " + std::to_string(values.size()) + " values for a mesh of " +
-                           (map_on == MapOn::vertex ? points
-                            : map_on == MapOn::face ? faces
-                                                    : points + " and " + faces),
-                       "give one value an element");
+                       fmt::format("holds {} values for a mesh of {}", values.size(),
+                                   map_on == MapOn::vertex ? points
+                                   : map_on == MapOn::face ? faces
+                                                           : fmt::format("{} and {}", points, faces)),
+                       "give one value per element");
         }
     }
 
@@ -228,12 +233,12 @@ struct Render final : Operation {
     }
 
     [[nodiscard]] ColourScale common_scale(const std::vector<Scene>& scenes, const std::string& map) const {
-        std::vector<const std::vector<double>*> lists;
+        std::vector<const std::vector<double>*> value_lists;
         for (const Scene& scene : scenes) {
-            lists.push_back(&scene.vertex_values);
-            lists.push_back(&scene.face_values);
+            value_lists.push_back(&scene.vertex_values);
+            value_lists.push_back(&scene.face_values);
         }
-        ColourScale scale = scale_of(lists, map);
+        ColourScale scale = scale_of(value_lists, map);
         if (!map_range.empty()) {
             scale.minimum = map_range[0];
             scale.maximum = map_range[1];

@@ -14,6 +14,8 @@
 #include "ostraka/semantic/measure_constraints.h"
 #include "ostraka/transfer/bound_mesh.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -51,16 +53,15 @@ std::string address_of(const Path& path) {
 
 struct MakeReport final : Operation {
     void describe(Parameters& p) override {
-        p.input("results", Kind::text, results,
-                "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy, slices "
-                "and "
-                "reports of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other "
-                "reports (.json) and drawings "
-                "(.svg); folders of such files, such as a run's or a fit's, but for cages and maps")
+        p.input(
+             "results", Kind::text, results,
+             "what to show: meshes, each followed by its files (.ant.json, .graph.json, .cage.ply, maps .npy, slices and reports "
+             "of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other reports (.json) "
+             "and drawings (.svg); folders of such files, such as those of a run or a fit, without their cages and maps")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
-        p.output_option("beside", Kind::folder, beside,
+        p.output_option("beside", Kind::folder, objects_folder,
                         "write the objects to this folder, which stays with the page: the page is an index that loads an object "
                         "when it is selected, for collections");
         p.options("title", title, "title of the page; otherwise the name of the first result");
@@ -75,31 +76,31 @@ struct MakeReport final : Operation {
 
     void check() const override {
         if (!page.file().empty() && extension(page.file()) != ".html")
-            fail_usage("page '" + page.file() + "' does not end in .html", "name the page last");
+            fail_usage(fmt::format("page '{}' does not end in .html", page.file()), "name the page last");
     }
 
     void run(Context& context, Report& report) override {
-        made.emplace(title.empty() ? name_of(results.file()) : title);
+        report_page.emplace(title.empty() ? name_of(results.file()) : title);
         report.empty_table("objects");
-        if (is_collection()) beside.open();
+        if (is_collection()) objects_folder.open();
         for (std::size_t i = 0; i < results.size(); ++i) {
             const Path file = results.path(i);
             context.record([&] { in_file(results.file(i), [&] { read(context, report, file, results.file_name(i)); }); });
         }
         finish(context, report);
-        if (places == 0 && tables.empty() && drawings == 0)
+        if (object_count == 0 && tables.empty() && drawings == 0)
             fail_input(results.file(), "holds nothing that a page can show", "give meshes, templates, tables or drawings");
-        if (!overview.rows.empty()) made->add(std::move(overview));
+        if (!overview.rows.empty()) report_page->add(std::move(overview));
         for (PageTable& table : tables) {
             names.link(table);
-            made->add(std::move(table));
+            report_page->add(std::move(table));
         }
-        const std::string html = made->html(context.provenance().to_line());
+        const std::string html = report_page->html(context.provenance().to_line());
         page.write(html);
         report("page", page.file_name())("bytes", html.size());
     }
 
-    [[nodiscard]] bool is_collection() const { return beside.size() > 0; }
+    [[nodiscard]] bool is_collection() const { return objects_folder.size() > 0; }
 
     /// The name without folders and extensions.
     static std::string name_of(const std::string& file) {
@@ -120,91 +121,93 @@ struct MakeReport final : Operation {
         if (name.ends_with(".template.json")) {
             read_template_object(context, report, file, name);
         } else if (name.ends_with(".ant.json")) {
-            ShownObject& of = object_for(name);
-            of.set = read_annotations(file, of.file.mesh);
+            ShownObject& object = object_for(name);
+            object.set = read_annotations(file, object.file.mesh);
         } else if (name.ends_with(".graph.json")) {
-            ShownObject& of = object_for(name);
-            if (!of.set)
-                fail_input(name, "comes before the annotations that it is of", "name the mesh, its annotations, then it");
-            of.graph = read_graph(file, *of.set);
+            ShownObject& object = object_for(name);
+            if (!object.set)
+                fail_input(name, "comes before the annotations that it refers to",
+                           "name the mesh, its annotations, then the graph");
+            object.graph = read_graph(file, *object.set);
         } else if (kind == ".json") {
             read_document(read_json(file), name);
         } else if (name.find(".cage.") != std::string::npos) {
             object_for(name).cage = read_mesh(file).mesh;
         } else if (kind == ".npy") {
-            ShownObject& of = object_for(name);
-            of.maps.push_back({Path(name).stem().string(), Path(name).stem().string(), vertex_values(of, file, name)});
+            ShownObject& object = object_for(name);
+            object.maps.push_back({Path(name).stem().string(), Path(name).stem().string(), vertex_values(object, file, name)});
         } else if (kind == ".csv") {
             tables.push_back(csv_table(file, name));
         } else if (kind == ".svg") {
-            made->add_drawing(Path(name).stem().string(), read_file(file));
+            report_page->add_drawing(Path(name).stem().string(), read_file(file));
             ++drawings;
         } else if (is_mesh_name(name)) {
             read_object(context, report, file, name);
         } else {
-            fail_input(name, "is nothing that a page can show",
-                       "give .ply, .obj, .off, .stl, .json, .npy, .csv, .svg or a folder");
+            fail_input(name, "cannot be shown on a page", "give .ply, .obj, .off, .stl, .json, .npy, .csv, .svg or a folder");
         }
     }
 
     void read_object(Context& context, Report& report, const Path& file, const std::string& name) {
         finish(context, report);
-        ShownObject& one = current.emplace();
-        one.name = Path(name).stem().string();
-        one.file = read_mesh(file);
-        std::vector<std::string> said = one.file.notes;
-        std::erase_if(said, [](const std::string& note) { return note.find("properties not kept") != std::string::npos; });
-        context.notes(name, said);  // additional properties become maps of the page
-        one.maps = ply_maps(file, one.file);
+        ShownObject& object = current.emplace();
+        object.name = Path(name).stem().string();
+        object.file = read_mesh(file);
+        std::vector<std::string> notes = object.file.notes;
+        std::erase_if(notes, [](const std::string& note) { return note.find("properties not kept") != std::string::npos; });
+        context.notes(name, notes);  // additional properties become maps of the page
+        object.maps = ply_maps(file, object.file);
         Path annotations = file;
         annotations.replace_extension(".ant.json");
-        const bool named = std::any_of(results.sources.begin(), results.sources.end(), [&](const Source& source) {
+        const bool is_listed = std::any_of(results.sources.begin(), results.sources.end(), [&](const Source& source) {
             return !source.object && source.file.lexically_normal() == annotations.lexically_normal();
         });
-        if (named) return;
+        if (is_listed) return;
         if (file_exists(annotations)) {
-            one.set = read_annotations(annotations, one.file.mesh);
-        } else if (const auto& labels = one.file.extras.face_labels; !labels.empty() && !is_completed(one.maps)) {
-            AnnotationSet parts = regions_from_labels(one.file.mesh, labels, label_names(file));
-            if (parts.annotations.size() > 1) one.set = std::move(parts);
+            object.set = read_annotations(annotations, object.file.mesh);
+        } else if (const auto& labels = object.file.extras.face_labels; !labels.empty() && !is_completed(object.maps)) {
+            AnnotationSet parts = regions_from_labels(object.file.mesh, labels, label_names(file));
+            if (parts.annotations.size() > 1) object.set = std::move(parts);
         }
     }
 
     /// Label names of a group of assembled fragments, whose labels count the fragments from 1.
     static std::map<std::int32_t, std::string> label_names(const Path& mesh) {
-        std::map<std::int32_t, std::string> known;
+        std::map<std::int32_t, std::string> names_of_labels;
         const Path assembly = mesh.parent_path() / "assembly.json";
-        if (!file_exists(assembly)) return known;
+        if (!file_exists(assembly)) return names_of_labels;
         const Json document = read_json(assembly);
-        if (format_of(document) != "ostraka-reassembly") return known;
+        if (format_of(document) != "ostraka-reassembly") return names_of_labels;
         std::int32_t label = 0;
-        for (const JsonValue& fragment : list_in(document, "fragments")) known[++label] = text_in(fragment, "name");
-        return known;
+        for (const JsonValue& fragment : list_in(document, "fragments")) names_of_labels[++label] = text_in(fragment, "name");
+        return names_of_labels;
     }
 
     void read_template_object(Context& context, Report& report, const Path& file, const std::string& name) {
         finish(context, report);
-        Template known = load_template(read_template(file));
-        if (!known.mesh) fail_input(name, "has no mesh that could be read", "run: ostraka template check " + name);
-        ShownObject& one = current.emplace();
-        one.name = name_of(name);
-        one.file = std::move(*known.mesh);
-        one.set = std::move(known.annotations);
-        one.graph = std::move(known.graph);
-        one.unit = known.file.unit;
-        for (std::optional<Mesh>& cage : known.cages)
-            if (cage && !one.cage) one.cage = std::move(*cage);
-        for (const Finding& finding : known.findings) made->note(name + ": " + finding.text);
+        Template loaded = load_template(read_template(file));
+        if (!loaded.mesh) fail_input(name, "has no mesh that could be read", "run: ostraka template check " + name);
+        ShownObject& object = current.emplace();
+        object.name = name_of(name);
+        object.file = std::move(*loaded.mesh);
+        object.set = std::move(loaded.annotations);
+        object.graph = std::move(loaded.graph);
+        object.unit = loaded.file.unit;
+        for (std::optional<Mesh>& cage : loaded.cages)
+            if (cage && !object.cage) object.cage = std::move(*cage);
+        for (const Finding& finding : loaded.findings) report_page->note(fmt::format("{}: {}", name, finding.text));
     }
 
     /// Slices, and the constraints of a deformation, are added to the preceding object; other data become tables.
     void read_document(const Json& document, const std::string& name) {
         const std::string format = format_of(document);
-        constexpr std::array known{"ostraka-slices",         "ostraka-report",      "ostraka-assembly", "ostraka-reassembly",
-                                   "ostraka-classification", "ostraka-proportions", "ostraka-study",    "ostraka-technique"};
-        if (std::find(known.begin(), known.end(), format) == known.end())
-            fail_input(name, "is nothing that a page can show",
-                       "of .json give slices, a report (--json), or what fit, assemble, template classify or study wrote");
+        constexpr std::array known_formats{"ostraka-slices",     "ostraka-report",         "ostraka-assembly",
+                                           "ostraka-reassembly", "ostraka-classification", "ostraka-proportions",
+                                           "ostraka-study",      "ostraka-technique"};
+        if (std::find(known_formats.begin(), known_formats.end(), format) == known_formats.end())
+            fail_input(
+                name, "cannot be shown on a page",
+                "among .json files, give slices, a report (--json), or what fit, assemble, template classify or study wrote");
         if (format == "ostraka-slices") {
             object_for(name).slices = page_slices(document, name);
             return;
@@ -216,16 +219,17 @@ struct MakeReport final : Operation {
             fail_input(name, "has no result", "give the output of a command with --json");
         std::set<std::string> shown;
         if (is_report && text_in(document, "command") == "deform") {
-            ShownObject& of = object_for(name);
-            if (!of.set && !list_in(*result, "constraints").Empty())
-                made->note(name + ": the parts of its constraints are not shown, because " + of.name + " has no annotations");
-            of.constraints = page_constraints(*result, of.set ? *of.set : AnnotationSet{});
-            of.conflicts = page_conflicts(*result);
+            ShownObject& object = object_for(name);
+            if (!object.set && !list_in(*result, "constraints").Empty())
+                report_page->note(fmt::format("{}: the parts of its constraints are not shown, because {} has no annotations",
+                                              name, object.name));
+            object.constraints = page_constraints(*result, object.set ? *object.set : AnnotationSet{});
+            object.conflicts = page_conflicts(*result);
             shown = {"constraints", "conflicts"};
         }
         if (is_report && text_in(document, "command") == "relation check") {
-            ShownObject& of = object_for(name);
-            of.conformance = page_conformance(*result, of.set ? *of.set : AnnotationSet{});
+            ShownObject& object = object_for(name);
+            object.conformance = page_conformance(*result, object.set ? *object.set : AnnotationSet{});
             shown = {"relationships", "rules"};
         }
         for (PageTable& table : record_tables(*result, stem, shown)) tables.push_back(std::move(table));
@@ -266,26 +270,26 @@ struct MakeReport final : Operation {
         }
         if (others.empty() && documents.empty())
             fail_input(folder.string(), "holds nothing that a page can show", "give a folder with meshes, tables or drawings");
-        const auto read_here = [&](const std::string& name) {
+        const auto read_entry = [&](const std::string& name) {
             in_file((folder / name).string(), [&] { read(context, report, folder / name, name); });
         };
-        const std::size_t before = places;
+        const std::size_t before = object_count;
         bool one_object = true;
-        const auto read_documents = [&](const std::string& of) {
-            for (auto [at, end] = documents.equal_range(of); at != end; ++at) {
-                const auto& [name, document] = at->second;
+        const auto read_documents = [&](const std::string& object) {
+            for (auto [entry, end] = documents.equal_range(object); entry != end; ++entry) {
+                const auto& [name, document] = entry->second;
                 if (format_of(document) == "ostraka-slices" && !one_object)
-                    made->note(name + " is left out: no mesh has its name");
+                    report_page->note(name + " is left out: no mesh has its name");
                 else in_file((folder / name).string(), [&] { read_document(document, name); });
             }
         };
         for (const std::string& name : others) {
             if (reassembled && name.find(".placed.") != std::string::npos) continue;  // contained in the groups
-            read_here(name);
+            read_entry(name);
             if (!is_mesh_name(name)) continue;
             read_documents(stem(name));
         }
-        one_object = current && places == before;
+        one_object = current && object_count == before;
         read_documents("");
     }
 
@@ -295,7 +299,7 @@ struct MakeReport final : Operation {
             return read_json(file);
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled) throw;
-            made->note(file.filename().string() + " is left out: " + error.problem());
+            report_page->note(fmt::format("{} is left out: {}", file.filename().string(), error.problem()));
             return Json();
         }
     }
@@ -309,16 +313,15 @@ struct MakeReport final : Operation {
         return *current;
     }
 
-    static std::vector<double> vertex_values(const ShownObject& of, const Path& file, const std::string& name) {
+    static std::vector<double> vertex_values(const ShownObject& object, const Path& file, const std::string& name) {
         std::vector<double> values = read_values(file);
-        const Mesh& mesh = of.file.mesh;
+        const Mesh& mesh = object.file.mesh;
         if (values.size() == mesh.number_of_vertices()) return values;
         if (values.size() != mesh.number_of_faces())
             fail_input(name,
-                       "holds " + std::to_string(values.size()) + " values for a mesh of " +
-                           std::to_string(mesh.number_of_vertices()) + " vertices and " + std::to_string(mesh.number_of_faces()) +
-                           " faces",
-                       "give one value an element");
+                       fmt::format("holds {} values for a mesh of {} vertices and {} faces", values.size(),
+                                   mesh.number_of_vertices(), mesh.number_of_faces()),
+                       "give one value per element");
         return vertex_means(mesh, values);
     }
 
@@ -327,100 +330,100 @@ struct MakeReport final : Operation {
     /// Adds the current object to the page, or writes it to a file of its own beside the page.
     void finish(Context& context, Report& report) {
         if (!current) return;
-        ShownObject one = std::move(*current);
+        ShownObject object = std::move(*current);
         current.reset();
-        names.add(one.name, one.set && !is_collection() ? &*one.set : nullptr);
-        const std::size_t vertices = one.file.mesh.number_of_vertices();
-        report.row("objects")("name", one.name)("vertices", vertices)("shown", std::min<std::size_t>(vertices, limit))(
-            "annotations", one.set ? one.set->annotations.size() : 0)("maps", one.maps.size());
-        const std::size_t place = places++;
-        if (!is_collection()) return add(*made, one, place, nullptr);
-        Page alone(one.name);
-        Picture small;
-        add(alone, one, 0, &small);
-        const std::string number = padded(place + 1, std::max<std::size_t>(9999, place + 1));
-        const Path relative = from_page(beside.path());
+        names.add(object.name, object.set && !is_collection() ? &*object.set : nullptr);
+        const std::size_t vertices = object.file.mesh.number_of_vertices();
+        report.row("objects")("name", object.name)("vertices", vertices)("shown", std::min<std::size_t>(vertices, limit))(
+            "annotations", object.set ? object.set->annotations.size() : 0)("maps", object.maps.size());
+        const std::size_t place = object_count++;
+        if (!is_collection()) return add(*report_page, object, place, nullptr);
+        Page object_page(object.name);
+        Picture small_picture;
+        add(object_page, object, 0, &small_picture);
+        const std::string file_number = padded(place + 1, std::max<std::size_t>(9999, place + 1));
+        const Path relative = from_page(objects_folder.path());
         PageEntry entry;
-        entry.name = one.name;
-        entry.file = address_of(relative / (number + ".js"));
-        entry.thumbnail = address_of(relative / (number + ".png"));
+        entry.name = object.name;
+        entry.file = address_of(relative / (file_number + ".js"));
+        entry.thumbnail = address_of(relative / (file_number + ".png"));
         entry.vertices = vertices;
-        entry.faces = one.file.mesh.number_of_faces();
+        entry.faces = object.file.mesh.number_of_faces();
         std::set<std::string> tags;
-        if (one.set)
-            for (const Annotation& annotation : one.set->annotations)
+        if (object.set)
+            for (const Annotation& annotation : object.set->annotations)
                 if (!annotation.tag.empty()) tags.insert(annotation.tag);
         entry.tags.assign(tags.begin(), tags.end());
-        made->add(entry);
-        write_file(beside.in(number + ".js"), alone.script(entry.file, context.provenance().to_line()));
-        write_png(beside.in(number + ".png"), small);
-        add_to_overview(one, place);
+        report_page->add(entry);
+        write_file(objects_folder.in(file_number + ".js"), object_page.script(entry.file, context.provenance().to_line()));
+        write_png(objects_folder.in(file_number + ".png"), small_picture);
+        add_to_overview(object, place);
     }
 
     [[nodiscard]] Path from_page(const Path& folder) const {
         if (is_memory(folder) || is_memory(page.path())) return folder.filename();
-        const Path around = std::filesystem::absolute(page.path()).lexically_normal().parent_path();
-        return std::filesystem::absolute(folder / "").lexically_normal().lexically_relative(around);
+        const Path page_folder = std::filesystem::absolute(page.path()).lexically_normal().parent_path();
+        return std::filesystem::absolute(folder / "").lexically_normal().lexically_relative(page_folder);
     }
 
     /// Adds size and measures of an object to the overview of the collection.
-    void add_to_overview(const ShownObject& one, std::size_t place) {
+    void add_to_overview(const ShownObject& object, std::size_t place) {
         if (overview.columns.empty()) {
             overview.title = "objects";
             overview.columns = {"object", "vertices", "triangles", "annotations"};
         }
         PageTable::Row& row = overview.rows.emplace_back();
         row.object = static_cast<int>(place);
-        row.cells.push_back(cell_of(one.name));
-        row.cells.push_back(cell_of(one.file.mesh.number_of_vertices()));
-        row.cells.push_back(cell_of(one.file.mesh.number_of_faces()));
-        row.cells.push_back(cell_of(one.set ? one.set->annotations.size() : std::size_t{0}));
-        constexpr std::size_t most_columns = 40;
-        if (one.set)
-            for (const Annotation& annotation : one.set->annotations)
+        row.cells.push_back(cell_of(object.name));
+        row.cells.push_back(cell_of(object.file.mesh.number_of_vertices()));
+        row.cells.push_back(cell_of(object.file.mesh.number_of_faces()));
+        row.cells.push_back(cell_of(object.set ? object.set->annotations.size() : std::size_t{0}));
+        constexpr std::size_t max_columns = 40;
+        if (object.set)
+            for (const Annotation& annotation : object.set->annotations)
                 for (const Attribute& attribute : annotation.attributes) {
                     if (attribute.type != AttributeType::measure || !attribute.measure.value) continue;
-                    std::string column = annotation.tag + ": " + attribute.name;
-                    if (!attribute.measure.unit.empty()) column += " (" + attribute.measure.unit + ")";
-                    const auto found = std::find(overview.columns.begin(), overview.columns.end(), column);
-                    const auto k = static_cast<std::size_t>(found - overview.columns.begin());
-                    if (found == overview.columns.end()) {
-                        if (overview.columns.size() >= most_columns) continue;
+                    std::string column = fmt::format("{}: {}", annotation.tag, attribute.name);
+                    if (!attribute.measure.unit.empty()) column += fmt::format(" ({})", attribute.measure.unit);
+                    const auto column_place = std::find(overview.columns.begin(), overview.columns.end(), column);
+                    const auto k = static_cast<std::size_t>(column_place - overview.columns.begin());
+                    if (column_place == overview.columns.end()) {
+                        if (overview.columns.size() >= max_columns) continue;
                         overview.columns.push_back(column);
                     }
                     while (row.cells.size() <= k) row.cells.emplace_back();
                     row.cells[k] = cell_of(*attribute.measure.value);
                 }
-        for (PageTable::Row& any : overview.rows)
-            while (any.cells.size() < overview.columns.size()) any.cells.emplace_back();
+        for (PageTable::Row& table_row : overview.rows)
+            while (table_row.cells.size() < overview.columns.size()) table_row.cells.emplace_back();
     }
 
-    void add(Page& to, ShownObject& one, std::size_t place, Picture* small) const {
+    void add(Page& target_page, ShownObject& object, std::size_t place, Picture* small_picture) const {
         PageObject shown;
-        shown.name = one.name;
-        shown.unit = !one.unit.empty() ? one.unit : unit;
-        shown.cage = one.cage ? &*one.cage : nullptr;
-        shown.graph = one.graph ? &*one.graph : nullptr;
-        shown.slices = one.slices ? &*one.slices : nullptr;
-        shown.constraints = std::move(one.constraints);
-        shown.conflicts = std::move(one.conflicts);
-        shown.conformance = std::move(one.conformance);
-        if (one.graph && one.set) shown.checks = judge_relationships(one.file.mesh, *one.set, *one.graph);
+        shown.name = object.name;
+        shown.unit = !object.unit.empty() ? object.unit : unit;
+        shown.cage = object.cage ? &*object.cage : nullptr;
+        shown.graph = object.graph ? &*object.graph : nullptr;
+        shown.slices = object.slices ? &*object.slices : nullptr;
+        shown.constraints = std::move(object.constraints);
+        shown.conflicts = std::move(object.conflicts);
+        shown.conformance = std::move(object.conformance);
+        if (object.graph && object.set) shown.checks = judge_relationships(object.file.mesh, *object.set, *object.graph);
         PageTable table;
-        if (one.set && !one.set->annotations.empty()) {
-            table = annotation_table(one.file.mesh, *one.set, static_cast<int>(place), one.name);
-            if (are_apart(one.file.mesh, *one.set))
-                for (std::size_t i = 0; i < one.set->annotations.size(); ++i) shown.parts.push_back(i);
+        if (object.set && !object.set->annotations.empty()) {
+            table = annotation_table(object.file.mesh, *object.set, static_cast<int>(place), object.name);
+            if (are_apart(object.file.mesh, *object.set))
+                for (std::size_t i = 0; i < object.set->annotations.size(); ++i) shown.parts.push_back(i);
         }
-        std::optional<BoundMesh> smaller;
-        if (one.file.mesh.number_of_vertices() > limit) {
-            smaller = simplified(one, shown);
-            shown.mesh = &smaller->mesh;
-            if (smaller->annotations) shown.annotations = &*smaller->annotations;
+        std::optional<BoundMesh> simplified_mesh;
+        if (object.file.mesh.number_of_vertices() > limit) {
+            simplified_mesh = simplified(object, shown);
+            shown.mesh = &simplified_mesh->mesh;
+            if (simplified_mesh->annotations) shown.annotations = &*simplified_mesh->annotations;
         } else {
-            shown.mesh = &one.file.mesh;
-            shown.maps = std::move(one.maps);
-            if (one.set) shown.annotations = &*one.set;
+            shown.mesh = &object.file.mesh;
+            shown.maps = std::move(object.maps);
+            if (object.set) shown.annotations = &*object.set;
         }
         std::optional<AlongEdges> along_edges;  // free outlines are shown on the mesh cut along them
         if (shown.annotations != nullptr) along_edges.emplace(*shown.mesh, *shown.annotations);
@@ -433,48 +436,48 @@ struct MakeReport final : Operation {
             shown.mesh = &along_edges->mesh();
             shown.annotations = &along_edges->annotations();
         }
-        to.add(shown);
-        if (!table.rows.empty()) to.add(std::move(table));
-        if (small != nullptr) *small = thumbnail(*shown.mesh, shown.annotations, "240x180");
+        target_page.add(shown);
+        if (!table.rows.empty()) target_page.add(std::move(table));
+        if (small_picture != nullptr) *small_picture = thumbnail(*shown.mesh, shown.annotations, "240x180");
     }
 
     /// Simplifies the mesh for display only: measures keep the values of the original.
-    BoundMesh simplified(ShownObject& one, PageObject& shown) const {
+    BoundMesh simplified(ShownObject& object, PageObject& shown) const {
         MeshFile copy;
-        copy.mesh = one.file.mesh;
-        BoundMesh bound(std::move(copy), one.set);
+        copy.mesh = object.file.mesh;
+        BoundMesh bound(std::move(copy), object.set);
         SimplifyOptions options;
         options.vertices = limit;
         const SimplifyResult result = bound.simplify(options);
         const SurfaceSearch surface(bound.mesh);
-        PageObject::Whole whole{one.file.mesh.number_of_vertices(), one.file.mesh.number_of_faces(), 0};
-        for (const Vertex v : one.file.mesh.vertices())
-            whole.deviation = std::max(whole.deviation, surface.closest(one.file.mesh.point(v)).distance);
+        PageObject::Whole whole{object.file.mesh.number_of_vertices(), object.file.mesh.number_of_faces(), 0};
+        for (const Vertex v : object.file.mesh.vertices())
+            whole.deviation = std::max(whole.deviation, surface.closest(object.file.mesh.point(v)).distance);
         shown.whole = whole;
-        for (const PageMap& map : one.maps)
+        for (const PageMap& map : object.maps)
             shown.maps.push_back(simplified_map(map, result.vertex_map, bound.mesh.number_of_vertices()));
-        if (one.set && bound.annotations)
+        if (object.set && bound.annotations)
             for (Annotation& annotation : bound.annotations->annotations)
-                if (const Annotation* original = one.set->find(annotation.id))
+                if (const Annotation* original = object.set->find(annotation.id))
                     for (Attribute& attribute : annotation.attributes)
-                        for (const Attribute& known : original->attributes)
-                            if (known.id == attribute.id && known.type == attribute.type) {
-                                attribute.measure.value = known.measure.value;
-                                attribute.measure.uncertainty = known.measure.uncertainty;
-                                attribute.measure.stale = known.measure.stale;
-                                attribute.descriptor = known.descriptor;
+                        for (const Attribute& original_attribute : original->attributes)
+                            if (original_attribute.id == attribute.id && original_attribute.type == attribute.type) {
+                                attribute.measure.value = original_attribute.measure.value;
+                                attribute.measure.uncertainty = original_attribute.measure.uncertainty;
+                                attribute.measure.stale = original_attribute.measure.stale;
+                                attribute.descriptor = original_attribute.descriptor;
                             }
         return bound;
     }
 
     FileInput results;
     FileOutput page{".html"};
-    FolderOutput beside;
+    FolderOutput objects_folder;
     std::string title, unit;
     std::uint64_t limit = 200'000;
-    std::optional<Page> made;
+    std::optional<Page> report_page;
     std::optional<ShownObject> current;  ///< the object to which the following files belong
-    std::size_t places = 0, drawings = 0;
+    std::size_t object_count = 0, drawings = 0;
     PageNames names;
     PageTable overview;  ///< of a collection
     std::vector<PageTable> tables;

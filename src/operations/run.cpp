@@ -8,6 +8,8 @@
 #include "ostraka/workflow/collect.h"
 #include "ostraka/workflow/crate.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <set>
 
@@ -17,26 +19,28 @@ namespace {
 
 /// Reports the number of instances per state, for each step.
 void report_steps(Report& report, const StudyPlan& plan, const std::vector<InstanceResult>& results) {
-    std::map<InstanceState, std::size_t> all;
+    std::map<InstanceState, std::size_t> total_count;
     for (std::size_t s = 0; s < plan.study.steps.size(); ++s) {
-        std::map<InstanceState, std::size_t> count;
+        std::map<InstanceState, std::size_t> step_count;
         double seconds = 0;
         for (const std::size_t i : plan.instances_of(s)) {
-            ++count[results[i].state];
-            ++all[results[i].state];
+            ++step_count[results[i].state];
+            ++total_count[results[i].state];
             if (results[i].state == InstanceState::done) seconds += results[i].record.seconds;
         }
         const StudyStep& step = plan.study.steps[s];
         Report::Row row = report.row("steps");
         row("step", step.name)("operation", step.operation == nullptr ? "(a program)" : step.operation->name)(
             "instances", plan.instances_of(s).size());
-        row("done", count[InstanceState::done] + count[InstanceState::would_run])("unchanged", count[InstanceState::unchanged]);
-        row("failed", count[InstanceState::failed])("skipped", count[InstanceState::skipped]);
+        row("done", step_count[InstanceState::done] + step_count[InstanceState::would_run])("unchanged",
+                                                                                            step_count[InstanceState::unchanged]);
+        row("failed", step_count[InstanceState::failed])("skipped", step_count[InstanceState::skipped]);
         if (seconds > 0) report.run("seconds." + step.name, seconds);
     }
-    report("instances", plan.instances.size())("done", all[InstanceState::done])("wouldRun", all[InstanceState::would_run]);
-    report("unchanged", all[InstanceState::unchanged])("failed", all[InstanceState::failed])("skipped",
-                                                                                             all[InstanceState::skipped]);
+    report("instances", plan.instances.size())("done", total_count[InstanceState::done])("wouldRun",
+                                                                                         total_count[InstanceState::would_run]);
+    report("unchanged", total_count[InstanceState::unchanged])("failed", total_count[InstanceState::failed])(
+        "skipped", total_count[InstanceState::skipped]);
 }
 
 /// The words of a program, quoted; words known only at run time are shown by their names.
@@ -45,11 +49,11 @@ std::string program_text(const StudyPlan& plan, const StudyInstance& instance) {
     auto input = instance.inputs.begin();
     for (std::string word : instance.program) {
         if (word.empty()) {
-            const StudyStep& from = plan.study.steps[plan.instances[input->instance].step];
-            word = "${" + from.name + "." + input->output + "}";
+            const StudyStep& source_step = plan.study.steps[plan.instances[input->instance].step];
+            word = fmt::format("${{{}.{}}}", source_step.name, input->output);
             ++input;
         }
-        text += (text.empty() ? "'" : " '") + printable(word) + "'";
+        text += fmt::format("{}'{}'", text.empty() ? "" : " ", printable(word));
     }
     return text;
 }
@@ -59,7 +63,7 @@ void show_programs(Context& context, Report& report, const StudyPlan& plan, bool
     for (const StudyInstance& instance : plan.instances) {
         if (instance.program.empty() || is_own_program(instance.program.front())) continue;
         const std::string words = program_text(plan, instance);
-        context.note(instance.title(plan.study) + (allowed ? " starts the program: " : " would start the program: ") + words);
+        context.note(fmt::format("{} {} the program: {}", instance.title(plan.study), allowed ? "starts" : "would start", words));
         report.row("programs")("step", instance.title(plan.study))("words", words);
         if (!allowed) report.answer_no();
     }
@@ -130,9 +134,10 @@ struct Run final : Operation {
         for (const StudyInstance& instance : plan->instances)
             for (const StudyInput& input : instance.inputs)
                 if (!input.file.empty() && is_inside(input.file, folder) && !is_inside(folder, input.file))
-                    throw Error(ErrorKind::input, plan->study.file.string(),
-                                "'" + input.file.string() + "' is an input, and lies in the run folder " + folder.string(),
-                                "name another run folder (--output)");
+                    throw Error(
+                        ErrorKind::input, plan->study.file.string(),
+                        fmt::format("'{}' is an input, and lies in the run folder {}", input.file.string(), folder.string()),
+                        "name another run folder (--output)");
         const auto results = run_study(*plan, folder, options);
         report("output", folder.string());
         report_steps(report, *plan, results);
@@ -140,20 +145,22 @@ struct Run final : Operation {
             const std::string title = plan->instances[i].title(plan->study);
             if (results[i].state == InstanceState::failed || results[i].state == InstanceState::skipped)
                 report.row("failures")("step", title)("problem", results[i].problem);
-            const bool asked = !explain.empty() && plan->study.steps[plan->instances[i].step].name == explain;
-            if (options.dry_run && (asked || (explain.empty() && results[i].state == InstanceState::would_run)))
+            const bool is_explained = !explain.empty() && plan->study.steps[plan->instances[i].step].name == explain;
+            if (options.dry_run && (is_explained || (explain.empty() && results[i].state == InstanceState::would_run)))
                 report.row("reasons")("step", title)("state", to_string(results[i].state))(
                     "why", results[i].state == InstanceState::unchanged ? "nothing has changed" : results[i].why);
             if (results[i].state == InstanceState::failed) report.answer_no();
         }
         if (options.dry_run) return;
         if (!options.share.is_whole()) {
-            report.line("part " + shard + " is done; run it without --shard to gather the parts");
+            report.line(fmt::format("shard {} is done; run it without --shard to gather the shards", shard));
             return;
         }
         auto written = write_collected(*plan, results, folder, [&](const std::string& name) { return output.in(name); });
-        const auto full = [](const Path& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
-        const RunRequest request{full(plan->study.folder).lexically_relative(full(folder)), quick, set, only};
+        const auto absolute_path = [](const Path& path) {
+            return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+        };
+        const RunRequest request{absolute_path(plan->study.folder).lexically_relative(absolute_path(folder)), quick, set, only};
         write_json(output.in("run.json"), run_request_to_json(request));
         write_file(output.in("run.study.json"), read_file(file));
         const Json crate = crate_of(*plan, results, folder, written);
@@ -164,19 +171,20 @@ struct Run final : Operation {
 private:
     /// Checks the programs of the requested steps and of the steps they depend on.
     void check_programs(const StudyPlan& plan, const RunStudyOptions& options) const {
-        std::set<std::size_t> asked;
-        std::vector<std::size_t> next;
+        std::set<std::size_t> required;
+        std::vector<std::size_t> pending;
         for (std::size_t i = 0; i < plan.instances.size(); ++i) {
             const std::string& name = plan.study.steps[plan.instances[i].step].name;
             if (options.only.empty() || std::find(options.only.begin(), options.only.end(), name) != options.only.end())
-                next.push_back(i);
+                pending.push_back(i);
         }
-        while (!next.empty()) {
-            const std::size_t i = next.back();
-            next.pop_back();
-            if (asked.insert(i).second) next.insert(next.end(), plan.instances[i].needs.begin(), plan.instances[i].needs.end());
+        while (!pending.empty()) {
+            const std::size_t i = pending.back();
+            pending.pop_back();
+            if (required.insert(i).second)
+                pending.insert(pending.end(), plan.instances[i].needs.begin(), plan.instances[i].needs.end());
         }
-        for (const std::size_t i : asked) {
+        for (const std::size_t i : required) {
             const StudyStep& step = plan.study.steps[plan.instances[i].step];
             if (step.operation == nullptr)
                 static_cast<void>(find_program(text_of(*step.program.front().value), options.program_folder,
@@ -199,7 +207,7 @@ private:
 };
 
 /// The report without the parts that may differ between identical runs.
-std::string lasting_report(const Path& folder) {
+std::string reproducible_report(const Path& folder) {
     const Path file = folder / "report.json";
     if (!file_exists(file)) return {};
     Json report = read_json(file);
@@ -210,7 +218,7 @@ std::string lasting_report(const Path& folder) {
 struct Replay final : Operation {
     void describe(Parameters& p) override {
         p.input("crate", Kind::folder, crate, "the folder of a run");
-        p.output_option("output", Kind::folder, output, "folder in which the run is repeated; otherwise nothing of it is kept");
+        p.output_option("output", Kind::folder, output, "folder in which the run is repeated; a temporary one if left out");
         p.options("inputs", inputs, "folder that replaces that of the study when inputs are resolved").only_by_caller();
         p.options("reads", reads, "further folder from which inputs may be read; may be given more than once").only_by_caller();
         p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
@@ -257,38 +265,42 @@ struct Replay final : Operation {
             const auto before = read_record(folder / instance.folder);
             if (!before && results[i].state != InstanceState::done) continue;
             ++steps;
-            const auto differs = [&](const std::string& name, const std::string& was, const std::string& is,
-                                     const std::string& what) {
-                report.row("differences")("step", instance.title(plan->study))("output", name)("before", was)("now", is)("what",
-                                                                                                                         what);
+            const auto report_difference = [&](const std::string& name, const std::string& old_value,
+                                               const std::string& new_value, const std::string& difference) {
+                report.row("differences")("step", instance.title(plan->study))("output", name)("before", old_value)(
+                    "now", new_value)("what", difference);
                 report.answer_no();
             };
             if (!before || results[i].state != InstanceState::done) {
-                differs("", "", "", before ? "it failed now: " + results[i].problem : "it did not succeed then");
+                report_difference("", "", "",
+                                  before ? "the repeated run failed: " + results[i].problem : "the first run did not succeed");
                 continue;
             }
-            compare_inputs(*before, results[i].record, differs);
-            for (const auto& [name, was] : before->outputs) {
+            compare_inputs(*before, results[i].record, report_difference);
+            for (const auto& [name, old_output] : before->outputs) {
                 ++compared;
-                const auto now = results[i].record.outputs.find(name);
-                const std::string sum = now == results[i].record.outputs.end() ? "" : now->second.sha256;
-                if (sum == was.sha256) ++same;
-                else differs(name, was.sha256, sum, sum.empty() ? "not made now" : "other bytes");
+                const auto repeated_output = results[i].record.outputs.find(name);
+                const std::string checksum =
+                    repeated_output == results[i].record.outputs.end() ? "" : repeated_output->second.sha256;
+                if (checksum == old_output.sha256) ++same;
+                else
+                    report_difference(name, old_output.sha256, checksum,
+                                      checksum.empty() ? "not written by the repeated run" : "other bytes");
             }
             ++compared;
-            if (lasting_report(folder / instance.folder) == lasting_report(repeated / instance.folder)) ++same;
-            else differs("report", "", "", "other values");
+            if (reproducible_report(folder / instance.folder) == reproducible_report(repeated / instance.folder)) ++same;
+            else report_difference("report", "", "", "other values");
         }
         report("steps", steps)("outputs", compared)("same", same)("different", compared - same);
     }
 
     template <class Differs>
-    static void compare_inputs(const StudyRecord& before, const StudyRecord& now, const Differs& differs) {
-        const std::map<std::string, std::string> is(now.depends.begin(), now.depends.end());
-        for (const auto& [name, was] : before.depends)
-            if (const auto known = is.find(name); known == is.end() || known->second != was)
-                differs(name, was, known == is.end() ? "" : known->second,
-                        name == "toolkit" ? "another version" : "another input or option");
+    static void compare_inputs(const StudyRecord& before, const StudyRecord& now, const Differs& report_difference) {
+        const std::map<std::string, std::string> current(now.depends.begin(), now.depends.end());
+        for (const auto& [name, old_value] : before.depends)
+            if (const auto recorded = current.find(name); recorded == current.end() || recorded->second != old_value)
+                report_difference(name, old_value, recorded == current.end() ? "" : recorded->second,
+                                  name == "toolkit" ? "another version" : "another input or option");
     }
 
     FileInput crate;

@@ -8,6 +8,8 @@
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/slicing/silhouette.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +26,7 @@ public:
         for (std::size_t i = 0; i < sources.size(); ++i)
             if (fills_folder(i)) check_folder(i);
             else if (!form_of(sources[i].file))
-                fail_usage("'" + printable(file(i), 60) + "' is none of the files that slices are written to",
+                fail_usage(fmt::format("slices cannot be written to '{}'", printable(file(i), 60)),
                            "end its name in .json, .csv, .svg, .pdf, .png or .ply, or give a folder for all of them");
     }
 
@@ -34,20 +36,20 @@ public:
 
     /// Lists the files to write, and creates their folders.
     [[nodiscard]] std::vector<std::pair<SliceForm, Path>> files(bool with_profile) const {
-        std::vector<std::pair<SliceForm, Path>> list;
+        std::vector<std::pair<SliceForm, Path>> outputs;
         for (std::size_t i = 0; i < sources.size(); ++i) {
             if (!fills_folder(i)) {
-                list.emplace_back(*form_of(sources[i].file), sources[i].file);
+                outputs.emplace_back(*form_of(sources[i].file), sources[i].file);
                 continue;
             }
             for (const auto& [form, file_name] : {std::pair{SliceForm::json, "slices.json"},
                                                   {SliceForm::csv, "slices.csv"},
                                                   {SliceForm::sheet, "slices.svg"},
                                                   {SliceForm::mesh, "slices.ply"}})
-                list.emplace_back(form, in(file_name, i));
-            if (with_profile) list.emplace_back(SliceForm::profile, in("profile.svg", i));
+                outputs.emplace_back(form, in(file_name, i));
+            if (with_profile) outputs.emplace_back(SliceForm::profile, in("profile.svg", i));
         }
-        return list;
+        return outputs;
     }
 
 private:
@@ -81,10 +83,10 @@ struct SliceObject final : Operation {
         p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, from the lowest point up", Anything{}, "the mesh's unit");
         p.options("heights", heights, "heights above the lowest point, separated by commas", Anything{}, "the mesh's unit");
-        p.options("range", range, "lower and upper end of the sliced range as shares of the height, for --count and --spacing",
+        p.options("range", range, "lower and upper end of the sliced range as fractions of the height, for --count and --spacing",
                   Range{0, 1});
         p.options("plane", plane, "one slice: a point and the normal, x,y,z,nx,ny,nz");
-        p.options.group("What is told and drawn");
+        p.options.group("What is reported and drawn");
         p.options("medial-axis", residues, "medial axes of the slices at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
         p.options("axes", axes, "also compute the straightness against the axes of `ostraka axis`");
         p.options("unit", unit, "unit of the mesh; otherwise that of the annotations");
@@ -102,25 +104,25 @@ struct SliceObject final : Operation {
     void check() const override {
         check_planes();
         if (!annotations && !names.empty())
-            fail_usage("--annotation '" + printable(names[0], 60) + "' names a part of " + printable(mesh.file(), 60) +
-                           ", but no annotation file is given",
-                       "put it behind the mesh: ostraka slice MESH ANNOTATIONS --annotation ...");
+            fail_usage(fmt::format("--annotation '{}' names a part of {}, but no annotation file is given",
+                                   printable(names[0], 60), printable(mesh.file(), 60)),
+                       "put it after the mesh: ostraka slice MESH ANNOTATIONS --annotation ...");
         if (!profile) return;
         if (const std::string ending = extension(profile.file());
             !profile.file().empty() && ending != ".svg" && ending != ".png" && ending != ".pdf")
-            fail_usage("'" + profile.file() + "' is no drawing", "end its name in .svg, .pdf or .png");
+            fail_usage(fmt::format("'{}' is not a drawing", profile.file()), "end its name in .svg, .pdf or .png");
         if (direction == "skeleton") fail_usage("--profile with --direction skeleton", "a profile has a straight axis");
         if (!plane.empty()) fail_usage("--profile with --plane", "a profile is cut along an axis: --direction, --profile-angle");
     }
 
     void run(Context& context, Report& report) override {
         read_part();
-        const CutObject cut = in_file(mesh.file(), [&] { return cut_it(); });
+        const CutObject cut = in_file(mesh.file(), [&] { return cut_slices(); });
         if (!cut.reason.empty()) {
-            report.note(mesh.file() + ": " + cut.reason + " (slice along another --direction)");
+            report.note(fmt::format("{}: {} (slice along another --direction)", mesh.file(), cut.reason));
             return report.answer_no();
         }
-        add_slices(report, {cut, unit_of_lengths, !plane.empty(), compared_axes(on(), faces, cut, axes),
+        add_slices(report, {cut, unit_of_lengths, !plane.empty(), compared_axes(sliced_mesh(), faces, cut, axes),
                             thickness_homogeneity(cut.slices),
                             plane.empty() ? tubular_part(cut.stack(), cut.descriptors, tube_options) : Tube{}});
         for (const auto& [form, file] : output.files(plane.empty() && direction != "skeleton"))
@@ -132,7 +134,7 @@ struct SliceObject final : Operation {
 
     void check_planes() const {
         const int ways = (count ? 1 : 0) + (spacing ? 1 : 0) + (heights.empty() ? 0 : 1);
-        if (ways > 1) fail_usage("heights are asked for in more than one way", "give one of --count, --spacing and --heights");
+        if (ways > 1) fail_usage("heights are specified in more than one way", "give one of --count, --spacing and --heights");
         if (!plane.empty() && (ways > 0 || direction != "up"))
             fail_usage("--plane is one slice", "leave out --count, --spacing, --heights, --direction");
         if (direction == "skeleton" && (spacing || !heights.empty()))
@@ -141,35 +143,36 @@ struct SliceObject final : Operation {
             fail_usage("--spacing is " + number(*spacing), "give a length above 0, in the mesh's unit");
         for (const double height : heights)
             if (!(std::abs(height) <= largest_coordinate))
-                fail_usage("--heights has " + number(height), "give heights over the lowest place, in the mesh's unit");
+                fail_usage("--heights has " + number(height), "give heights above the lowest point, in the mesh's unit");
         if (range.size() != 2 || !(range[0] < range[1]))
-            fail_usage("--range is '" + listed(range) + "'", "give two shares of the height, the lower one first, like 0,0.4");
+            fail_usage(fmt::format("--range is '{}'", comma_separated(range)),
+                       "give two fractions of the height, the lower one first, like 0,0.4");
         if (!plane.empty()) static_cast<void>(frame_of_plane());
     }
 
-    static std::string listed(const std::vector<double>& numbers) {
+    static std::string comma_separated(const std::vector<double>& numbers) {
         return joined(numbers, ",", [](double x) { return number(x); });
     }
 
-    [[nodiscard]] std::optional<AxisMethod> own_axis() const {
+    [[nodiscard]] std::optional<AxisMethod> requested_axis() const {
         for (const AxisMethod method : {AxisMethod::principal, AxisMethod::rotation, AxisMethod::skeleton})
             if (direction == to_string(method)) return method;
         return std::nullopt;
     }
 
     [[nodiscard]] SliceFrame frame_of_plane() const {
-        const std::string what = "--plane is '" + listed(plane) + "'";
-        if (plane.size() != 6) fail_usage(what, "give six numbers: a point and the normal");
+        const std::string problem = fmt::format("--plane is '{}'", comma_separated(plane));
+        if (plane.size() != 6) fail_usage(problem, "give six numbers: a point and the normal");
         if (!is_place(plane[0], plane[1], plane[2]))
-            fail_usage(what + ": its point is no place", "give finite coordinates, within those of the mesh");
+            fail_usage(problem + ": its point is not valid", "give finite coordinates, within those of the mesh");
         const Vector normal(plane[3], plane[4], plane[5]);
         if (unit_vector(normal) == CGAL::NULL_VECTOR)
-            fail_usage(what + ": its normal has no direction", "give finite numbers that are not all 0");
+            fail_usage(problem + ": its normal has no direction", "give finite numbers that are not all 0");
         return slice_frame({plane[0], plane[1], plane[2]}, normal);
     }
 
     /// The mesh, cut along the outlines of the sliced part if these are free.
-    [[nodiscard]] const Mesh& on() const { return along_edges ? along_edges->mesh() : mesh->mesh; }
+    [[nodiscard]] const Mesh& sliced_mesh() const { return along_edges ? along_edges->mesh() : mesh->mesh; }
 
     /// Sets unit, up direction and faces from the options, or else from the annotations.
     void read_part() {
@@ -184,7 +187,7 @@ struct SliceObject final : Operation {
                 const Annotation& annotation =
                     *along_edges->annotations().find(find_annotation(set, name, annotations.file()).id);
                 if (annotation.type != AnnotationType::region)
-                    fail_usage("annotation '" + name + "' is no region", "only regions can be sliced");
+                    fail_usage(fmt::format("annotation '{}' is not a region", name), "only regions can be sliced");
                 faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
             }
             std::sort(faces.begin(), faces.end());
@@ -194,21 +197,21 @@ struct SliceObject final : Operation {
         upwards = {upward[0], upward[1], upward[2]};
     }
 
-    [[nodiscard]] CutObject cut_it() const {
+    [[nodiscard]] CutObject cut_slices() const {
         CutObject cut;
         if (!plane.empty()) {
-            cut = cut_parallel(on(), frame_of_plane(), {0}, faces);
+            cut = cut_parallel(sliced_mesh(), frame_of_plane(), {0}, faces);
         } else {
-            CutOptions options{own_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
+            CutOptions options{requested_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
                 const auto along = direction_of(direction, "--direction");
                 options.up = {along[0], along[1], along[2]};
             }
             // A slice crosses about 3 sqrt(number of faces) edges, with points and descriptors for each.
-            const double crossed = 3 * std::sqrt(static_cast<double>(on().number_of_faces()));
-            require_memory(200 * crossed * static_cast<double>(count.value_or(50)),
-                           std::to_string(count.value_or(50)) + " slices", "ask for fewer (--count)");
-            cut = cut_object(on(), faces, options);
+            const double crossed_edges = 3 * std::sqrt(static_cast<double>(sliced_mesh().number_of_faces()));
+            require_memory(200 * crossed_edges * static_cast<double>(count.value_or(50)),
+                           std::to_string(count.value_or(50)) + " slices", "request fewer (--count)");
+            cut = cut_object(sliced_mesh(), faces, options);
         }
         if (!residues.empty()) add_medial_axes(cut, residues);
         return cut;
@@ -225,8 +228,8 @@ struct SliceObject final : Operation {
                 break;
             case SliceForm::mesh: {
                 MeshExtras extras;
-                extras.face_colours = slice_colours(on(), cut, colour_by);
-                context.notes({}, write_mesh(file, on(), extras, {.comment = context.provenance().to_line()}));
+                extras.face_colours = slice_colours(sliced_mesh(), cut, colour_by);
+                context.notes({}, write_mesh(file, sliced_mesh(), extras, {.comment = context.provenance().to_line()}));
                 break;
             }
             case SliceForm::sheet:
@@ -239,7 +242,7 @@ struct SliceObject final : Operation {
 
     /// Whether any plane meets the mesh; otherwise nothing is drawn.
     static bool is_drawable(const std::string& name, const CutObject& cut, Report& report) {
-        if (!cut.met()) report.note("no plane meets the mesh: " + name + " is not written");
+        if (!cut.met()) report.note(fmt::format("no plane meets the mesh: {} is not written", name));
         return cut.met();
     }
 
@@ -249,7 +252,7 @@ struct SliceObject final : Operation {
     [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
         const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
-        content.title = name_of_drawing() + ": " + counted(n, "slice");
+        content.title = fmt::format("{}: {}", name_of_drawing(), counted(n, "slice"));
         content.unit = unit_of_lengths;
         for (std::size_t k = 0; k < std::min(n, maximum); ++k) {
             const std::size_t i = n <= maximum ? k : k * (n - 1) / std::max<std::size_t>(1, maximum - 1);
@@ -258,44 +261,48 @@ struct SliceObject final : Operation {
                 for (const auto& branch : cut.medial[i].levels[0].branches) entry.lines.push_back(branch.points);
             content.slices.push_back(entry);
         }
-        if (n > maximum) content.title += ", " + std::to_string(maximum) + " of them drawn";
+        if (n > maximum) content.title += fmt::format(", {} of them drawn", maximum);
         if (cut.parallel && plane.empty()) {
             SliceFrame view = cut.frames[0];
             view.v = view.normal;
             view.normal = CGAL::cross_product(view.u, view.v);
-            content.view = silhouette(on(), view, 500, faces);
+            content.view = silhouette(sliced_mesh(), view, 500, faces);
         }
         return content;
     }
 
     /// Draws the profile; of an object that is not a surface of revolution only if requested.
-    void draw_profile(const Path& file, bool asked, const CutObject& cut, Report& report) const {
-        const double turn = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
+    void draw_profile(const Path& file, bool is_requested, const CutObject& cut, Report& report) const {
+        const double section_angle = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
-        const Profile found = find_profile(on(), axis, turn);
+        const Profile found_profile = find_profile(sliced_mesh(), axis, section_angle);
         const std::string name = file.filename().string();
-        const std::string not_turned = 2 * found.open >= 24
-                                           ? "the contours of " + std::to_string(found.open) +
-                                                 " of 24 slices do not close, so that whether the object is round is not known: "
-                                           : "not a turned object about this axis (fewer than half of 24 slices are round): ";
-        if (!found.turned && !asked)
-            return report.note(not_turned + name + " is not written; --profile FILE draws it all the same");
-        if (!found.turned)
-            report.note(not_turned + (found.rim_high > 0
-                                          ? "the drawing shows one section, and the circle of the rim as far as its arc tells it"
-                                          : "a profile drawing says little of it"));
-        if (found.hides)
-            report.note(name + " does not show all that stands out from the turned body: some of it lies before or behind it");
-        write_profile_drawing(file, found, name_of_drawing(), unit_of_lengths);
+        const std::string reason = 2 * found_profile.open >= 24
+                                       ? fmt::format(
+                                             "the contours of {} of 24 slices do not close, so that it cannot be determined "
+                                             "whether the object is round: ",
+                                             found_profile.open)
+                                       : "not a surface of revolution about this axis (fewer than half of 24 slices are round): ";
+        if (!found_profile.turned && !is_requested)
+            return report.note(fmt::format("{}{} is not written; --profile FILE draws it anyway", reason, name));
+        if (!found_profile.turned)
+            report.note(reason + (found_profile.rim_high > 0
+                                      ? "the drawing shows one section, and the circle of the rim as far as its arc determines it"
+                                      : "a profile drawing describes it poorly"));
+        if (found_profile.hides)
+            report.note(
+                name +
+                " does not show everything that protrudes from the surface of revolution: some of it lies in front or behind");
+        write_profile_drawing(file, found_profile, name_of_drawing(), unit_of_lengths);
     }
 
     void add_notes(Report& report, const CutObject& cut) const {
         if (!up_known && (direction == "rotation" || direction == "principal"))
-            report.note("which end of the axis is up is not known (0,0,1 taken): if it is upside down, give --up");
-        if (!cut.parallel && is_hollow(on(), upwards, faces))
+            report.note("which end of the axis points up is unknown (0,0,1 is assumed): if the object is upside down, give --up");
+        if (!cut.parallel && is_hollow(sliced_mesh(), upwards, faces))
             report.note(
-                "the object is hollow: its skeleton lies in the wall or wanders through the mouth, so that slices "
-                "across it cut the wall aslant (--direction rotation or up cuts a vessel)");
+                "the object is hollow: its skeleton lies in the wall or leaves through the mouth, so that slices across it cut "
+                "the wall obliquely (--direction rotation or up cuts a vessel)");
         report.notes(slice_remarks(cut, !plane.empty()));
     }
 

@@ -5,6 +5,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,9 +35,9 @@ constexpr std::array<ShownDescriptor, 8> shown_descriptors{{{"area", "area", 4},
                                                             {"thickness_mean", "thickness", 3}}};
 
 const ShownDescriptor* shown_descriptor(std::string_view name) {
-    const auto found =
-        std::find_if(shown_descriptors.begin(), shown_descriptors.end(), [&](const auto& one) { return one.name == name; });
-    return found == shown_descriptors.end() ? nullptr : &*found;
+    const auto descriptor =
+        std::find_if(shown_descriptors.begin(), shown_descriptors.end(), [&](const auto& entry) { return entry.name == name; });
+    return descriptor == shown_descriptors.end() ? nullptr : &*descriptor;
 }
 
 bool is_slice_count(std::string_view name) { return name == "components" || name == "holes" || name == "euler_number"; }
@@ -51,18 +53,18 @@ std::vector<double> slice_triple(const Point& p) { return {p.x(), p.y(), p.z()};
 
 /// JSON list; numbers that are not finite become null.
 JsonValue slice_list(const std::vector<double>& values, JsonAllocator& allocator) {
-    std::vector<std::optional<double>> list;
-    for (const double x : values) list.push_back(std::isfinite(x) ? std::optional(x) : std::nullopt);
-    return json_value(list, allocator);
+    std::vector<std::optional<double>> finite_values;
+    for (const double x : values) finite_values.push_back(std::isfinite(x) ? std::optional(x) : std::nullopt);
+    return json_value(finite_values, allocator);
 }
 JsonValue slice_points(const std::vector<Eigen::Vector2d>& points, JsonAllocator& allocator) {
     return json_list(points, allocator, [&](const auto& p) { return slice_list({p.x(), p.y()}, allocator); });
 }
 
 JsonValue slice_json(const SliceFrame& frame, JsonAllocator& allocator) {
-    const auto list = [&](const auto& of) { return slice_list(slice_triple(of), allocator); };
-    return json_object(allocator, "origin", list(frame.origin), "u", list(frame.u), "v", list(frame.v), "normal",
-                       list(frame.normal));
+    const auto coordinates = [&](const auto& vector) { return slice_list(slice_triple(vector), allocator); };
+    return json_object(allocator, "origin", coordinates(frame.origin), "u", coordinates(frame.u), "v", coordinates(frame.v),
+                       "normal", coordinates(frame.normal));
 }
 
 JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
@@ -99,7 +101,7 @@ void add_slice_completeness(Report::Row& row, const Slice& slice) {
     const auto percent = [](double share) { return number(100 * share, 3); };
     std::string shown = percent(c.share);
     if (!std::isfinite(c.share)) shown = "at most " + percent(c.share_at_most);
-    else if (c.share_low < c.share_high) shown += " (" + percent(c.share_low) + " to " + percent(c.share_high) + ")";
+    else if (c.share_low < c.share_high) shown += fmt::format(" ({} to {})", percent(c.share_low), percent(c.share_high));
     row("completeness.closed_share", c.closed_share)("completeness.share", c.share)("completeness.share_low", c.share_low)(
         "completeness.share_high", c.share_high)("completeness.share_at_most", c.share_at_most)(
         "completeness.angle_degrees", c.angle() / slice_degree)("completeness.crossing_contours", c.crossing)(
@@ -149,30 +151,28 @@ void add_compared_axis(Report& report, const ComparedAxis& axis) {
         "straightness.length", s.length)("straightness.relative", s.relative, number(100 * s.relative, 3));
 }
 
-void add_slice_thickness(Report& report, const SliceFindings& found) {
-    const ThicknessHomogeneity& t = found.thickness;
+void add_slice_thickness(Report& report, const SliceFindings& findings) {
+    const ThicknessHomogeneity& t = findings.thickness;
     report("thickness.slices", t.slices)("thickness.slices_with_parts_beside", t.beside)("thickness.mean", t.mean)(
         "thickness.variation_within", t.within)("thickness.variation_across", t.across)("thickness.variation_overall", t.overall);
     const auto percent = [](double share) { return std::isfinite(share) ? number(100 * share, 3) : std::string("-"); };
     if (std::isfinite(t.mean))
-        report.line(
-            "\nwall " + number(t.mean) + (found.unit.empty() ? "" : " " + found.unit) + ": varies by " + percent(t.within) +
-            " % within slices, " +
-            (t.slices < 2 ? "and one slice tells nothing of how it does between them" : percent(t.across) + " % between them") +
-            " (medians; " + std::to_string(t.slices) + " of " + std::to_string(found.cut.slices.size()) +
-            " slices show the wall alone)");
+        report.line(fmt::format(
+            "\nwall {}{}: varies by {} % within slices, {} (medians; {} of {} slices show the wall alone)", number(t.mean),
+            findings.unit.empty() ? "" : " " + findings.unit, percent(t.within),
+            t.slices < 2 ? "and the variation between slices needs two of them" : percent(t.across) + " % between them", t.slices,
+            findings.cut.slices.size()));
     else if (t.beside > 0) report.line("\nno slice shows the wall alone: all that do have handles or other parts beside it");
 }
 
-void add_slice_tube(Report& report, const SliceFindings& found) {
-    const Tube& tube = found.tube;
+void add_slice_tube(Report& report, const SliceFindings& findings) {
+    const Tube& tube = findings.tube;
     report("tube.found", tube.found);
     if (tube.found) {
-        const auto heights = found.cut.sorted_heights();
+        const auto heights = findings.cut.sorted_heights();
         report("tube.lowest", heights[tube.first])("tube.highest", heights[tube.last]);
-        report.line("\ntubular from " + number(heights[tube.first]) + " to " + number(heights[tube.last]) +
-                    (found.unit.empty() ? "" : " " + found.unit) + " (" + std::to_string(tube.last - tube.first + 1) +
-                    " slices)");
+        report.line(fmt::format("\ntubular from {} to {}{} ({} slices)", number(heights[tube.first]), number(heights[tube.last]),
+                                findings.unit.empty() ? "" : " " + findings.unit, tube.last - tube.first + 1));
     } else {
         report("tube.reason", tube.reason);
         report.line("\nno tubular part: " + tube.reason);
@@ -218,22 +218,22 @@ void declare_slices(ReportLayout& layout) {
                   number("tube.highest", "", "length"), any("tube.groups_by_height"));
 }
 
-void add_slices(Report& report, const SliceFindings& found) {
-    const CutObject& cut = found.cut;
-    report.set_unit(found.unit);
-    if (!found.unit.empty()) report("unit", found.unit);
+void add_slices(Report& report, const SliceFindings& findings) {
+    const CutObject& cut = findings.cut;
+    report.set_unit(findings.unit);
+    if (!findings.unit.empty()) report("unit", findings.unit);
     report("planes", cut.parallel ? "parallel" : "across a curve")("reversed", cut.reversed);
-    if (cut.parallel && !found.one_plane) report("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
+    if (cut.parallel && !findings.one_plane) report("heights_of_the_mesh", std::vector{cut.lowest, cut.highest});
     for (std::size_t i = 0; i < cut.slices.size(); ++i) add_one_slice(report, cut, i);
     if (!cut.parallel) report.line("height: length along the curve");
     report.line(
         "m/M: sides of the smallest rectangle around the whole slice, loose pieces too (`eccentricity` in files; 1 for a "
         "circle); off circle: mean distance from the best circle, of its radius");
-    if (!found.axes.empty()) report.line("");
+    if (!findings.axes.empty()) report.line("");
     else report.empty_table("axes", false);
-    for (const ComparedAxis& axis : found.axes) add_compared_axis(report, axis);
-    add_slice_thickness(report, found);
-    if (!found.one_plane) add_slice_tube(report, found);
+    for (const ComparedAxis& axis : findings.axes) add_compared_axis(report, axis);
+    add_slice_thickness(report, findings);
+    if (!findings.one_plane) add_slice_tube(report, findings);
 }
 
 std::string slice_table(const CutObject& cut, const std::string& unit) {
@@ -248,21 +248,21 @@ std::string slice_table(const CutObject& cut, const std::string& unit) {
     for (std::size_t i = 0; i < cut.slices.size(); ++i) {
         const Slice& slice = cut.slices[i];
         const auto open = std::count_if(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return !c.closed; });
-        const auto known = [&](double value) { return slice.contours.empty() ? std::string() : cell(value); };
+        const auto cell_or_empty = [&](double value) { return slice.contours.empty() ? std::string() : cell(value); };
         std::vector<std::string> row{std::to_string(i + 1),
                                      unit,
                                      cell(slice.height),
                                      std::to_string(slice.contours.size()),
                                      std::to_string(open),
-                                     known(slice.completeness.closed_share),
-                                     known(slice.completeness.share),
-                                     known(slice.completeness.share_low),
-                                     known(slice.completeness.share_high),
-                                     known(slice.completeness.share_at_most),
-                                     known(slice.completeness.angle() / slice_degree),
-                                     known(slice.completeness.crossing),
-                                     known(slice.completeness.turned),
-                                     known(slice.completeness.doubtful)};
+                                     cell_or_empty(slice.completeness.closed_share),
+                                     cell_or_empty(slice.completeness.share),
+                                     cell_or_empty(slice.completeness.share_low),
+                                     cell_or_empty(slice.completeness.share_high),
+                                     cell_or_empty(slice.completeness.share_at_most),
+                                     cell_or_empty(slice.completeness.angle() / slice_degree),
+                                     cell_or_empty(slice.completeness.crossing),
+                                     cell_or_empty(slice.completeness.turned),
+                                     cell_or_empty(slice.completeness.doubtful)};
         for (const auto& entry : list_descriptors(cut.descriptors[i])) row.push_back(cell(entry.value));
         text += csv_row(row);
     }

@@ -22,7 +22,7 @@ struct SliceFindings {
 
 /// Declares the values and tables that `add_slices` fills: the members of a slices file (slices.schema.json).
 void declare_slices(ReportLayout& layout);
-void add_slices(Report& report, const SliceFindings& found);
+void add_slices(Report& report, const SliceFindings& findings);
 
 /// Completeness and all descriptors, one row per slice.
 std::string slice_table(const CutObject& cut, const std::string& unit);

@@ -1,5 +1,7 @@
 #include "study.h"
 
+#include <fmt/core.h>
+
 #include <set>
 
 namespace ostraka {
@@ -26,9 +28,11 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
 
 void StudyFiles::check() const {
     static_cast<void>(share_from_text(shard_));
-    const Path &from = collection.sources.front().file, &to = output.sources.front().file;
-    if (!from.empty() && !to.empty() && same_place(to, is_folder(from) ? from : from.parent_path()))
-        fail_usage("--output is the folder of the collection", "name another one, so that results are not taken for objects");
+    const Path &collection_path = collection.sources.front().file, &output_folder = output.sources.front().file;
+    if (!collection_path.empty() && !output_folder.empty() &&
+        same_place(output_folder, is_folder(collection_path) ? collection_path : collection_path.parent_path()))
+        fail_usage("--output is the folder of the collection",
+                   "name another folder, so that results are not mistaken for objects");
     if (truth_ && own_truth_) fail_usage("--truth and --own-truth", "give one of them");
     if (!truth_ && !own_truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
 }
@@ -54,12 +58,11 @@ Collection StudyFiles::read(Context& context, bool all) const {
 bool StudyFiles::ends_with_part(Report& report, const std::vector<ObjectResult>& results) const {
     if (!is_part()) return false;
     std::size_t objects = 0, failed = 0;
-    for (const ObjectResult& one : results)
-        if (!one.elsewhere) ++objects, failed += one.problem.empty() ? 0 : 1;
+    for (const ObjectResult& result : results)
+        if (!result.elsewhere) ++objects, failed += result.problem.empty() ? 0 : 1;
     report("part.objects", objects)("part.failed", failed);
-    report.line("part " + shard_ + ": " + counted(objects, "object") +
-                (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
-                "; once all parts are done, run it without --shard to gather them");
+    report.line(fmt::format("shard {}: {}{}; once all shards are done, run it without --shard to gather them", shard_,
+                            counted(objects, "object"), failed > 0 ? fmt::format(", {} failed", failed) : ""));
     return true;
 }
 
@@ -67,7 +70,7 @@ std::size_t report_failures(Report& report, const Collection& collection, const 
     std::size_t count = 0;
     report.empty_table("failed");
     const auto add = [&](const std::string& name, const std::string& problem) {
-        report.note("left out: " + (problem.starts_with(name + ": ") ? "" : name + ": ") + problem);
+        report.note(fmt::format("left out: {}{}", problem.starts_with(name + ": ") ? "" : name + ": ", problem));
         report.row("failed")("name", name)("problem", problem);
         ++count;
     };
@@ -78,19 +81,19 @@ std::size_t report_failures(Report& report, const Collection& collection, const 
 }
 
 KnownAnswers::KnownAnswers(const std::vector<std::string>& labels) : objects(labels.size()) {
-    std::set<std::string> different;
+    std::set<std::string> distinct_labels;
     for (const auto& label : labels) {
         if (label.empty()) continue;
         ++labelled;
-        different.insert(label);
+        distinct_labels.insert(label);
     }
-    kinds = different.size();
+    kinds = distinct_labels.size();
 }
 
 void KnownAnswers::report_result(Report& report) const {
     if (labelled == 0) return;
-    std::string text = "answers are known of " + std::to_string(labelled) + " of " + std::to_string(objects) + " objects";
-    if (!scorable()) text += labelled < 2 ? ": too few to score by" : ", all of one kind: nothing to score by";
+    std::string text = fmt::format("answers are known for {} of {} objects", labelled, objects);
+    if (!scorable()) text += labelled < 2 ? ": too few for scores" : ", all of one kind: no scores are possible";
     report.line(text);
 }
 

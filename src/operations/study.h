@@ -61,7 +61,7 @@ public:
     void check() const {
         static_cast<void>(ObjectParts(options_));
         if (vocabulary_ && options_.annotations.empty() && options_.without.empty())
-            fail_usage("--vocabulary is given without --annotation and --without", "name a part, or leave it away");
+            fail_usage("--vocabulary is given without --annotation and --without", "name a part, or leave it out");
     }
     [[nodiscard]] ObjectParts parts() const { return ObjectParts(options_, vocabulary_.words(), vocabulary_.checksum()); }
 

@@ -8,6 +8,8 @@
 #include "ostraka/stats/embedding.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace ostraka {
@@ -34,16 +36,16 @@ struct StudyLandmarks final : StudyOperation {
         report_failures(report, collection, read);
         LandmarkShapes shapes = common_landmarks(collection, read, options.scaling, files.collection.file());
         report.notes(shapes.notes);
-        report_odd(report, shapes);
+        report_unusual(report, shapes);
         const GeneralisedProcrustes shape = generalised_procrustes(shapes.configurations, options);
-        if (!shape.converged) report.note("the mean had not settled after " + std::to_string(shape.iterations) + " iterations");
+        if (!shape.converged) report.note(fmt::format("the mean had not converged after {} iterations", shape.iterations));
         const PrincipalComponents principal = principal_components(shape_rows(shape.aligned), components);
 
         LandmarkSet mean;
         mean.unit = options.scaling ? "" : shapes.unit;
         for (std::size_t k = 0; k < shapes.names.size(); ++k) {
-            const Eigen::RowVector3d at = shape.mean.row(static_cast<Eigen::Index>(k));
-            mean.landmarks.push_back({shapes.names[k], {at.x(), at.y(), at.z()}, std::nullopt});
+            const Eigen::RowVector3d position = shape.mean.row(static_cast<Eigen::Index>(k));
+            mean.landmarks.push_back({shapes.names[k], {position.x(), position.y(), position.z()}, std::nullopt});
         }
         std::vector<std::string> unused;
         write_file(files.in("mean.mrk.json"), landmarks_to_text(mean, LandmarkFormat::mrk, "", context.provenance(), unused));
@@ -54,10 +56,10 @@ struct StudyLandmarks final : StudyOperation {
         KnownAnswers(shapes.labels).add_to(report);
         report("landmarks", shapes.names.size())("meanCentroidSize", sizes.mean)("meanNorm", shape.mean.norm())(
             "sumOfSquares", shape.sum_of_squares)("iterations", shape.iterations)("converged", shape.converged);
-        std::vector<double> shares;
+        std::vector<double> explained;
         for (const double variance : principal.variances)
-            shares.push_back(principal.total_variance > 0 ? variance / principal.total_variance : 0);
-        report("components", shares);
+            explained.push_back(principal.total_variance > 0 ? variance / principal.total_variance : 0);
+        report("components", explained);
         TextTable table({"landmarks", "of", "mean centroid size", "size of the mean", "sum of squares"});
         table.add({std::to_string(shapes.names.size()), std::to_string(shapes.objects.size()) + " objects",
                    significant(sizes.mean, 10) + (shapes.unit.empty() ? "" : " " + shapes.unit),
@@ -66,17 +68,17 @@ struct StudyLandmarks final : StudyOperation {
     }
 
     /// Reports odd specimens, and removes them if requested.
-    void report_odd(Report& report, LandmarkShapes& shapes) const {
-        std::vector<OddSpecimen> odd = odd_specimens(shapes);
-        if (leave_odd_out && odd.size() < shapes.objects.size()) {
-            shapes = without(shapes, odd);
-            for (OddSpecimen& one : odd) one.left_out = true;
+    void report_unusual(Report& report, LandmarkShapes& shapes) const {
+        std::vector<OddSpecimen> specimens = odd_specimens(shapes);
+        if (leave_odd_out && specimens.size() < shapes.objects.size()) {
+            shapes = without(shapes, specimens);
+            for (OddSpecimen& specimen : specimens) specimen.left_out = true;
         }
-        odd.insert(odd.begin(), shapes.odd.begin(), shapes.odd.end());
+        specimens.insert(specimens.begin(), shapes.odd.begin(), shapes.odd.end());
         report.empty_table("odd");
-        for (const OddSpecimen& one : odd) {
-            report.row("odd")("name", one.name)("why", one.why)("leftOut", one.left_out);
-            report.note(std::string(one.left_out ? "left out: " : "odd: ") + one.name + ": " + one.why);
+        for (const OddSpecimen& specimen : specimens) {
+            report.row("odd")("name", specimen.name)("why", specimen.why)("leftOut", specimen.left_out);
+            report.note(fmt::format("{}: {}: {}", specimen.left_out ? "left out" : "unusual", specimen.name, specimen.why));
         }
     }
 
@@ -99,11 +101,11 @@ struct StudyLandmarks final : StudyOperation {
             series.labels.push_back(shapes.objects[i]);
         }
         table.write(files.output.path(), "objects", "Landmarks: sizes, distances from the mean shape, principal components");
-        const auto share = [&](Eigen::Index c) {
+        const auto explained = [&](Eigen::Index c) {
             return c < count && principal.total_variance > 0 ? ", " + percent(principal.variances[c] / principal.total_variance)
                                                              : "";
         };
-        Plot plot{"Shapes of landmarks", {"first component" + share(0)}, {"second component" + share(1)}, {}};
+        Plot plot{"Shapes of landmarks", {"first component" + explained(0)}, {"second component" + explained(1)}, {}};
         for (auto& [label, series] : classes) {
             series.name = label;
             series.joined = false;

@@ -11,6 +11,8 @@
 #include "ostraka/synthetic/head_casts.h"
 #include "ostraka/synthetic/statuettes.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -63,22 +65,24 @@ struct StudyMakeStatuettes : StudyMake {
 
     /// Makes the whole population and returns the parameters used. Notes report which were drawn again.
     template <class Population>
-    std::vector<StatuetteParameters> make_population(Context& context, const Population& population, bool coloured,
-                                                     const std::function<void(std::size_t, const Statuette&)>& look = {}) const {
-        std::vector<StatuetteParameters> list = draw_population(population);
-        std::vector<char> is_drawn_again(list.size(), 0);
+    std::vector<StatuetteParameters> make_population(
+        Context& context, const Population& population, bool coloured,
+        const std::function<void(std::size_t, const Statuette&)>& inspect = {}) const {
+        std::vector<StatuetteParameters> all_parameters = draw_population(population);
+        std::vector<char> is_drawn_again(all_parameters.size(), 0);
         const std::string command = context.provenance().command;
-        make_each("statuettes", list.size(), [&](std::size_t i) {
-            const std::uint64_t seed = list[i].seed;
-            const Statuette statuette = generate_one(population, i, list[i]);
-            is_drawn_again[i] = list[i].seed != seed ? 1 : 0;
-            write_one(name_of(i, list.size()), statuette, list[i], command, coloured);
-            if (look) look(i, statuette);
+        make_each("statuettes", all_parameters.size(), [&](std::size_t i) {
+            const std::uint64_t seed = all_parameters[i].seed;
+            const Statuette statuette = generate_one(population, i, all_parameters[i]);
+            is_drawn_again[i] = all_parameters[i].seed != seed ? 1 : 0;
+            write_one(name_of(i, all_parameters.size()), statuette, all_parameters[i], command, coloured);
+            if (inspect) inspect(i, statuette);
         });
-        for (std::size_t i = 0; i < list.size(); ++i)
+        for (std::size_t i = 0; i < all_parameters.size(); ++i)
             if (is_drawn_again[i] != 0)
-                context.note(name_of(i, list.size()) + " was drawn again: its first sizes gave no sound surface");
-        return list;
+                context.note(name_of(i, all_parameters.size()) +
+                             " was generated again: its first dimensions gave no valid surface");
+        return all_parameters;
     }
 
     /// Writes mesh and annotations; their provenance holds the parameters of the statuette.
@@ -122,13 +126,13 @@ struct StudyMakeProportions final : StudyMakeStatuettes {
     }
 
     void run(Context& context, Report& report) override {
-        const std::vector<StatuetteParameters> list = make_population(context, options, false);
+        const std::vector<StatuetteParameters> statuettes = make_population(context, options, false);
         std::string truth =
             csv_row({"name", "total height [mm]", "base diameter [mm]", "right arm [mm]", "left arm [mm]", "head height [mm]"});
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            const std::string arm = digits(list[i].arm_length);
-            truth += csv_row({name_of(i, list.size()), digits(list[i].height), digits(list[i].base_diameter), arm, arm,
-                              digits(list[i].head_height)});
+        for (std::size_t i = 0; i < statuettes.size(); ++i) {
+            const std::string arm = digits(statuettes[i].arm_length);
+            truth += csv_row({name_of(i, statuettes.size()), digits(statuettes[i].height), digits(statuettes[i].base_diameter),
+                              arm, arm, digits(statuettes[i].head_height)});
         }
         write_file(folder.in("truth.csv"), truth);
         write_file(folder.in("statuettes.measures.json"), statuette_measures);
@@ -136,10 +140,10 @@ struct StudyMakeProportions final : StudyMakeStatuettes {
         std::string fixed;
         for (const std::string size : ProportionedOptions::size_names)
             if (options.is_fixed(size)) fixed += (fixed.empty() ? "" : ", ") + size;
-        report("folder", folder.path().string())("objects", list.size())("fixed", fixed);
-        report.line(std::to_string(list.size()) + " statuettes with truth.csv and statuettes.measures.json in " +
-                    printable(folder.path().string()) + "; in fixed proportion: right arm and left arm" +
-                    (fixed.empty() ? "" : "; " + fixed));
+        report("folder", folder.path().string())("objects", statuettes.size())("fixed", fixed);
+        report.line(fmt::format(
+            "{} statuettes with truth.csv and statuettes.measures.json in {}; in fixed proportion: right arm and left arm{}",
+            statuettes.size(), printable(folder.path().string()), fixed.empty() ? "" : "; " + fixed));
     }
 
     ProportionedOptions options;
@@ -155,30 +159,33 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
 
     void run(Context& context, Report& report) override {
         std::vector<std::array<std::string, 2>> meshes(static_cast<std::size_t>(options.objects));
-        const std::vector<StatuetteParameters> list =
-            make_population(context, options, true, [&](std::size_t i, const Statuette& made) {
-                meshes[i] = {std::to_string(made.mesh.number_of_vertices()), CGAL::is_closed(made.mesh) ? "true" : "false"};
+        const std::vector<StatuetteParameters> statuettes =
+            make_population(context, options, true, [&](std::size_t i, const Statuette& statuette) {
+                meshes[i] = {std::to_string(statuette.mesh.number_of_vertices()),
+                             CGAL::is_closed(statuette.mesh) ? "true" : "false"};
             });
         std::vector<std::string> header{"name", "label"};
-        for (const auto& [key, value] : list_options(list.front()))
+        for (const auto& [key, value] : list_options(statuettes.front()))
             if (key != "technique") header.push_back(key);
         header.insert(header.end(), {"mesh-vertices", "closed"});
         std::string truth = csv_row(header);
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            std::vector<std::string> row{name_of(i, list.size()), option_text(list[i], "technique")};
-            for (const auto& [key, value] : list_options(list[i]))
+        for (std::size_t i = 0; i < statuettes.size(); ++i) {
+            std::vector<std::string> row{name_of(i, statuettes.size()), option_text(statuettes[i], "technique")};
+            for (const auto& [key, value] : list_options(statuettes[i]))
                 if (key != "technique") row.push_back(value);
             row.insert(row.end(), meshes[i].begin(), meshes[i].end());
             truth += csv_row(row);
         }
         write_file(folder.in("truth.csv"), truth);
 
-        const auto wheel = static_cast<std::size_t>(std::count_if(
-            list.begin(), list.end(), [](const auto& one) { return one.technique == StatuetteParameters::Technique::wheel; }));
-        report("folder", folder.path().string())("objects", list.size())("wheel", wheel)("hand", list.size() - wheel);
-        report.line(std::to_string(list.size()) + " statuettes of level " + std::to_string(options.level) + ", " +
-                    std::to_string(wheel) + " wheel-made and " + std::to_string(list.size() - wheel) +
-                    " hand-made, and truth.csv in " + printable(folder.path().string()));
+        const auto wheel =
+            static_cast<std::size_t>(std::count_if(statuettes.begin(), statuettes.end(), [](const auto& parameters) {
+                return parameters.technique == StatuetteParameters::Technique::wheel;
+            }));
+        report("folder", folder.path().string())("objects", statuettes.size())("wheel", wheel)("hand", statuettes.size() - wheel);
+        report.line(fmt::format("{} statuettes of level {}, {} wheel-made and {} hand-made, and truth.csv in {}",
+                                statuettes.size(), options.level, wheel, statuettes.size() - wheel,
+                                printable(folder.path().string())));
     }
 
     PopulationOptions options;
@@ -186,7 +193,7 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
 
 struct StudyMakeMoulds final : StudyMake {
     void describe(Parameters& p) override {
-        describe_folder(p, "folder to write to: a PLY mesh with labelled faces each, and truth.csv");
+        describe_folder(p, "folder to write to: a PLY mesh with labelled faces for each object, and truth.csv");
         population.describe(p.options);
         cast.describe(p.options);
         p.report.values(integer("objects"), texts("parts"));
@@ -208,36 +215,36 @@ struct StudyMakeMoulds final : StudyMake {
             casts[i].mesh = {};
         });
         std::string truth = csv_row({"name", "label", "hair", "beard", "missing piece", "wear", "shrinkage", "seed"});
-        const auto yes = [](bool value) { return value ? "yes" : "no"; };
+        const auto yes_or_no = [](bool value) { return value ? "yes" : "no"; };
         for (std::size_t i = 0; i < plan.size(); ++i) {
             const char* hair = plan[i].shape.hat != HeadShape::Hat::none ? "hat" : plan[i].shape.long_hair ? "long" : "short";
-            truth += csv_row({plan[i].name, plan[i].mould, hair, yes(casts[i].beard), yes(casts[i].chunk),
+            truth += csv_row({plan[i].name, plan[i].mould, hair, yes_or_no(casts[i].beard), yes_or_no(casts[i].chunk),
                               number(casts[i].wear, 4), number(casts[i].shrinkage, 4), std::to_string(plan[i].cast.seed)});
         }
         write_file(folder.in("truth.csv"), truth);
 
         const std::vector<std::string> parts = head_part_names();
         report("objects", plan.size())("parts", parts);
-        report.line(std::to_string(plan.size()) + (cast.body ? " statuettes with heads in " : " heads in ") +
-                    printable(folder.path().string()) + ", their moulds in truth.csv");
+        report.line(fmt::format("{} {} in {}, their moulds in truth.csv", plan.size(),
+                                cast.body ? "statuettes with heads" : "heads", printable(folder.path().string())));
         for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
     }
 
     /// Annotates the parts, and "head" for all of them except the body and the stump of the neck.
-    static AnnotationSet annotate_head(const HeadCast& made, const std::vector<std::int32_t>& labels) {
+    static AnnotationSet annotate_head(const HeadCast& head_cast, const std::vector<std::int32_t>& labels) {
         std::map<std::int32_t, std::string> names;
         const std::vector<std::string> parts = head_part_names();
         for (std::size_t part = 0; part < parts.size(); ++part) names[static_cast<std::int32_t>(part)] = parts[part];
-        AnnotationSet set = regions_from_labels(made.mesh, labels, names);
+        AnnotationSet set = regions_from_labels(head_cast.mesh, labels, names);
         set.object_class = "statuette";
         set.unit = "mm";
-        set.up = made.up;
+        set.up = head_cast.up;
         Annotation head;
         head.id = static_cast<int>(parts.size());
         head.tag = "head";
         for (std::size_t f = 0; f < labels.size(); ++f)
             if (labels[f] < static_cast<std::int32_t>(HeadPart::stump)) head.faces.push_back(static_cast<Index>(f));
-        head.colour = fresh_colour(made.mesh, set, head);
+        head.colour = fresh_colour(head_cast.mesh, set, head);
         set.annotations.push_back(std::move(head));
         return set;
     }

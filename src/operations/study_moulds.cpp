@@ -8,6 +8,8 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -42,24 +44,26 @@ struct StudyMoulds final : StudyOperation {
         const PreparedCollection prepared =
             prepare_collection(collection, compare, leave_out, files.store("features"), part.parts());
         if (!prepared.waits_for.empty()) {
-            report.line("part " + files.shard() + ": its " + prepared.waits_for +
-                        " are done; once all parts have theirs, run them again for what depends on all");
+            report.line(fmt::format(
+                "shard {}: its {} are done; once all shards have theirs, run them again for the steps that depend on all",
+                files.shard(), prepared.waits_for));
             return;
         }
         const std::size_t failed = report_failures(report, collection, prepared.results);
         if (prepared.heads.size() < 2)
             fail_input(files.collection.file(), std::to_string(prepared.heads.size()) + " of its objects can be compared",
                        "a study of moulds needs at least two");
-        MouldMatrices compared =
+        MouldMatrices matrices =
             compare_heads(prepared.names, prepared.heads, prepared.options, files.store("pairs"), prepared.checksums);
         if (files.is_part()) {
-            report.line("part " + files.shard() + ": its pairs are compared; once all parts have theirs, run it without --shard");
+            report.line(fmt::format("shard {}: its pairs are compared; once all shards have theirs, run it without --shard",
+                                    files.shard()));
             return;
         }
-        const MouldStudy study = study_moulds(std::move(compared), similarity, group, stability);
+        const MouldStudy study = study_moulds(std::move(matrices), similarity, group, stability);
         std::vector<std::string> answers;
         for (const std::size_t i : prepared.objects) answers.push_back(collection.objects[i].label);
-        const KnownAnswers known(answers);
+        const KnownAnswers known_answers(answers);
 
         write_matrix("matches", study.matrices.names, study.matrices.matches);
         write_matrix("consistent", study.matrices.names, study.matrices.consistent);
@@ -67,34 +71,36 @@ struct StudyMoulds final : StudyOperation {
         write_matrix("distances", study.matrices.names, study.distances);
         const TextTable groups = group_table(study);
         groups.write(files.output.path(), "groups", "Groups of heads by " + similarity);
-        head_table(study, answers, known).write(files.output.path(), "heads", "Heads and their groups");
-        draw(study, known.labelled > 0 ? answers : std::vector<std::string>{});
+        head_table(study, answers, known_answers).write(files.output.path(), "heads", "Heads and their groups");
+        draw(study, known_answers.labelled > 0 ? answers : std::vector<std::string>{});
         if (choices)
-            choice_table(study, answers, known).write(files.output.path(), "choices", "Groups by every similarity and epsilon");
+            choice_table(study, answers, known_answers)
+                .write(files.output.path(), "choices", "Groups by every similarity and epsilon");
 
         report("similarity", similarity)("method", option_text(group, "method"))("epsilonRule", group.epsilon)(
             "epsilon", study.groups.epsilon)("featureSize", prepared.options.features.size)(
             "silhouette", study.groups.silhouette)("clear", study.groups.clear);
-        known.add_to(report);
-        const double agreement = known.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
-        if (known.scorable()) report("adjustedRandIndex", agreement);
+        known_answers.add_to(report);
+        const double agreement = known_answers.scorable() ? agreement_with_answers(study.groups.labels, answers) : 0;
+        if (known_answers.scorable()) report("adjustedRandIndex", agreement);
         const std::string single = report_groups(report, study, answers);
         write_report(report, context.provenance());
 
         report.table(groups);
         const int count = study.group_count();
-        report.line(counted(static_cast<std::size_t>(count), "group") + " of " + std::to_string(answers.size()) +
-                    " heads at epsilon " + number(study.groups.epsilon, 3) + ", mean silhouette " +
-                    number(study.groups.silhouette, 3) +
-                    (known.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
-        known.report_result(report);
+        report.line(fmt::format("{} of {} heads at epsilon {}, mean silhouette {}{}",
+                                counted(static_cast<std::size_t>(count), "group"), answers.size(),
+                                number(study.groups.epsilon, 3), number(study.groups.silhouette, 3),
+                                known_answers.scorable() ? ", adjusted Rand index " + number(agreement, 4) : ""));
+        known_answers.report_result(report);
         if (!single.empty()) report.line("belongs to no group: " + single);
         if (!study.groups.clear) {
             const Eigen::MatrixXd distances = mould_distances(study.matrices, "consistent");
             const auto n = static_cast<double>(distances.rows());
             report.line(
-                "the groups do not stand out: one mould, or each head its own; the mean distance by consistent matches is " +
-                number(distances.sum() / (n * (n - 1)), 3) + " (near 1: each its own; small: one mould)");
+                fmt::format("the groups are not clearly separated: there is one mould, or one for each head; the mean distance "
+                            "by consistent matches is {} (near 1: one mould for each head; small: one mould)",
+                            number(distances.sum() / (n * (n - 1)), 3)));
             report.answer_no();
         }
         if (failed > 0) report.line(std::to_string(failed) + " objects were left out");
@@ -104,11 +110,11 @@ struct StudyMoulds final : StudyOperation {
     [[nodiscard]] std::string report_groups(Report& report, const MouldStudy& study,
                                             const std::vector<std::string>& answers) const {
         std::string single;
-        std::size_t at = 0;
-        for (const MouldGroupSummary& each : summarise_groups(study)) {
-            const ClusterStability& resampled = study.stability[at++];
-            Report::Row row = report.row("groups")("group", at)("heads", each.members);
-            if (each.members.size() == 1) single += (single.empty() ? "" : ", ") + each.members.front();
+        std::size_t group_number = 0;
+        for (const MouldGroupSummary& summary : summarise_groups(study)) {
+            const ClusterStability& resampled = study.stability[group_number++];
+            Report::Row row = report.row("groups")("group", group_number)("heads", summary.members);
+            if (summary.members.size() == 1) single += (single.empty() ? "" : ", ") + summary.members.front();
             else if (resampled.resamples > 0)
                 row("stability", resampled.jaccard)("recovered", resampled.recovered)("dissolved", resampled.dissolved);
         }
@@ -153,26 +159,26 @@ struct StudyMoulds final : StudyOperation {
         TextTable table({"group", "heads", "distance within", "nearest group", "distance to it", "silhouette", "stability",
                          "dissolved", "members"});
         std::size_t group = 0;
-        for (const MouldGroupSummary& each : summarise_groups(study)) {
+        for (const MouldGroupSummary& summary : summarise_groups(study)) {
             const ClusterStability& stability = study.stability[group++];
-            const bool resampled = stability.resamples > 0 && each.members.size() > 1;
+            const bool resampled = stability.resamples > 0 && summary.members.size() > 1;
             const auto if_resampled = [&](double value) { return resampled ? std::optional(value) : std::nullopt; };
-            table.add({std::to_string(group), std::to_string(each.members.size()), number_cell(each.within, 3),
-                       number_cell(each.nearest ? std::optional<double>(*each.nearest + 1) : std::nullopt, 6),
-                       number_cell(each.to_nearest, 3), number_cell(each.silhouette, 3),
+            table.add({std::to_string(group), std::to_string(summary.members.size()), number_cell(summary.within, 3),
+                       number_cell(summary.nearest ? std::optional<double>(*summary.nearest + 1) : std::nullopt, 6),
+                       number_cell(summary.to_nearest, 3), number_cell(summary.silhouette, 3),
                        number_cell(if_resampled(stability.jaccard), 3), percent_cell(if_resampled(stability.dissolved), 0),
-                       joined(each.members, " ")});
+                       joined(summary.members, " ")});
         }
         return table;
     }
 
     /// One row per head.
     [[nodiscard]] TextTable head_table(const MouldStudy& study, const std::vector<std::string>& answers,
-                                       const KnownAnswers& known) const {
+                                       const KnownAnswers& known_answers) const {
         const bool sizes = compare.consistent.shrinkage > 0;
         std::vector<std::string> columns{"head", "group", "silhouette", "second group", "distance to own", "distance to second"};
         if (sizes) columns.emplace_back("relative size");
-        if (known.labelled > 0) columns.emplace_back("truth");
+        if (known_answers.labelled > 0) columns.emplace_back("truth");
         TextTable table(columns);
         for (std::size_t i = 0; i < answers.size(); ++i) {
             const auto [second, distance] = study.second_group(i);
@@ -182,7 +188,7 @@ struct StudyMoulds final : StudyOperation {
             cells.push_back(number_cell(study.mean_distance(i, study.groups.labels[i]), 3));
             cells.push_back(number_cell(second < 0 ? std::nullopt : std::optional(distance), 3));
             if (sizes) cells.push_back(number_cell(study.sizes[i], 4));
-            if (known.labelled > 0) cells.emplace_back(answers[i]);
+            if (known_answers.labelled > 0) cells.emplace_back(answers[i]);
             table.add(cells);
         }
         return table;
@@ -190,27 +196,27 @@ struct StudyMoulds final : StudyOperation {
 
     /// One row per similarity, method and epsilon.
     [[nodiscard]] TextTable choice_table(const MouldStudy& study, const std::vector<std::string>& answers,
-                                         const KnownAnswers& known) const {
+                                         const KnownAnswers& known_answers) const {
         std::vector<std::string> columns{"similarity", "method", "epsilon", "value", "groups", "silhouette"};
-        if (known.scorable()) columns.emplace_back("adjusted Rand index");
+        if (known_answers.scorable()) columns.emplace_back("adjusted Rand index");
         TextTable table(columns);
-        for (const auto& each : mould_similarities()) {
-            const Eigen::MatrixXd distances = mould_distances(study.matrices, each);
+        for (const auto& similarity_name : mould_similarities()) {
+            const Eigen::MatrixXd distances = mould_distances(study.matrices, similarity_name);
             for (const char* method : {"linkage", "dbscan", "embedding"}) {
                 for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {
                     GroupOptions options = group;
                     set_option(options, "method", method);
                     options.epsilon = epsilon;
                     if (options.epsilon == "volume" && options.method != GroupOptions::Method::embedding) continue;
-                    const MouldGroups found = group_heads(distances, options);
-                    const int count = *std::max_element(found.labels.begin(), found.labels.end()) + 1;
-                    std::vector<TableCell> cells{each,
+                    const MouldGroups groups = group_heads(distances, options);
+                    const int count = *std::max_element(groups.labels.begin(), groups.labels.end()) + 1;
+                    std::vector<TableCell> cells{similarity_name,
                                                  method,
                                                  epsilon,
-                                                 number_cell(found.epsilon, 3),
+                                                 number_cell(groups.epsilon, 3),
                                                  std::to_string(count),
-                                                 number_cell(found.silhouette, 3)};
-                    if (known.scorable()) cells.push_back(fixed_cell(agreement_with_answers(found.labels, answers), 3));
+                                                 number_cell(groups.silhouette, 3)};
+                    if (known_answers.scorable()) cells.push_back(fixed_cell(agreement_with_answers(groups.labels, answers), 3));
                     table.add(cells);
                 }
             }
@@ -222,7 +228,7 @@ struct StudyMoulds final : StudyOperation {
         const auto& names = study.matrices.names;
         const std::vector<int> order = leaf_order(study.groups.tree);
         HeatMap map;
-        map.title = "Distances by " + similarity + ", heads in the order of the tree";
+        map.title = fmt::format("Distances by {}, heads in the order of the tree", similarity);
         map.label = "distance";
         map.minimum = 0, map.maximum = 1;
         const auto n = static_cast<Eigen::Index>(order.size());
@@ -239,7 +245,7 @@ struct StudyMoulds final : StudyOperation {
 
         Dendrogram tree;
         tree.title = group.method == GroupOptions::Method::linkage ? "Average linkage of the distances"
-                                                                   : "Single linkage, which DBSCAN goes by";
+                                                                   : "Single linkage, which DBSCAN uses";
         tree.tree = study.groups.tree;
         tree.names = names;
         tree.groups = study.groups.labels;
@@ -250,20 +256,20 @@ struct StudyMoulds final : StudyOperation {
         tree.classes = truth;
         write_plot(files.plot("dendrogram"), tree);
 
-        const auto& places = study.groups.coordinates;
-        for (int second = 1; second < std::min<int>(static_cast<int>(places.cols()), 3); ++second) {
+        const auto& coordinates = study.groups.coordinates;
+        for (int second = 1; second < std::min<int>(static_cast<int>(coordinates.cols()), 3); ++second) {
             Plot plot;
             plot.title = "Spectral embedding of the distances";
             plot.equal = true;
             plot.width = plot.height = 640;
             plot.x.label = "eigenvector " + std::to_string(second == 1 ? 1 : 2);
             plot.y.label = "eigenvector " + std::to_string(second + 1);
-            for (int each = 0; each < study.group_count(); ++each) {
-                PlotSeries series{.name = "group " + std::to_string(each + 1), .joined = false};
+            for (int group_index = 0; group_index < study.group_count(); ++group_index) {
+                PlotSeries series{.name = "group " + std::to_string(group_index + 1), .joined = false};
                 for (std::size_t i = 0; i < names.size(); ++i) {
-                    if (study.groups.labels[i] != each) continue;
+                    if (study.groups.labels[i] != group_index) continue;
                     const auto row = static_cast<Eigen::Index>(i);
-                    series.points.push_back({places(row, second == 1 ? 0 : 1), places(row, second)});
+                    series.points.push_back({coordinates(row, second == 1 ? 0 : 1), coordinates(row, second)});
                     series.labels.push_back(names[i]);
                 }
                 plot.series.push_back(std::move(series));

@@ -8,6 +8,8 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -18,12 +20,14 @@ namespace {
 TableCell interval_cell(const std::optional<Interval>& interval, double factor, int digits_shown) {
     if (!interval) return {"-", {"", ""}};
     const double low = factor * interval->low, high = factor * interval->high;
-    return {significant(low, digits_shown) + " to " + significant(high, digits_shown), {digits(low), digits(high)}};
+    return {fmt::format("{} to {}", significant(low, digits_shown), significant(high, digits_shown)),
+            {digits(low), digits(high)}};
 }
 /// The same for a share, shown as percentages.
 TableCell share_interval_cell(const std::optional<Interval>& interval) {
     if (!interval) return {"-", {"", ""}};
-    return {fixed(100 * interval->low, 1) + " to " + percent(interval->high), {digits(interval->low), digits(interval->high)}};
+    return {fmt::format("{} to {}", fixed(100 * interval->low, 1), percent(interval->high)),
+            {digits(interval->low), digits(interval->high)}};
 }
 TableColumn variation_interval_column() { return {"cv interval", {"cv low", "cv high"}}; }
 
@@ -154,11 +158,11 @@ struct StudyProportions final : StudyOperation {
         } else {
             const Collection collection = files.read(context);
             const TagWords words = vocabulary.words();
-            const std::vector<ObjectResult> taken =
+            const std::vector<ObjectResult> measured =
                 take_measures(collection, definitions(), files.store(), vocabulary ? &words : nullptr, vocabulary.checksum());
-            if (files.ends_with_part(report, taken)) return;
-            failures = report_failures(report, collection, taken);
-            table = measure_table(collection, taken, definitions(), notes, files.collection.file());
+            if (files.ends_with_part(report, measured)) return;
+            failures = report_failures(report, collection, measured);
+            table = measure_table(collection, measured, definitions(), notes, files.collection.file());
         }
         const ProportionStudy study = study_proportions(table, options);
         notes.insert(notes.end(), study.notes.begin(), study.notes.end());
@@ -171,13 +175,14 @@ struct StudyProportions final : StudyOperation {
         draw(report, study);
 
         report.table(verdicts);
-        report.line("q: the larger of 'p others' and 'p size', corrected for the number of ratios; fixed: q of at most " +
-                    number(options.false_discoveries, 6) + ". failed: the tests that speak against it\n");
+        report.line(
+            fmt::format("q: the larger of 'p others' and 'p size', corrected for the number of ratios; fixed: q of at most {}. "
+                        "failed: the tests that speak against it\n",
+                        number(options.false_discoveries, 6)));
         const auto count = std::count_if(study.ratios.begin(), study.ratios.end(),
                                          [](const RatioRow& ratio) { return ratio.fixedness == Fixedness::fixed; });
-        report.line(std::to_string(count) + " of " + std::to_string(study.ratios.size()) + " ratios are fixed, of " +
-                    std::to_string(table.objects.size()) + " objects" +
-                    (failures > 0 ? " (" + std::to_string(failures) + " failed)" : ""));
+        report.line(fmt::format("{} of {} ratios are fixed, of {} objects{}", count, study.ratios.size(), table.objects.size(),
+                                failures > 0 ? fmt::format(" ({} failed)", failures) : ""));
         if (study.size_deviation) report.line("common size varies by " + percent(*study.size_deviation));
         if (count == 0) report.answer_no();
         report("objects", table.objects.size());
@@ -193,19 +198,19 @@ struct StudyProportions final : StudyOperation {
 
     static void report_result(Report& report, const ProportionStudy& study) {
         const auto optional = [&](const auto& value) { return json_value(value, report.allocator()); };
-        const auto interval = [&](const std::optional<Interval>& of) {
-            return optional(of ? std::optional(std::array{of->low, of->high}) : std::nullopt);
+        const auto interval = [&](const std::optional<Interval>& bounds) {
+            return optional(bounds ? std::optional(std::array{bounds->low, bounds->high}) : std::nullopt);
         };
-        const auto describe = [&](Report::Row row, const MeasureRow& of) {
-            row("name", of.name);
-            if (!of.unit.empty()) row("unit", of.unit);
-            row("objects", of.summary ? of.summary->count : 0);
-            if (!of.summary) return row;
-            const Summary& s = *of.summary;
+        const auto describe = [&](Report::Row row, const MeasureRow& measure_row) {
+            row("name", measure_row.name);
+            if (!measure_row.unit.empty()) row("unit", measure_row.unit);
+            row("objects", measure_row.summary ? measure_row.summary->count : 0);
+            if (!measure_row.summary) return row;
+            const Summary& s = *measure_row.summary;
             row("average", s.mean)("min", s.min)("max", s.max)("median", s.median)("deviation", optional(s.deviation))(
-                "deviationInterval", interval(of.deviation_interval))("variation", optional(s.variation))(
-                "variationInterval", interval(of.variation_interval));
-            if (of.own_deviation) row("ownDeviation", *of.own_deviation);
+                "deviationInterval", interval(measure_row.deviation_interval))("variation", optional(s.variation))(
+                "variationInterval", interval(measure_row.variation_interval));
+            if (measure_row.own_deviation) row("ownDeviation", *measure_row.own_deviation);
             return row;
         };
         for (const char* table : {"measures", "ratios"}) report.empty_table(table);
@@ -223,14 +228,14 @@ struct StudyProportions final : StudyOperation {
 
     void propose(Report& report, const ProportionStudy& study, std::vector<std::string>& notes) const {
         const AnnotationSet& set = annotations.on(mesh->mesh);
-        RelationGraph before;
-        if (graph_in) before.relationships = graph_in.on(set).relationships;
-        Proposals made = propose_proportions(mesh->mesh, set, std::move(before), definitions(), study, proposals);
-        report.notes(made.notes);
-        notes.insert(notes.end(), made.notes.begin(), made.notes.end());
-        report("proposed", made.proposed);
-        graph.write(std::move(made.graph), made.set);
-        annotations_out.write(std::move(made.set), mesh->mesh, mesh.file());
+        RelationGraph graph_before;
+        if (graph_in) graph_before.relationships = graph_in.on(set).relationships;
+        Proposals new_proposals = propose_proportions(mesh->mesh, set, std::move(graph_before), definitions(), study, proposals);
+        report.notes(new_proposals.notes);
+        notes.insert(notes.end(), new_proposals.notes.begin(), new_proposals.notes.end());
+        report("proposed", new_proposals.proposed);
+        graph.write(std::move(new_proposals.graph), new_proposals.set);
+        annotations_out.write(std::move(new_proposals.set), mesh->mesh, mesh.file());
     }
 
     void write_report(const Report& report, const std::vector<std::string>& notes, const Provenance& provenance) const {
@@ -266,7 +271,7 @@ struct StudyProportions final : StudyOperation {
             write_plot(files.plot("measures"),
                        Dendrogram{"Measures by how fixed their ratios are (average linkage)", linkage(map.values), map.rows,
                                   "standard deviation of the logarithm of ratios"});
-        else report.note("no plot 'measures': not each two measures have a ratio known of two objects or more");
+        else report.note("no plot 'measures': some pairs of measures have no ratio that is known for two or more objects");
     }
 
     FileInput measures;

@@ -6,6 +6,8 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/select/slice_segments.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -34,10 +36,10 @@ struct StudySegments final : Operation {
     void run(Context&, Report& report) override {
         const Mesh& surface = mesh->mesh;
         const AnnotationSet* parts = compare ? &compare.on(surface) : nullptr;
-        std::optional<std::array<double, 3>> way = parts != nullptr ? parts->up : std::nullopt;
-        if (up) way = up.value();
-        if (!way) report.note("no upward direction is known, z is taken; else give --up");
-        const Vector upward = way ? Vector((*way)[0], (*way)[1], (*way)[2]) : Vector(0, 0, 1);
+        std::optional<std::array<double, 3>> direction = parts != nullptr ? parts->up : std::nullopt;
+        if (up) direction = up.value();
+        if (!direction) report.note("no upward direction is known, so z is used; otherwise give --up");
+        const Vector upward = direction ? Vector((*direction)[0], (*direction)[1], (*direction)[2]) : Vector(0, 0, 1);
         const SliceSegments segments = in_file(mesh.file(), [&] { return segment_by_slices(surface, upward, options); });
         AnnotationSet set = annotate_segments(surface, segments);
         set.up = {upward.x(), upward.y(), upward.z()};
@@ -53,14 +55,15 @@ struct StudySegments final : Operation {
         for (const ClusterCount::Row& row : segments.count.rows)
             report.row("curve")("clusters", row.clusters)("cost", row.cost)("silhouette", row.silhouette)("gap", row.gap)(
                 "gapError", row.gap_error);
-        report.line(std::to_string(segments.count.proposed) + " clusters proposed by " + option_text(options.count, "criterion") +
-                    ", " + std::to_string(segments.clusters) + " used\n");
+        report.line(fmt::format("{} clusters proposed by {}, {} used\n", segments.count.proposed,
+                                option_text(options.count, "criterion"), segments.clusters));
         for (std::size_t i = 0; i < segments.segments.size(); ++i) {
-            const SliceSegment& each = segments.segments[i];
+            const SliceSegment& slice_segment = segments.segments[i];
             const Annotation* region = set.find(static_cast<int>(i));
             const AnnotationSummary summary = region != nullptr ? summarise(surface, *region) : AnnotationSummary{};
-            report.row("segments")("tag", "segment " + std::to_string(i + 1))("cluster", each.cluster)("low", each.low)(
-                "high", each.high)("slices", each.slices)("faces", summary.elements)("area", summary.area);
+            report.row("segments")("tag", "segment " + std::to_string(i + 1))("cluster", slice_segment.cluster)(
+                "low", slice_segment.low)("high", slice_segment.high)("slices", slice_segment.slices)("faces", summary.elements)(
+                "area", summary.area);
         }
         report_clusters(report, segments);
         if (agreement) {
@@ -68,37 +71,37 @@ struct StudySegments final : Operation {
             report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
         }
         if (curve && segments.count.rows.size() > 2) draw(segments);
-        else if (curve) report.note("no curve is drawn of fewer than three numbers of clusters (--max-clusters)");
+        else if (curve) report.note("no curve is drawn for fewer than three numbers of clusters (--max-clusters)");
         output.write(std::move(set), surface, mesh.file());
     }
 
     /// Reports clusters without a segment, and clusters with several.
     void report_clusters(Report& report, const SliceSegments& segments) const {
-        std::string gone, again;
+        std::string empty_clusters, split_clusters;
         std::size_t count = 0;
         for (int cluster = 0; cluster < segments.clusters; ++cluster) {
-            std::vector<std::string> own;
+            std::vector<std::string> segment_numbers;
             for (std::size_t i = 0; i < segments.segments.size(); ++i)
-                if (segments.segments[i].cluster == cluster) own.push_back(std::to_string(i + 1));
-            if (own.empty()) {
+                if (segments.segments[i].cluster == cluster) segment_numbers.push_back(std::to_string(i + 1));
+            if (segment_numbers.empty()) {
                 const auto slices = std::count(segments.raw.begin(), segments.raw.end(), cluster);
-                gone += (count++ == 0 ? "" : ", ") + std::to_string(cluster) + " (" + std::to_string(slices) +
-                        (slices == 1 ? " slice)" : " slices)");
+                empty_clusters +=
+                    fmt::format("{}{} ({} {})", count++ == 0 ? "" : ", ", cluster, slices, slices == 1 ? "slice" : "slices");
             }
-            if (own.size() > 1) again += again.empty() ? "" : "; ";
-            for (std::size_t k = 0; k < own.size() && own.size() > 1; ++k)
-                again += (k == 0 ? "" : k + 1 < own.size() ? ", " : " and ") + own[k];
+            if (segment_numbers.size() > 1) split_clusters += split_clusters.empty() ? "" : "; ";
+            for (std::size_t k = 0; k < segment_numbers.size() && segment_numbers.size() > 1; ++k)
+                split_clusters += (k == 0 ? "" : k + 1 < segment_numbers.size() ? ", " : " and ") + segment_numbers[k];
         }
         if (count > 0)
-            report.line(std::to_string(count) + " of the " + std::to_string(segments.clusters) + " clusters " +
-                        (count == 1 ? "has" : "have") + " no segment: " + gone + " in runs of fewer than " +
-                        std::to_string(options.min_run) + ", which joined their neighbours (--min-run)");
-        if (!again.empty()) report.line("one cluster, and so one colour: segments " + again);
+            report.line(fmt::format(
+                "{} of the {} clusters {} no segment: {} in runs of fewer than {}, which joined their neighbours (--min-run)",
+                count, segments.clusters, count == 1 ? "has" : "have", empty_clusters, options.min_run));
+        if (!split_clusters.empty()) report.line("of one cluster, and therefore of one colour: segments " + split_clusters);
     }
 
     void draw(const SliceSegments& segments) const {
         const bool gap = options.count.criterion == ClusterCountOptions::Criterion::gap;
-        Plot plot{"Number of clusters: " + std::to_string(segments.count.proposed) + " proposed",
+        Plot plot{fmt::format("Number of clusters: {} proposed", segments.count.proposed),
                   {"clusters"},
                   {gap ? "gap statistic" : "mean silhouette"},
                   {}};

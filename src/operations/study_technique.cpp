@@ -4,6 +4,8 @@
 #include "ostraka/collection/technique_objects.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,115 +53,123 @@ struct StudyOfTechnique final : StudyOperation {
         const TechniqueStudy study = study_technique(objects, options);
         std::vector<std::string> labels;
         for (const TechniqueObject& object : objects) labels.push_back(object.label);
-        const KnownAnswers known(labels);
-        fill(report, study, objects, known);
+        const KnownAnswers known_answers(labels);
+        fill(report, study, objects, known_answers);
         write_study_report(files.in("technique.json"), "technique", report.result(), context.provenance());
         write_technique_tables(files, study, objects);
         draw_technique(files, study, objects);
 
-        report.line(std::to_string(objects.size()) + " objects studied, " + std::to_string(left_out) + " left out");
-        known.report_result(report);
+        report.line(fmt::format("{} objects studied, {} left out", objects.size(), left_out));
+        known_answers.report_result(report);
         if (study.learned) report_learned(report, study);
-        else report_divided(report, study, known);
+        else report_divided(report, study, known_answers);
         report_answers(report, study);
         // The answer is whether the classes can be distinguished or, without known answers, whether there are two groups.
         if (!study.separated) report.answer_no();
     }
 
     static void fill(Report& report, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
-                     const KnownAnswers& known) {
+                     const KnownAnswers& known_answers) {
         report("positive", study.positive)("negative", study.negative)("learned", study.learned);
-        known.add_to(report);
+        known_answers.add_to(report);
         report("answeredBy", study.answered_by)("separated", study.separated);
         for (const char* table : {"classifiers", "divisions", "objects"}) report.empty_table(table);
-        for (const ClassifierResult& each : study.classifiers) {
+        for (const ClassifierResult& result : study.classifiers) {
             Report::Row row = report.row("classifiers");
-            row("name", each.classifier.name)("descriptors", each.classifier.descriptors)("objects", each.objects);
-            if (!each.validated) continue;
-            row("f1", each.validation.mean_f1)("f1Deviation", each.validation.deviation)(
-                "f1Interval", std::vector{each.f1_interval.low, each.f1_interval.high})("trivialF1", each.trivial_f1)(
-                "better", each.better)("error", each.error)("precision", each.validation.mean_precision)(
-                "recall", each.validation.mean_recall)("area", each.roc.area);
-            if (each.threshold) row("threshold", each.threshold->value)("positiveAbove", each.threshold->above);
+            row("name", result.classifier.name)("descriptors", result.classifier.descriptors)("objects", result.objects);
+            if (!result.validated) continue;
+            row("f1", result.validation.mean_f1)("f1Deviation", result.validation.deviation)(
+                "f1Interval", std::vector{result.f1_interval.low, result.f1_interval.high})("trivialF1", result.trivial_f1)(
+                "better", result.better)("error", result.error)("precision", result.validation.mean_precision)(
+                "recall", result.validation.mean_recall)("area", result.roc.area);
+            if (result.threshold) row("threshold", result.threshold->value)("positiveAbove", result.threshold->above);
             std::vector<std::array<double, 2>> roc;
-            for (const RocPoint& point : each.roc.points) roc.push_back({point.false_positive_rate, point.true_positive_rate});
+            for (const RocPoint& point : result.roc.points) roc.push_back({point.false_positive_rate, point.true_positive_rate});
             row("roc", json_value(roc, report.allocator()));
         }
-        for (const TechniqueSplit& each : study.splits) {
+        for (const TechniqueSplit& split : study.splits) {
             Report::Row row = report.row("divisions");
-            row("descriptor", each.descriptor)("objects", each.objects)("lower", each.lower)("threshold", each.threshold)(
-                "shareBetween", each.share)("p", each.p_value)("f1", each.f1);
+            row("descriptor", split.descriptor)("objects", split.objects)("lower", split.lower)("threshold", split.threshold)(
+                "shareBetween", split.share)("p", split.p_value)("f1", split.f1);
         }
         for (std::size_t i = 0; i < objects.size(); ++i)
             fill_answer(report.row("objects"), study.answers[i], objects[i].measures, study.learned, report.allocator());
     }
 
-    static void fill_answer(Report::Row row, const TechniqueAnswer& each, const TechniqueMeasures& measures, bool learned,
-                            JsonAllocator& allocator) {
-        row("name", each.name);
-        if (!each.label.empty()) row("label", each.label);
-        if (!each.answer.empty()) row("answer", each.answer);
-        if (learned && !each.certainty.empty())
-            row("certainty", each.certainty)("score", each.score)("agreement", each.agreement)("resamples", each.asked);
-        if (each.unlike)
-            row("unlike.descriptor", each.unlike->descriptor)("unlike.value", each.unlike->value)(
-                "unlike.labelled", std::vector{each.unlike->low, each.unlike->high})("unlike.distance", each.unlike->distance);
-        if (each.roundness) row("roundnessInterval", std::vector{each.roundness->low, each.roundness->high});
+    static void fill_answer(Report::Row row, const TechniqueAnswer& technique_answer, const TechniqueMeasures& measures,
+                            bool learned, JsonAllocator& allocator) {
+        row("name", technique_answer.name);
+        if (!technique_answer.label.empty()) row("label", technique_answer.label);
+        if (!technique_answer.answer.empty()) row("answer", technique_answer.answer);
+        if (learned && !technique_answer.certainty.empty())
+            row("certainty", technique_answer.certainty)("score", technique_answer.score)(
+                "agreement", technique_answer.agreement)("resamples", technique_answer.asked);
+        if (technique_answer.unlike)
+            row("unlike.descriptor", technique_answer.unlike->descriptor)("unlike.value", technique_answer.unlike->value)(
+                "unlike.labelled", std::vector{technique_answer.unlike->low, technique_answer.unlike->high})(
+                "unlike.distance", technique_answer.unlike->distance);
+        if (technique_answer.roundness)
+            row("roundnessInterval", std::vector{technique_answer.roundness->low, technique_answer.roundness->high});
         row("slices.asked", measures.asked)("slices.used", measures.slices.size())("slices.open", measures.open_used)(
             "slices.tooOpen", measures.too_open)("slices.empty", measures.empty);
         JsonValue descriptors(rapidjson::kObjectType);
         for (const TechniqueDescriptor& d : measures.descriptors)
             add_members(descriptors, allocator, d.name, std::isfinite(d.value) ? std::optional(d.value) : std::nullopt);
-        row("descriptors", std::move(descriptors))("words", each.words);
+        row("descriptors", std::move(descriptors))("words", technique_answer.words);
     }
 
     /// Reports what was learnt from the labels: the scores, and whether the chosen classifier separates the classes.
     static void report_learned(Report& report, const TechniqueStudy& study) {
-        report.line("F1 of " + printable(study.positive) +
-                    " when left out: means over the repeats of the cross-validation; from, to: 95 % over objects drawn anew");
+        report.line(
+            fmt::format("F1 of {} when left out: means over the repeats of the cross-validation; from, to: 95 % interval over "
+                        "resampled objects",
+                        printable(study.positive)));
         TextTable scores({"classifier", "objects", "F1", "from", "to", "all " + printable(study.positive, 20), "better",
                           "precision", "recall", "ROC area"});
         std::vector<const ClassifierResult*> better;
         const ClassifierResult* chosen = nullptr;
-        for (const ClassifierResult& each : study.classifiers) {
-            std::vector<std::string> cells{each.classifier.name, std::to_string(each.objects)};
-            if (each.validated)
-                cells.insert(cells.end(),
-                             {fixed(each.validation.mean_f1, 3), fixed(each.f1_interval.low, 3), fixed(each.f1_interval.high, 3),
-                              fixed(each.trivial_f1, 3), each.better ? "yes" : "no", fixed(each.validation.mean_precision, 3),
-                              fixed(each.validation.mean_recall, 3), fixed(each.roc.area, 3)});
+        for (const ClassifierResult& result : study.classifiers) {
+            std::vector<std::string> cells{result.classifier.name, std::to_string(result.objects)};
+            if (result.validated)
+                cells.insert(cells.end(), {fixed(result.validation.mean_f1, 3), fixed(result.f1_interval.low, 3),
+                                           fixed(result.f1_interval.high, 3), fixed(result.trivial_f1, 3),
+                                           result.better ? "yes" : "no", fixed(result.validation.mean_precision, 3),
+                                           fixed(result.validation.mean_recall, 3), fixed(result.roc.area, 3)});
             cells.resize(10);
             scores.add(cells);
-            if (each.better) better.push_back(&each);
-            if (each.classifier.name == study.answered_by) chosen = &each;
+            if (result.better) better.push_back(&result);
+            if (result.classifier.name == study.answered_by) chosen = &result;
         }
         report.table(scores);
         if (study.separated || chosen == nullptr) return;
         if (!chosen->validated)
             return report.line(
-                "this classifier does not tell them apart here: two objects of each label that have its descriptors are needed");
-        report.line("this classifier does not tell them apart here: F1 of " + printable(answering_words(study)) + " " +
-                    fixed(chosen->validation.mean_f1, 3) + " (" + fixed(chosen->f1_interval.low, 3) + " to " +
-                    fixed(chosen->f1_interval.high, 3) + "), of calling all of them " + printable(study.positive) + " " +
-                    fixed(chosen->trivial_f1, 3) + "; no answers are given");
+                "this classifier does not distinguish the classes here: two objects of each label that have its descriptors are "
+                "needed");
+        report.line(fmt::format(
+            "this classifier does not distinguish the classes here: F1 of {} {} ({} to {}), of calling all of them {} {}; no "
+            "answers are given",
+            printable(answering_words(study)), fixed(chosen->validation.mean_f1, 3), fixed(chosen->f1_interval.low, 3),
+            fixed(chosen->f1_interval.high, 3), printable(study.positive), fixed(chosen->trivial_f1, 3)));
         if (better.empty()) return report.line("no other classifier does better than that either: give more labelled objects");
         std::stable_sort(better.begin(), better.end(),
                          [](const auto* a, const auto* b) { return a->f1_interval.low > b->f1_interval.low; });
         std::string text;
-        for (const ClassifierResult* each : better)
-            text += (text.empty() ? " '" : ", '") + each->classifier.name + "' (" + fixed(each->validation.mean_f1, 3) + ")";
-        report.line("better here, by --answer-by:" + text);
+        for (const ClassifierResult* result : better)
+            text += fmt::format("{}'{}' ({})", text.empty() ? " " : ", ", result->classifier.name,
+                                fixed(result->validation.mean_f1, 3));
+        report.line("better classifiers here, for --answer-by:" + text);
     }
 
-    static void report_divided(Report& report, const TechniqueStudy& study, const KnownAnswers& known) {
-        report.line((known.labelled == 0 ? "no answers are known: " : "") + std::string("divided into two groups"));
+    static void report_divided(Report& report, const TechniqueStudy& study, const KnownAnswers& known_answers) {
+        report.line((known_answers.labelled == 0 ? "no answers are known: " : "") + std::string("divided into two groups"));
         TextTable divisions({"descriptor", "objects", "groups", "share between", "p"});
-        for (const TechniqueSplit& each : study.splits)
-            divisions.add({each.descriptor, std::to_string(each.objects),
-                           std::to_string(each.lower) + " + " + std::to_string(each.objects - each.lower), fixed(each.share, 3),
-                           significant(each.p_value, 2)});
+        for (const TechniqueSplit& split : study.splits)
+            divisions.add({split.descriptor, std::to_string(split.objects),
+                           fmt::format("{} + {}", split.lower, split.objects - split.lower), fixed(split.share, 3),
+                           significant(split.p_value, 2)});
         report.table(divisions);
-        if (!study.separated) report.line("by " + study.answered_by + " there are no two groups");
+        if (!study.separated) report.line(fmt::format("there are not two groups by {}", study.answered_by));
     }
 
     static void report_answers(Report& report, const TechniqueStudy& study) {
@@ -167,35 +177,36 @@ struct StudyOfTechnique final : StudyOperation {
         std::vector<std::string> columns{"object", "label", "answer"};
         if (study.learned) columns.insert(columns.end(), {"certainty", "agreement", ""});
         TextTable answers(columns);
-        std::size_t known = 0, right = 0, without = 0;
-        std::vector<std::string> wrong, unlike;
-        for (const TechniqueAnswer& each : study.answers) {
-            std::vector<std::string> cells{printable(each.name, 40), printable(each.label, 20),
-                                           each.answer.empty() ? "-" : printable(each.answer, 20)};
+        std::size_t labelled = 0, correct = 0, without = 0;
+        std::vector<std::string> wrong, dissimilar;
+        for (const TechniqueAnswer& technique_answer : study.answers) {
+            std::vector<std::string> cells{printable(technique_answer.name, 40), printable(technique_answer.label, 20),
+                                           technique_answer.answer.empty() ? "-" : printable(technique_answer.answer, 20)};
             if (study.learned)
-                cells.insert(cells.end(), {each.certainty, each.certainty.empty() ? "" : fixed(each.agreement, 2),
-                                           each.wrong() ? "WRONG" : ""});
+                cells.insert(cells.end(), {technique_answer.certainty,
+                                           technique_answer.certainty.empty() ? "" : fixed(technique_answer.agreement, 2),
+                                           technique_answer.wrong() ? "WRONG" : ""});
             answers.add(cells);
-            if (each.unlike) unlike.push_back(each.name);
-            if (each.label.empty()) continue;
-            ++known;
-            if (each.answer.empty()) ++without;
-            else if (each.wrong()) wrong.push_back(each.name);
-            else ++right;
+            if (technique_answer.unlike) dissimilar.push_back(technique_answer.name);
+            if (technique_answer.label.empty()) continue;
+            ++labelled;
+            if (technique_answer.answer.empty()) ++without;
+            else if (technique_answer.wrong()) wrong.push_back(technique_answer.name);
+            else ++correct;
         }
         report.table(answers);
         if (!study.learned) return;
-        const auto listed = [](const std::vector<std::string>& names) {
+        const auto listed_names = [](const std::vector<std::string>& names) {
             std::string text;
             for (std::size_t i = 0; i < names.size() && i < 12; ++i) text += (i == 0 ? "" : ", ") + printable(names[i], 40);
-            return names.size() > 12 ? text + ", and " + std::to_string(names.size() - 12) + " more" : text;
+            return names.size() > 12 ? fmt::format("{}, and {} more", text, names.size() - 12) : text;
         };
-        if (without < known)
-            report.line(std::to_string(right) + " of " + std::to_string(known) + " right" +
-                        (without > 0 ? ", " + std::to_string(without) + " without an answer" : "") +
-                        (wrong.empty() ? "" : "; wrong: " + listed(wrong)));
-        if (!unlike.empty())
-            report.line("unlike the labelled objects, so that they get no answer (see answers.md): " + listed(unlike));
+        if (without < labelled)
+            report.line(fmt::format("{} of {} right{}{}", correct, labelled,
+                                    without > 0 ? fmt::format(", {} without an answer", without) : "",
+                                    wrong.empty() ? "" : "; wrong: " + listed_names(wrong)));
+        if (!dissimilar.empty())
+            report.line("too dissimilar to the labelled objects for an answer (see answers.md): " + listed_names(dissimilar));
     }
 
     DirectionOption up;

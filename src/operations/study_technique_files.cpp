@@ -3,19 +3,21 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace ostraka {
 
 std::string answering_words(const TechniqueStudy& study) {
-    for (const ClassifierResult& each : study.classifiers)
-        if (each.classifier.name == study.answered_by) return each.classifier.words;
+    for (const ClassifierResult& result : study.classifiers)
+        if (result.classifier.name == study.answered_by) return result.classifier.words;
     return study.answered_by;
 }
 
 void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects) {
     std::vector<std::string> columns{"name", "label", "slices"};
-    for (const DescriptorMeaning& each : technique_descriptors()) columns.push_back(each.name);
+    for (const DescriptorMeaning& meaning : technique_descriptors()) columns.push_back(meaning.name);
     TextTable descriptors(columns);
     for (const TechniqueObject& object : objects) {
         std::vector<TableCell> cells{object.name, object.label, std::to_string(object.measures.slices.size())};
@@ -28,40 +30,40 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
     if (study.learned) {
         TextTable classifiers({"classifier", "objects", "F1", "from", "to", "F1 of all " + study.positive, "better", "precision",
                                "recall", "ROC area", "positive", "threshold"});
-        for (const ClassifierResult& each : study.classifiers) {
-            const auto value = [&](double x) { return fixed_cell(each.validated ? std::optional(x) : std::nullopt, 3); };
-            std::vector<TableCell> cells{each.classifier.name,
-                                         std::to_string(each.objects),
-                                         value(each.validation.mean_f1),
-                                         value(each.f1_interval.low),
-                                         value(each.f1_interval.high),
-                                         value(each.trivial_f1),
-                                         !each.validated ? ""
-                                         : each.better   ? "yes"
-                                                         : "no",
-                                         value(each.validation.mean_precision),
-                                         value(each.validation.mean_recall),
-                                         value(each.roc.area)};
-            cells.emplace_back(!each.threshold ? "" : each.threshold->above ? "from" : "up to");
-            cells.push_back(number_cell(each.threshold ? std::optional(each.threshold->value) : std::nullopt, 4));
+        for (const ClassifierResult& result : study.classifiers) {
+            const auto value = [&](double x) { return fixed_cell(result.validated ? std::optional(x) : std::nullopt, 3); };
+            std::vector<TableCell> cells{result.classifier.name,
+                                         std::to_string(result.objects),
+                                         value(result.validation.mean_f1),
+                                         value(result.f1_interval.low),
+                                         value(result.f1_interval.high),
+                                         value(result.trivial_f1),
+                                         !result.validated ? ""
+                                         : result.better   ? "yes"
+                                                           : "no",
+                                         value(result.validation.mean_precision),
+                                         value(result.validation.mean_recall),
+                                         value(result.roc.area)};
+            cells.emplace_back(!result.threshold ? "" : result.threshold->above ? "from" : "up to");
+            cells.push_back(number_cell(result.threshold ? std::optional(result.threshold->value) : std::nullopt, 4));
             classifiers.add(cells);
         }
-        classifiers.write(folder, "classifiers", "F1 of " + study.positive + " under cross-validation");
+        classifiers.write(folder, "classifiers", fmt::format("F1 of {} under cross-validation", study.positive));
     }
     TextTable divisions({"descriptor", "objects", "lower", "upper", "threshold", "share between", "p", "F1"});
-    for (const TechniqueSplit& each : study.splits)
-        divisions.add({each.descriptor, std::to_string(each.objects), std::to_string(each.lower),
-                       std::to_string(each.objects - each.lower), number_cell(each.threshold, 4), fixed_cell(each.share, 3),
-                       number_cell(each.p_value, 2), fixed_cell(each.f1, 3)});
+    for (const TechniqueSplit& split : study.splits)
+        divisions.add({split.descriptor, std::to_string(split.objects), std::to_string(split.lower),
+                       std::to_string(split.objects - split.lower), number_cell(split.threshold, 4), fixed_cell(split.share, 3),
+                       number_cell(split.p_value, 2), fixed_cell(split.f1, 3)});
     divisions.write(folder, "divisions", "Divisions into two groups without known answers");
 
     TextTable answers({"name", "label", "answer", "certainty", "against the label", "score", "agreement", "why"});
-    for (const TechniqueAnswer& each : study.answers) {
-        const bool certain = study.learned && !each.certainty.empty();
+    for (const TechniqueAnswer& answer : study.answers) {
+        const bool certain = study.learned && !answer.certainty.empty();
         const auto value = [&](double x) { return fixed_cell(certain ? std::optional(x) : std::nullopt, 2); };
-        const char* against = each.label.empty() || each.answer.empty() ? "" : each.wrong() ? "WRONG" : "right";
-        answers.add(
-            {each.name, each.label, each.answer, each.certainty, against, value(each.score), value(each.agreement), each.words});
+        const char* against = answer.label.empty() || answer.answer.empty() ? "" : answer.wrong() ? "WRONG" : "right";
+        answers.add({answer.name, answer.label, answer.answer, answer.certainty, against, value(answer.score),
+                     value(answer.agreement), answer.words});
     }
     answers.write(folder, "answers", "Answers by " + answering_words(study));
 }
@@ -78,9 +80,9 @@ void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study
         PlotSeries series{.name = classes[c], .joined = false};
         for (std::size_t i = 0; i < objects.size(); ++i) {
             const std::string& kind = study.learned ? objects[i].label : study.answers[i].answer;
-            const std::size_t number = kind == study.positive ? 0 : kind == study.negative ? 1 : 2;
+            const std::size_t group_index = kind == study.positive ? 0 : kind == study.negative ? 1 : 2;
             const double a = objects[i].measures.value(x), b = objects[i].measures.value(y);
-            if (number != c || !std::isfinite(a) || !std::isfinite(b) || b <= 0 || (a <= 0 && logarithmic)) continue;
+            if (group_index != c || !std::isfinite(a) || !std::isfinite(b) || b <= 0 || (a <= 0 && logarithmic)) continue;
             series.points.push_back({a, b});
             // Name only the objects that need attention.
             series.labels.push_back(study.answers[i].wrong() || study.answers[i].unlike ? objects[i].name : "");
@@ -88,10 +90,10 @@ void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
     if (plot.series.empty()) return;
-    for (const ClassifierResult& each : study.classifiers) {
-        if (!each.threshold) continue;
-        if (each.classifier.descriptors.front() == x) plot.lines.push_back({each.threshold->value, true, "threshold"});
-        if (each.classifier.descriptors.front() == y) plot.lines.push_back({each.threshold->value, false, "threshold"});
+    for (const ClassifierResult& result : study.classifiers) {
+        if (!result.threshold) continue;
+        if (result.classifier.descriptors.front() == x) plot.lines.push_back({result.threshold->value, true, "threshold"});
+        if (result.classifier.descriptors.front() == y) plot.lines.push_back({result.threshold->value, false, "threshold"});
     }
     write_plot(files.plot(file), plot);
 }
@@ -106,36 +108,38 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
     draw_technique_scatter(files, study, objects, "ovality", "Ovality and finger marks, relative to the radius", "ovality",
                            "marks", true);
     if (!study.learned) return;
-    Plot bars{.title = "F1 of " + study.positive + " under cross-validation; 95 % over objects drawn anew",
+    Plot bars{.title = fmt::format("F1 of {} under cross-validation; 95 % intervals over resampled objects", study.positive),
               .y = {.label = "F1", .minimum = 0, .maximum = 1},
               .width = 980,
               .height = 560};
     PlotSeries series{.joined = false, .mark = Mark::bars};
-    for (const ClassifierResult& each : study.classifiers) {
-        if (!each.validated) continue;
-        bars.x.names.push_back(each.classifier.name);
-        series.points.push_back({static_cast<double>(series.points.size()), each.validation.mean_f1});
-        series.intervals.emplace_back(std::array<double, 2>{each.f1_interval.low, each.f1_interval.high});
-        if (each.classifier.name == study.answered_by)
-            bars.lines.push_back({each.trivial_f1, false, "all called " + study.positive});
+    for (const ClassifierResult& result : study.classifiers) {
+        if (!result.validated) continue;
+        bars.x.names.push_back(result.classifier.name);
+        series.points.push_back({static_cast<double>(series.points.size()), result.validation.mean_f1});
+        series.intervals.emplace_back(std::array<double, 2>{result.f1_interval.low, result.f1_interval.high});
+        if (result.classifier.name == study.answered_by)
+            bars.lines.push_back({result.trivial_f1, false, "all classified as " + study.positive});
     }
     if (series.points.empty()) return;
     bars.series.push_back(std::move(series));
     write_plot(files.plot("classifiers"), bars);
 
     Plot roc{.title = "Receiver operating characteristics",
-             .x = {.label = "share of " + study.negative + " called " + study.positive, .minimum = 0, .maximum = 1},
-             .y = {.label = "share of " + study.positive + " called so", .minimum = 0, .maximum = 1},
+             .x = {.label = fmt::format("fraction of {} classified as {}", study.negative, study.positive),
+                   .minimum = 0,
+                   .maximum = 1},
+             .y = {.label = fmt::format("fraction of {} classified as such", study.positive), .minimum = 0, .maximum = 1},
              .width = 760,
              .height = 560,
              .square = true};
-    for (const ClassifierResult& each : study.classifiers) {
-        const auto& name = each.classifier.name;
-        if (!each.validated || (name != "roundness" && name != "eccentricity" && name != "both" && name != "outside")) continue;
-        PlotSeries curve{.name = name + " (area " + fixed(each.roc.area, 3) + ")", .marked = false};
+    for (const ClassifierResult& result : study.classifiers) {
+        const auto& name = result.classifier.name;
+        if (!result.validated || (name != "roundness" && name != "eccentricity" && name != "both" && name != "outside")) continue;
+        PlotSeries curve{.name = fmt::format("{} (area {})", name, fixed(result.roc.area, 3)), .marked = false};
         // Decreasing line width keeps coinciding curves visible.
         curve.thickness = 7.5 - 2 * static_cast<double>(roc.series.size());
-        for (const RocPoint& point : each.roc.points)
+        for (const RocPoint& point : result.roc.points)
             curve.points.push_back({point.false_positive_rate, point.true_positive_rate});
         roc.series.push_back(std::move(curve));
     }

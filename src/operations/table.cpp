@@ -3,6 +3,8 @@
 
 #include "ostraka/core/nearest_name.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 // clang-format off
@@ -30,17 +32,17 @@ constexpr OperationEntry entries[]{
     {"mesh info", "count, measure and examine a mesh; exit code 3 if it is not closed, oriented, manifold and free of self-intersections", make_mesh_info},
     {"mesh convert", "write a mesh in another format, polygons cut into triangles, vertex order kept", make_mesh_convert},
     {"mesh repair", "repair a mesh to an oriented manifold; exit code 3 if it is still open or intersects itself", make_mesh_repair},
-    {"mesh simplify", "fewer vertices, with annotations, labels and colours carried along", make_mesh_simplify, 2},
-    {"mesh refine", "more vertices, with annotations, labels and colours carried along", make_mesh_refine, 2},
+    {"mesh simplify", "reduce the number of vertices, with annotations, labels and colours transferred", make_mesh_simplify, 2},
+    {"mesh refine", "increase the number of vertices, with annotations, labels and colours transferred", make_mesh_refine, 2},
     {"mesh remesh", "remesh the surface, independently of the old mesh", make_mesh_remesh},
-    {"mesh register", "bring a mesh onto another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object", make_mesh_register},
-    {"mesh extract", "cut annotated parts out of an object, with what is annotated on them", make_mesh_extract},
+    {"mesh register", "register a mesh to another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object", make_mesh_register},
+    {"mesh extract", "cut annotated parts out of an object, with the annotations on them", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment whose pose on the whole is known", make_mesh_break},
     {"mesh make", "make a closed synthetic mesh whose parts are known exactly", make_mesh_make},
     {"annotation apply", "annotate a mesh by a recipe or from labels", make_annotation_apply, 3},
     {"annotation list", "list the annotations of a mesh", make_annotation_list},
     {"annotation check", "look for defects in annotations; exit code 3 if there are any", make_annotation_check},
-    {"annotation remap", "carry annotations or labels along the maps of 'mesh repair'", make_annotation_remap, 2},
+    {"annotation remap", "transfer annotations or labels by the index maps of 'mesh repair'", make_annotation_remap, 2},
     {"annotation select", "select a part by one tool and annotate it, or edit an annotation", make_annotation_select, 3},
     {"annotation creases", "find ridges and hollows of the surface, such as clay leaves at joints; exit code 3 if there is none", make_annotation_creases},
     {"annotation facets", "classify the surface of a fragment as outer, inner and fracture surface; exit code 3 if there is no fracture", make_annotation_facets},
@@ -59,29 +61,29 @@ constexpr OperationEntry entries[]{
     {"relation add", "state a relationship", make_relation_add},
     {"relation remove", "take relationships out of a graph", make_relation_remove},
     {"relation edit", "change weight, range and parameters of a relationship in place", make_relation_edit},
-    {"relation list", "the relationships of a graph", make_relation_list},
+    {"relation list", "list the relationships of a graph", make_relation_list},
     {"relation check", "check which relationships hold on a mesh; exit code 3 if one fails", make_relation_check, 2},
     {"relation export", "draw a graph, or write it for Graphviz", make_relation_export},
     {"measure take", "take a measure by ruler, tape or bounding planes", make_measure_take},
-    {"measure describe", "sizes, box, centroid, volume, curvature, thickness, and statistics of maps, of annotations", make_measure_describe},
+    {"measure describe", "describe annotations: sizes, box, centroid, volume, curvature, thickness, and statistics of maps", make_measure_describe},
     {"measure refresh", "recompute all measures and descriptors, with uncertainties; exit code 3 if some cannot be computed", make_measure_refresh},
     {"measure map", "write a map of curvature, thickness or distance", make_measure_map},
-    {"measure clay", "bounds of the volume of clay: with the unseen inside solid, and hollow", make_measure_clay},
-    {"vocabulary check", "look for defects in a vocabulary; exit code 3 if there are", make_vocabulary_check},
-    {"vocabulary show", "concepts as a tree, with the attributes each may carry", make_vocabulary_show},
-    {"vocabulary convert", "vocabularies between our format and SKOS", make_vocabulary_convert},
+    {"measure clay", "bound the volume of clay: with the unseen inside solid, and hollow", make_measure_clay},
+    {"vocabulary check", "look for defects in a vocabulary; exit code 3 if there are any", make_vocabulary_check},
+    {"vocabulary show", "show concepts as a tree, with the attributes that each may have", make_vocabulary_show},
+    {"vocabulary convert", "convert vocabularies between Ostraka's format and SKOS", make_vocabulary_convert},
     {"template pack", "write one file that names the parts of a template, checked as a whole; exit code 3, and nothing written, if they do not fit", make_template_pack},
     {"template check", "check a template as a whole; exit code 3 if something is wrong", make_template_check},
     {"template show", "show what a template contains, and what is wrong with it", make_template_show},
-    {"template learn", "learn a class from members of it: ranges of what is measured, mean shape, modes of variation, archetype, thresholds", make_template_learn, 2},
+    {"template learn", "learn a class from members of it: ranges of measures, mean shape, modes of variation, archetype, thresholds", make_template_learn, 2},
     {"template classify", "report the class of objects, and which proportion, relation or distance contradicts it (exit code 3: an object belongs to no class, or there is no answer)", make_template_classify, 2},
     {"template sample", "draw new members of a class that satisfy its constraints (exit code 3: fewer than requested)", make_template_sample},
     {"template propagate", "fit a template to members of its class and transfer its annotations to them (exit code 3: some are lost, or the template does not fit a member)", make_template_propagate, 2},
     {"template turn", "reconstruct a whole vessel from its sherds as a surface of revolution, with its profile", make_template_turn},
-    {"cage make", "a closed coarse mesh strictly around a mesh", make_cage_make},
+    {"cage make", "make a closed coarse mesh strictly around a mesh", make_cage_make},
     {"cage edit", "move the vertices of a cage by an edit file", make_cage_edit},
-    {"cage check", "is a mesh a sound cage of another? (exit code 3: no)", make_cage_check, 2},
-    {"cage weights", "coordinates of a mesh in a cage, with a certificate", make_cage_weights, 2},
+    {"cage check", "check whether a mesh is a sound cage of another (exit code 3: no)", make_cage_check, 2},
+    {"cage weights", "compute coordinates of a mesh in a cage, with a certificate", make_cage_weights, 2},
     {"cage influence", "colour a mesh or its cage by the weights of cage vertices", make_cage_influence},
     {"study make proportions", "make synthetic statuettes with annotations, some of whose proportions are fixed, and their measure definitions", make_study_make_proportions},
     {"study make moulds", "make synthetic heads of figurines cast from a few moulds, each worn, deformed and scanned on its own", make_study_make_moulds, 2},
@@ -100,8 +102,8 @@ constexpr OperationEntry entries[]{
     {"render", "make a picture of meshes, their annotations and maps", make_render},
     {"publish", "write an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page", make_publish},
     {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report, 2},
-    {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run, 1, true},
-    {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay, 1, true},
+    {"run", "run the steps of a study file; steps that have not changed are not run again (exit code 3: a step failed)", make_run, 1, true},
+    {"replay", "repeat a run of a study and compare all its outputs, to the bit; exit code 3 if something differs", make_replay, 1, true},
     {"conformance run", "run the golden cases with another program, and report where it agrees (exit code 3: it differs somewhere)", make_conformance_run, 1, true},
     {"conformance self", "run the golden cases with this command; exit code 3 if one differs", make_conformance_self, 1, true},
     {"operations", "list every operation with its inputs, outputs, options, ranges, defaults and units", make_operations},
@@ -113,11 +115,11 @@ const OperationGroup groups[]{
     {"relation", "relationships among annotations"},
     {"measure", "take measures, describe annotations, compute maps"},
     {"vocabulary", "the words that tags and attributes are taken from"},
-    {"template", "the files of a template, as one"},
+    {"template", "the files of a template, handled as a whole"},
     {"cage", "cages around meshes, and coordinates in them"},
-    {"study", "questions to a whole collection of objects"},
-    {"conformance", "whether other programs do what this one does"},
-    {"study make", "collections whose answers are known, to try a study on"},
+    {"study", "analyses of a collection of objects"},
+    {"conformance", "checks whether other programs give the results of this one"},
+    {"study make", "synthetic collections with known answers, to test studies"},
 };
 }  // namespace
 
@@ -130,9 +132,9 @@ const OperationEntry& find_operation(const std::string& name) {
         if (name == entry.name) return entry;
         names.emplace_back(entry.name);
     }
-    const std::string near = nearest_name(name, names);
-    throw Error(ErrorKind::usage, "", "there is no operation '" + printable(name, 60) + "'",
-                near.empty() ? "'ostraka operations' lists them" : "did you mean '" + near + "'?");
+    const std::string nearest = nearest_name(name, names);
+    throw Error(ErrorKind::usage, "", fmt::format("there is no operation '{}'", printable(name, 60)),
+                nearest.empty() ? "'ostraka operations' lists them" : fmt::format("did you mean '{}'?", nearest));
 }
 
 }  // namespace ostraka

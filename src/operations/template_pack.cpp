@@ -3,6 +3,8 @@
 
 #include "ostraka/template_package/template.h"
 
+#include <fmt/core.h>
+
 #include <map>
 
 namespace ostraka {
@@ -18,16 +20,16 @@ void declare_template(ReportLayout& layout, bool contents) {
     layout.checks = true;
 }
 
-void add_template(Report& report, const Template& known, bool contents) {
-    const std::string &object_class = known.file.object_class, &unit = known.file.unit;
+void add_template(Report& report, const Template& package, bool contents) {
+    const std::string &object_class = package.file.object_class, &unit = package.file.unit;
     report("class", object_class)("unit", unit);
     if (contents && (!object_class.empty() || !unit.empty()))
         report.line(printable(object_class + (unit.empty() ? "" : ", in " + unit)));
     report.empty_table("parts");
-    for (const TemplateEntry& entry : known.entries)
+    for (const TemplateEntry& entry : package.entries)
         report.row("parts")("role", entry.role)("file", entry.name)("bytes", entry.bytes)("text", entry.text);
     if (contents) report.line("");
-    report.findings(known.findings, "part");
+    report.findings(package.findings, "part");
 }
 
 struct TemplatePack final : Operation {
@@ -55,51 +57,54 @@ struct TemplatePack final : Operation {
 
     void check() const override {
         if (copy && output.file().empty())
-            fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
+            fail_usage("there is no folder to copy the parts to", "give the template's file, or leave out --copy");
     }
 
     /// Whether the existing file is a part of the template that is rewritten.
-    [[nodiscard]] bool is_packed(const Path& place, const Path& part) const {
-        if (!file_exists(place)) return false;
-        const auto parts_before = read_template(place, options).contents;
+    [[nodiscard]] bool is_packed(const Path& template_path, const Path& part) const {
+        if (!file_exists(template_path)) return false;
+        const auto parts_before = read_template(template_path, options).contents;
         return std::any_of(parts_before.begin(), parts_before.end(),
-                           [&](const PackagedFile& one) { return same_place(one.file, part); });
+                           [&](const PackagedFile& packaged) { return same_place(packaged.file, part); });
     }
 
     void run(Context& context, Report& report) override {
-        const Path place(output.file()), folder = place.has_parent_path() ? place.parent_path() : Path(".");
+        const Path template_path(output.file()),
+            folder = template_path.has_parent_path() ? template_path.parent_path() : Path(".");
         TemplateFile file{object_class, unit, up.value(), {}};
-        std::vector<Path> inputs, outputs{place};
+        std::vector<Path> inputs, outputs{template_path};
         std::map<Path, Path> copies;  // copy -> original
         for (const std::string& role : template_roles())
             for (std::size_t i = 0; i < parts[role].size(); ++i) {
                 const Path part = inputs.emplace_back(parts[role].path(i));
-                const Path here = copy ? folder / part.filename() : part;
-                if (!same_place(here, part) && copies.emplace(here, part).first->second != part)
-                    fail_usage("two parts are called '" + part.filename().string() + "'", "rename one of the files");
-                file.contents.push_back({role, part_name(folder, here), part, sha256_of_file(part)});
+                const Path target = copy ? folder / part.filename() : part;
+                if (!same_place(target, part) && copies.emplace(target, part).first->second != part)
+                    fail_usage(fmt::format("two parts are called '{}'", part.filename().string()), "rename one of the files");
+                file.contents.push_back({role, part_name(folder, target), part, sha256_of_file(part)});
             }
-        for (const auto& [here, part] : copies) {
-            if (file_exists(here) && sha256_of_file(here) != sha256_of_file(part) && !is_packed(place, here))
-                fail_usage("another file is called '" + here.string() + "'", "rename it, or the part " + part.string());
-            outputs.push_back(here);
+        for (const auto& [target, part] : copies) {
+            if (file_exists(target) && sha256_of_file(target) != sha256_of_file(part) && !is_packed(template_path, target))
+                fail_usage(fmt::format("another file is called '{}'", target.string()),
+                           "rename it, or the part " + part.string());
+            outputs.push_back(target);
         }
         check_outputs(inputs, outputs);
         // Parse the file as readers will: names that lead out of the folder are rejected here.
-        if (!place.empty()) static_cast<void>(template_from_json(template_to_json(file, {}), folder, place.string(), options));
-        Template known;
-        context.record([&] { known = load_template(file, options); });
+        if (!template_path.empty())
+            static_cast<void>(template_from_json(template_to_json(file, {}), folder, template_path.string(), options));
+        Template package;
+        context.record([&] { package = load_template(file, options); });
         // Properties of the object that are not given are taken from the annotations.
-        if (known.annotations) {
-            if (file.object_class.empty()) file.object_class = known.annotations->object_class;
-            if (file.unit.empty()) file.unit = known.annotations->unit;
-            if (!file.up) file.up = known.annotations->up;
-            known.file = file;
+        if (package.annotations) {
+            if (file.object_class.empty()) file.object_class = package.annotations->object_class;
+            if (file.unit.empty()) file.unit = package.annotations->unit;
+            if (!file.up) file.up = package.annotations->up;
+            package.file = file;
         }
-        add_template(report, known, true);
-        if (!known.sound()) return report.note("nothing is written: mend the defects first");
-        for (const auto& [here, part] : copies) write_file(here, read_file(part));
-        output.write(std::move(known));
+        add_template(report, package, true);
+        if (!package.sound()) return report.note("nothing is written: correct the defects first");
+        for (const auto& [target, part] : copies) write_file(target, read_file(part));
+        output.write(std::move(package));
     }
 
     TemplateOutput output;

@@ -6,6 +6,8 @@
 #include "ostraka/shape_classes/member_file.h"
 #include "ostraka/shape_classes/sample.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -13,42 +15,42 @@ namespace {
 struct TemplateSample final : Operation {
     void describe(Parameters& p) override {
         p.input("class", Kind::shape_class, file, "class (.class.json), as 'template learn' writes it");
-        p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; made if it is missing")
+        p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; created if missing")
             .flag();
         options.describe(p.options);
         p.report.schema = "samples";
     }
 
     void run(Context&, Report& report) override {
-        const ClassWithTemplate& known = file.load<ClassWithTemplate>(read_class_with_template);
-        if (known.landmarks)
-            fail_input(known.learnt.template_file, "is a file of landmarks, and a template with a mesh is needed",
-                       "classes of landmarks can be learnt and asked, no more");
+        const ClassWithTemplate& class_data = file.load<ClassWithTemplate>(read_class_with_template);
+        if (class_data.landmarks)
+            fail_input(class_data.learnt.template_file, "is a file of landmarks, and a template with a mesh is needed",
+                       "classes of landmarks can only be learnt and used to classify");
         // Keeps the files of other classes in the folder.
-        replace_outputs(output.open(0, false), "template-sample-" + known.learnt.name);
-        const Sampling result = sample_class(known.learnt, known.known(), options);
+        replace_outputs(output.open(0, false), "template-sample-" + class_data.learnt.name);
+        const Sampling result = sample_class(class_data.learnt, class_data.known(), options);
         std::vector<std::string> names;
         for (std::size_t i = 0; i < result.samples.size(); ++i)
-            names.push_back(known.learnt.name + "-" + padded(i + 1, result.samples.size()));
-        write(known, result, names, report);
-        report_result(report, known.learnt.name, result);
+            names.push_back(fmt::format("{}-{}", class_data.learnt.name, padded(i + 1, result.samples.size())));
+        write(class_data, result, names, report);
+        report_result(report, class_data.learnt.name, result);
         if (names.size() < static_cast<std::size_t>(options.count)) report.answer_no();
     }
 
-    void write(const ClassWithTemplate& known, const Sampling& result, const std::vector<std::string>& names,
+    void write(const ClassWithTemplate& class_data, const Sampling& result, const std::vector<std::string>& names,
                Report& report) const {
-        const ClassTemplate of_class = known.known();
+        const ClassTemplate template_of_class = class_data.known();
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const Mesh mesh = with_points(of_class.mesh, result.samples[i].points);
-            AnnotationSet set = of_class.set;
-            move_extents(of_class.mesh, of_class.set, mesh, set);
+            const Mesh mesh = with_points(template_of_class.mesh, result.samples[i].points);
+            AnnotationSet set = template_of_class.set;
+            move_extents(template_of_class.mesh, template_of_class.set, mesh, set);
             static_cast<void>(refresh_measures(mesh, set));
             output.write(names[i] + ".ply", mesh);
             output.write(names[i] + ".ant.json", set, mesh, names[i] + ".ply");
         }
-        const Json document = samples_document(known.learnt.name, result, names);
+        const Json document = samples_document(class_data.learnt.name, result, names);
         report.values(document);
-        output.write(known.learnt.name + ".samples.json", document);
+        output.write(class_data.learnt.name + ".samples.json", document);
     }
 
     /// doc/schema/samples.schema.json
@@ -58,10 +60,10 @@ struct TemplateSample final : Operation {
         JsonValue samples(rapidjson::kArrayType);
         for (std::size_t i = 0; i < names.size(); ++i) {
             const ClassSample& sample = result.samples[i];
-            JsonValue item = json_object(allocator, "name", names[i], "moved", sample.moved);
-            if (!sample.coefficients.empty()) add_members(item, allocator, "coefficients", sample.coefficients);
-            if (!sample.edits.empty()) add_members(item, allocator, "edits", sample.edits);
-            samples.PushBack(item, allocator);
+            JsonValue sample_entry = json_object(allocator, "name", names[i], "moved", sample.moved);
+            if (!sample.coefficients.empty()) add_members(sample_entry, allocator, "coefficients", sample.coefficients);
+            if (!sample.edits.empty()) add_members(sample_entry, allocator, "edits", sample.edits);
+            samples.PushBack(sample_entry, allocator);
         }
         add_members(document, allocator, "class", name, "tried", result.tried, "accepted", result.samples.size(), "acceptance",
                     result.acceptance(), "rejected",
@@ -73,15 +75,16 @@ struct TemplateSample final : Operation {
     }
 
     static void report_result(Report& report, const std::string& name, const Sampling& result) {
-        report.line(std::to_string(result.samples.size()) + " of " + std::to_string(result.tried) + " draws of '" +
-                    printable(name) + "' accepted (" + number(100 * result.acceptance(), 3) + " %); rejected by constraints " +
-                    std::to_string(result.by_constraints) + ", by learnt ranges " + std::to_string(result.by_ranges) +
-                    ", by self-intersections " + std::to_string(result.by_intersections));
+        report.line(fmt::format(
+            "{} of {} draws of '{}' accepted ({} %); rejected by constraints {}, by learnt ranges {}, by self-intersections {}",
+            result.samples.size(), result.tried, printable(name), number(100 * result.acceptance(), 3), result.by_constraints,
+            result.by_ranges, result.by_intersections));
         for (const std::string& text : result.examples) report.line("  such as: " + printable(text));
-        report.line((result.samples.size() < 2 ? "no diversity: it is the mean distance of two; that of the members "
-                                               : "diversity (mean distance of two) " + number(100 * result.diversity, 3) +
-                                                     " % of the mean size, that of the members ") +
-                    number(100 * result.of_members, 3) + " %");
+        report.line(fmt::format("{}, that of the members {} %",
+                                result.samples.size() < 2 ? "no diversity (mean distance of two)"
+                                                          : fmt::format("diversity (mean distance of two) {} % of the mean size",
+                                                                        number(100 * result.diversity, 3)),
+                                number(100 * result.of_members, 3)));
     }
 
     FileInput file;

@@ -5,6 +5,8 @@
 #include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/revolution/surface_of_revolution.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -36,78 +38,81 @@ struct TemplateTurn final : Operation {
                 sherds.push_back(&file.fragment);
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::input || files.size() == 1) throw;
-                SherdOnProfile& one = unreadable.emplace_back();
-                one.name = files.path(k).stem().string();
-                one.use = SherdUse::left_out;
-                one.reason = "cannot be read: " + printable(files.file(k)) + ": " + error.problem();
-                one.remedy = error.remedy();
+                SherdOnProfile& sherd = unreadable.emplace_back();
+                sherd.name = files.path(k).stem().string();
+                sherd.use = SherdUse::left_out;
+                sherd.reason = fmt::format("cannot be read: {}: {}", printable(files.file(k)), error.problem());
+                sherd.remedy = error.remedy();
             }
         output.open();
-        RevolutionTemplate turned = template_of_revolution(sherds, options, unreadable);
-        turned.annotations.unit = unit;
-        write(context, turned);
-        report_result(report, turned);
+        RevolutionTemplate vessel = template_of_revolution(sherds, options, unreadable);
+        vessel.annotations.unit = unit;
+        write(context, vessel);
+        report_result(report, vessel);
     }
 
-    void write(Context& context, const RevolutionTemplate& turned) const {
+    void write(Context& context, const RevolutionTemplate& vessel) const {
         const Provenance provenance = context.provenance();
-        TemplateFile file{turned.annotations.object_class, unit, turned.annotations.up, {}};
-        const WriteOptions how{.comment = provenance.to_line()};
+        TemplateFile file{vessel.annotations.object_class, unit, vessel.annotations.up, {}};
+        const WriteOptions write_options{.comment = provenance.to_line()};
         // Written in memory first, because the template contains the checksums of its parts.
         const auto part = [&](const std::string& role, const std::string& name, const std::function<void(const Path&)>& writer) {
             const Path draft = context.memory(name);
             {
-                OutputTransaction own;
+                OutputTransaction transaction;
                 writer(draft);
-                own.commit();
+                transaction.commit();
             }
             const std::string bytes = read_file(draft);
             const Path place = output.in(name);
             write_file(place, bytes);
             file.contents.push_back({role, name, place, sha256(bytes)});
         };
-        part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, turned.mesh, {}, how); });
+        part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, vessel.mesh, {}, write_options); });
         part("annotations", "turned.ant.json",
-             [&](const Path& path) { write_annotations(path, turned.annotations, turned.mesh, "turned.ply", provenance); });
+             [&](const Path& path) { write_annotations(path, vessel.annotations, vessel.mesh, "turned.ply", provenance); });
         std::string csv = "radius,height\n";
-        for (const auto& p : turned.profile) csv += digits(p.x(), 10) + "," + digits(p.y(), 10) + "\n";
+        for (const auto& p : vessel.profile) csv += fmt::format("{},{}\n", digits(p.x(), 10), digits(p.y(), 10));
         write_file(output.in("profile.csv"), csv);
         write_json(output.in("turned.template.json"), template_to_json(file, provenance));
     }
 
-    static void report_result(Report& report, const RevolutionTemplate& turned) {
+    static void report_result(Report& report, const RevolutionTemplate& vessel) {
         const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
-        double height = 0, widest = 0;
-        for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());
-        report("format", "ostraka-turned")("version", 1)("through", triple(turned.axis.point))(
-            "direction", triple(turned.axis.direction))("directionError", turned.direction_error)(
-            "placeError", turned.place_error)("height", height)("largestDiameter", 2 * widest)("base", turned.base)(
-            "rim", turned.rim)("vertices", turned.mesh.number_of_vertices());
+        double height = 0, max_radius = 0;
+        for (const auto& p : vessel.profile) height = std::max(height, p.y()), max_radius = std::max(max_radius, p.x());
+        report("format", "ostraka-turned")("version", 1)("through", triple(vessel.axis.point))(
+            "direction", triple(vessel.axis.direction))("directionError", vessel.direction_error)(
+            "placeError", vessel.place_error)("height", height)("largestDiameter", 2 * max_radius)("base", vessel.base)(
+            "rim", vessel.rim)("vertices", vessel.mesh.number_of_vertices());
         std::size_t used = 0;
-        for (const SherdOnProfile& one : turned.sherds) {
-            const bool found = one.axis.found, out = one.use == SherdUse::left_out;
-            used += out ? 0 : 1;
-            const auto shown = [&](double value, int places) { return out ? std::string("-") : number(value, places); };
+        for (const SherdOnProfile& sherd : vessel.sherds) {
+            const bool has_axis = sherd.axis.found, is_left_out = sherd.use == SherdUse::left_out;
+            used += is_left_out ? 0 : 1;
+            const auto shown = [&](double value, int places) { return is_left_out ? std::string("-") : number(value, places); };
             Report::Row row = report.row("sherds");
-            row("name", one.name)("use", to_string(one.use))("axis", found)("lean", one.lean, found ? number(one.lean, 3) : "-")(
-                "aside", one.aside, found ? number(one.aside, 3) : "-")("weight", one.weight, shown(100 * one.weight, 3))(
-                "disagreement", one.disagreement)("lowest", one.lowest, shown(one.lowest, 4))(
-                "highest", one.highest, shown(one.highest, 4))("residual", one.residual, shown(one.residual, 3))(
-                "onTemplate", one.on_template, shown(100 * one.on_template, 3));
-            if (!one.reason.empty()) row("reason", one.reason);
-            if (!one.remedy.empty()) row("remedy", one.remedy);
+            row("name", sherd.name)("use", to_string(sherd.use))("axis", has_axis)(
+                "lean", sherd.lean, has_axis ? number(sherd.lean, 3) : "-")("aside", sherd.aside,
+                                                                            has_axis ? number(sherd.aside, 3) : "-")(
+                "weight", sherd.weight, shown(100 * sherd.weight, 3))("disagreement", sherd.disagreement)(
+                "lowest", sherd.lowest, shown(sherd.lowest, 4))("highest", sherd.highest, shown(sherd.highest, 4))(
+                "residual", sherd.residual, shown(sherd.residual, 3))("onTemplate", sherd.on_template,
+                                                                      shown(100 * sherd.on_template, 3));
+            if (!sherd.reason.empty()) row("reason", sherd.reason);
+            if (!sherd.remedy.empty()) row("remedy", sherd.remedy);
         }
-        for (const SherdOnProfile& one : turned.sherds)
-            if (one.use != SherdUse::used)
-                report.line(to_string(one.use) + ": " + printable(one.name) + (one.use == SherdUse::left_out ? " " : ", which ") +
-                            one.reason + (one.remedy.empty() ? "" : "; " + one.remedy));
-        report.line(std::to_string(used) + " of " + std::to_string(turned.sherds.size()) +
-                    " sherds tell of the vessel; its axis is known to " + number(turned.direction_error, 2) + " degrees and " +
-                    number(turned.place_error, 2) + " aside");
-        report.line("height " + number(height, 5) + ", largest diameter " + number(2 * widest, 5) + "; " +
-                    (turned.base ? "with a base" : "no base") + ", " + (turned.rim ? "with a rim" : "no rim") + "; " +
-                    std::to_string(turned.mesh.number_of_vertices()) + " vertices");
-        report.notes(turned.notes);
+        for (const SherdOnProfile& sherd : vessel.sherds)
+            if (sherd.use != SherdUse::used)
+                report.line(fmt::format("{}: {}{} {}{}", to_string(sherd.use), printable(sherd.name),
+                                        sherd.use == SherdUse::left_out ? "" : ", which", sherd.reason,
+                                        sherd.remedy.empty() ? "" : "; " + sherd.remedy));
+        report.line(fmt::format(
+            "{} of {} sherds determine the vessel; the direction of its axis is known to {} degrees, its position to {}", used,
+            vessel.sherds.size(), number(vessel.direction_error, 2), number(vessel.place_error, 2)));
+        report.line(fmt::format("height {}, largest diameter {}; {}, {}; {} vertices", number(height, 5),
+                                number(2 * max_radius, 5), vessel.base ? "with a base" : "no base",
+                                vessel.rim ? "with a rim" : "no rim", vessel.mesh.number_of_vertices()));
+        report.notes(vessel.notes);
     }
 
     FileInput files;

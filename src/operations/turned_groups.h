@@ -19,6 +19,6 @@ GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragmen
 std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result);
 
 /// Adds the axis of an unjoined fragment to its entry, if it has one.
-void report_own_axis(const GroupAxis& found, JsonValue& entry, JsonAllocator& allocator);
+void report_own_axis(const GroupAxis& group_axis, JsonValue& entry, JsonAllocator& allocator);
 
 }  // namespace ostraka

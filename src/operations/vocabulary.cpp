@@ -3,6 +3,8 @@
 
 #include "ostraka/vocabulary/skos.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <set>
 
@@ -11,7 +13,7 @@ namespace ostraka {
 namespace {
 
 constexpr const char* vocabulary_file = "vocabulary (.vocabulary.json, .ttl, .rdf)";
-constexpr const char* scheme_help = "URI of the concept scheme, where a SKOS file has several";
+constexpr const char* scheme_help = "URI of the concept scheme, if a SKOS file has several";
 
 struct VocabularyCheck final : Operation {
     void describe(Parameters& p) override {
@@ -34,7 +36,8 @@ struct VocabularyCheck final : Operation {
             for (auto& finding : examine(vocabulary)) findings.push_back(std::move(finding));
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input || error.problem().starts_with("not valid")) throw;
-            findings.push_back({true, "", error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")")});
+            findings.push_back(
+                {true, "", error.remedy().empty() ? error.problem() : fmt::format("{} ({})", error.problem(), error.remedy())});
         }
         report.findings(findings);
     }
@@ -63,64 +66,65 @@ struct VocabularyShow final : Operation {
             if (vocabulary.concepts[i].broader.empty()) roots.push_back(i);
         }
         if (!under.empty()) roots = {named_concept(search)};
-        look_at_languages(vocabulary, report);
+        note_missing_language(vocabulary, report);
         report.empty_table("concepts");
         // Depth-first with an explicit stack. A concept with several broader concepts is listed below each; its narrower ones
         // only once.
         std::vector<std::pair<std::size_t, std::size_t>> stack;
         for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, 0);
-        std::vector<bool> seen(vocabulary.concepts.size(), false);
+        std::vector<bool> listed(vocabulary.concepts.size(), false);
         while (!stack.empty()) {
             const auto [i, depth] = stack.back();
             stack.pop_back();
-            const bool again = seen[i];
-            seen[i] = true;
-            report_result(report, search, i, depth, again);
-            if (!again)
+            const bool is_repeated = listed[i];
+            listed[i] = true;
+            report_result(report, search, i, depth, is_repeated);
+            if (!is_repeated)
                 for (auto next = narrower[i].rbegin(); next != narrower[i].rend(); ++next) stack.emplace_back(*next, depth + 1);
         }
         if (const std::string common = joined(texts_of(vocabulary.attributes), "; "); !common.empty())
             report.line("every concept: " + printable(common));
         // Rules about the concepts shown, and rules about all concepts.
-        const auto about = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
-            return rule.concept_id.empty() || seen[*search.find(rule.concept_id)];
+        const auto applicable = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
+            return rule.concept_id.empty() || listed[*search.find(rule.concept_id)];
         });
-        if (const std::size_t all = vocabulary.rules.size(); all > 0)
-            report.line(std::to_string(about) + (under.empty() ? "" : " of " + std::to_string(all)) +
-                        (all == 1 ? " rule" : " rules") + (under.empty() ? "" : " may apply to them"));
+        if (const std::size_t rule_count = vocabulary.rules.size(); rule_count > 0)
+            report.line(fmt::format("{}{} {}{}", applicable, under.empty() ? "" : fmt::format(" of {}", rule_count),
+                                    rule_count == 1 ? "rule" : "rules", under.empty() ? "" : " may apply to them"));
     }
 
     [[nodiscard]] std::size_t named_concept(const VocabularySearch& search) const {
-        const auto found = search.concepts_of(under);
-        if (found.size() == 1) return found.front();
-        const auto near = search.suggestions(under);
-        fail_input(file.file(), "'" + under + "' names " + (found.empty() ? "no concept" : "several concepts"),
-                   !found.empty() ? "use an id"
-                   : near.empty() ? ""
-                                  : "close to it: " + joined(near));
+        const auto matching = search.concepts_of(under);
+        if (matching.size() == 1) return matching.front();
+        const auto suggestions = search.suggestions(under);
+        fail_input(file.file(), fmt::format("'{}' names {}", under, matching.empty() ? "no concept" : "several concepts"),
+                   !matching.empty()     ? "use an id"
+                   : suggestions.empty() ? ""
+                                         : "similar names: " + joined(suggestions));
     }
 
-    void report_result(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool again) const {
+    void report_result(Report& report, const VocabularySearch& search, std::size_t i, std::size_t depth, bool is_repeated) const {
         const Concept& entry = search.vocabulary().concepts[i];
         const std::string label = search.label(i, language);
         std::string others;
-        for (const auto& [tongue, text] : entry.labels)
-            if (text != label) others += (others.empty() ? "" : ", ") + text + (tongue.empty() ? "" : " (" + tongue + ")");
+        for (const auto& [code, text] : entry.labels)
+            if (text != label)
+                others += fmt::format("{}{}{}", others.empty() ? "" : ", ", text, code.empty() ? "" : fmt::format(" ({})", code));
         const auto attributes = texts_of(entry.attributes);
         Report::Row row = report.row("concepts");
-        row("label", label, std::string(2 * std::min<std::size_t>(depth, 30), ' ') + label + (again ? " (see above)" : ""))(
+        row("label", label, std::string(2 * std::min<std::size_t>(depth, 30), ' ') + label + (is_repeated ? " (see above)" : ""))(
             "id", entry.id)("depth", depth)("attributes", attributes, joined(attributes, "; "));
         row.shown("other languages", others);
     }
 
     /// Adds a note if no concept has a label in the requested language.
-    void look_at_languages(const Vocabulary& vocabulary, Report& report) const {
-        std::set<std::string> known;
+    void note_missing_language(const Vocabulary& vocabulary, Report& report) const {
+        std::set<std::string> languages;
         for (const Concept& entry : vocabulary.concepts)
-            for (const auto& [tongue, text] : entry.labels) known.insert(tongue);
-        known.erase("");
-        if (known.empty() || known.contains(language)) return;
-        report.note("no label is in the language '" + language + "'; there are " + joined(known));
+            for (const auto& [code, text] : entry.labels) languages.insert(code);
+        languages.erase("");
+        if (languages.empty() || languages.contains(language)) return;
+        report.note(fmt::format("no label is in the language '{}'; there are {}", language, joined(languages)));
     }
 
     static std::vector<std::string> texts_of(const std::vector<AllowedAttribute>& attributes) {
@@ -156,9 +160,9 @@ struct VocabularyConvert final : Operation {
     void check() const override {
         for (const std::string& file : {input.file(), output.file()})
             if (!file.empty() && !is_skos(file) && extension(file) != ".json")
-                fail_usage("the ending of " + file + " says no format of vocabularies",
+                fail_usage(fmt::format("the extension of {} is not that of a format of vocabularies", file),
                            "use .vocabulary.json, .ttl (Turtle) or .rdf (RDF/XML)");
-        if (!scheme.empty() && !is_skos(input.file())) fail_usage("--scheme goes with SKOS files", "leave it away");
+        if (!scheme.empty() && !is_skos(input.file())) fail_usage("--scheme goes with SKOS files", "leave it out");
     }
 
     void run(Context& context, Report& report) override {
@@ -167,20 +171,19 @@ struct VocabularyConvert final : Operation {
             const Path path = input.path();
             vocabulary = is_skos(path) ? read_skos(path, scheme) : read_vocabulary(path);
         });
-        const std::string written = output.path().string();
+        const std::string output_path = output.path().string();
         try {
-            write_vocabulary(written, vocabulary);
+            write_vocabulary(output_path, vocabulary);
         } catch (const Error& error) {
             // A part that cannot be written is a problem of the input.
             if (error.kind() != ErrorKind::input) throw;
-            const bool named = error.where().starts_with(written);
-            fail_input(named ? input.file() + error.where().substr(written.size()) : error.where(), error.problem(),
+            const bool names_output = error.where().starts_with(output_path);
+            fail_input(names_output ? input.file() + error.where().substr(output_path.size()) : error.where(), error.problem(),
                        error.remedy());
         }
         report.notes(vocabulary.notes);
         report("concepts", vocabulary.concepts.size())("rules", vocabulary.rules.size());
-        report.line(std::to_string(vocabulary.concepts.size()) + " concepts, " + std::to_string(vocabulary.rules.size()) +
-                    " rules");
+        report.line(fmt::format("{} concepts, {} rules", vocabulary.concepts.size(), vocabulary.rules.size()));
     }
 
     FileInput input;

@@ -7,8 +7,8 @@
 
 namespace ostraka::workbench {
 
-[[noreturn]] inline void fail_request(const std::string& what, const std::string& remedy = "load the page again") {
-    throw Error(ErrorKind::usage, "the workbench", what, remedy);
+[[noreturn]] inline void fail_request(const std::string& problem, const std::string& remedy = "load the page again") {
+    throw Error(ErrorKind::usage, "the workbench", problem, remedy);
 }
 
 }  // namespace ostraka::workbench

@@ -6,18 +6,18 @@
 namespace ostraka::workbench {
 
 std::vector<Path> files_for(const Session& session, bool deformed) {
-    std::vector<Path> found;
+    std::vector<Path> files;
     const SessionState& state = session.state();
     const SessionObject* object = state.object();
-    if (object == nullptr) return found;
+    if (object == nullptr) return files;
     for (const SessionFile& file : state.files)
-        if (file.of == object->name && (file.name.ends_with(".npy") || file.name.ends_with(".json")))
-            found.push_back(session.path_of(file.file));
+        if (file.object == object->name && (file.name.ends_with(".npy") || file.name.ends_with(".json")))
+            files.push_back(session.path_of(file.file));
     if (deformed) {
         const Path shape = session.path_of(object->part("deformed"));
-        found.push_back(shape.parent_path() / "report.json");
+        files.push_back(shape.parent_path() / "report.json");
     }
-    return found;
+    return files;
 }
 
 void Scene::add(const ShownShape& shape) {
@@ -29,8 +29,8 @@ void Scene::add(const ShownShape& shape) {
     if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations(*shape.mesh, *shape.set, *shape.graph);
     object.cage = shape.cage;
     object.maps = shape.maps;
-    object.exact = {shape.key, !known_.contains(shape.key)};
-    const AnnotationSet none;
+    object.exact = {shape.key, !known_keys_.contains(shape.key)};
+    const AnnotationSet no_annotations;
     std::optional<PageSlices> slices;
     for (const Path& file : shape.files) {
         if (!file_exists(file)) continue;
@@ -47,7 +47,7 @@ void Scene::add(const ShownShape& shape) {
         if (format == "ostraka-slices") slices = page_slices(document, file.string());
         const JsonValue* result = find_member(document, "result");
         if (format != "ostraka-report" || text_in(document, "command") != "deform" || result == nullptr) continue;
-        object.constraints = page_constraints(*result, shape.set != nullptr ? *shape.set : none);
+        object.constraints = page_constraints(*result, shape.set != nullptr ? *shape.set : no_annotations);
         object.conflicts = page_conflicts(*result);
     }
     if (slices) object.slices = &*slices;

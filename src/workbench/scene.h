@@ -24,14 +24,14 @@ std::vector<Path> files_for(const Session& session, bool deformed);
 
 class Scene {
 public:
-    explicit Scene(const std::vector<std::string>& known) : known_(known.begin(), known.end()) {}
+    explicit Scene(const std::vector<std::string>& known_keys) : known_keys_(known_keys.begin(), known_keys.end()) {}
     void add(const ShownShape& shape);
     /// Adds the tables of a step's report.
     void add_report(const Path& file, const std::string& operation);
     [[nodiscard]] Page::Content content(const std::string& made_how) const { return page_.content(made_how); }
 
 private:
-    std::set<std::string> known_;
+    std::set<std::string> known_keys_;
     Page page_{"Ostraka"};
 };
 

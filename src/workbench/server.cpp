@@ -5,6 +5,7 @@
 #include "ostraka/core/words.h"
 #include "ostraka/page/content_policy.h"
 
+#include <fmt/core.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -75,9 +76,9 @@ struct Outgoing {
     std::vector<std::string> parts;
     bool is_text = true;
     [[nodiscard]] std::size_t size() const {
-        std::size_t all = 0;
-        for (const std::string& part : parts) all += part.size();
-        return all;
+        std::size_t total = 0;
+        for (const std::string& part : parts) total += part.size();
+        return total;
     }
 };
 using Message = std::shared_ptr<const Outgoing>;
@@ -104,7 +105,7 @@ struct Backlog {
 };
 
 /// Whether the request leaves the session unchanged: then it is discarded if its page has gone.
-bool only_asks(const std::string& request) {
+bool is_read_only(const std::string& request) {
     static const std::set<std::string> words{"hello",     "scene", "select", "handles", "parts",
                                              "influence", "reach", "grab",   "drag",    "file"};
     try {
@@ -131,7 +132,7 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     std::string token, policy;
     std::uint16_t port = 0;
     std::function<void()> on_first_page;
-    std::atomic<bool> tells{false};  ///< a progress message is pending
+    std::atomic<bool> progress_pending{false};  ///< a progress message is pending
 
     // Used by the network thread only.
     std::list<Visit*> unauthenticated;  ///< oldest first
@@ -139,7 +140,7 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     std::set<Peer*> peers;
 
     std::mutex mutex;
-    std::condition_variable wakes;
+    std::condition_variable request_ready;
     struct Request {
         std::weak_ptr<Peer> from;
         std::shared_ptr<Backlog> backlog;
@@ -150,10 +151,10 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     std::deque<Request> requests;
     std::size_t queued = 0;  ///< total bytes of `requests`
     std::size_t turns = 0;   ///< number of requests started
-    bool ends = false;
+    bool stopping = false;
 
     void accept();
-    void take(tcp::socket&& socket);
+    void start_visit(tcp::socket&& socket);
     bool queue(Request request);
     std::optional<Request> next();
     void wake();
@@ -163,8 +164,8 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     void drop_all();
     [[nodiscard]] bool is_full() const { return served.size() + peers.size() >= limits.pages; }
     [[nodiscard]] bool is_own_host(std::string_view host) const {
-        const std::string number = ":" + std::to_string(port);
-        return host == "127.0.0.1" + number || host == "localhost" + number;
+        const std::string port_suffix = ":" + std::to_string(port);
+        return host == "127.0.0.1" + port_suffix || host == "localhost" + port_suffix;
     }
     [[nodiscard]] bool is_own_origin(std::string_view origin) const {
         return origin.starts_with("http://") && is_own_host(origin.substr(7));
@@ -175,7 +176,7 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
     Peer(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
-        : stream_(std::move(socket)), state_(std::move(state)), patience_(state_->io) {
+        : stream_(std::move(socket)), state_(std::move(state)), timer_(state_->io) {
         state_->peers.insert(this);
     }
     ~Peer() { state_->peers.erase(this); }
@@ -195,7 +196,7 @@ public:
         stream_.async_accept(head, [self = shared_from_this()](error_code error) {
             if (error) return self->drop();
             self->open_ = true;
-            if (const auto told = std::exchange(self->state_->on_first_page, {})) told();
+            if (const auto callback = std::exchange(self->state_->on_first_page, {})) callback();
             self->read();
         });
     }
@@ -234,9 +235,9 @@ private:
     static constexpr std::size_t frame = 1U << 18U;  ///< bytes per write; progress between writes shows that the page still reads
 
     void read() {
-        stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) { self->took(error); });
+        stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) { self->handle_read(error); });
     }
-    void took(error_code error) {
+    void handle_read(error_code error) {
         if (error) return drop();
         if (!open_) return;
         std::string text = beast::buffers_to_string(buffer_.data());
@@ -287,13 +288,13 @@ private:
     }
     /// Drops the page after this time unless the timer is restarted or cancelled.
     void wait(double seconds) {
-        patience_.expires_after(milliseconds(seconds));
-        patience_.async_wait([self = shared_from_this()](error_code error) {
-            if (!error && self->patience_.expiry() <= std::chrono::steady_clock::now()) self->drop();
+        timer_.expires_after(milliseconds(seconds));
+        timer_.async_wait([self = shared_from_this()](error_code error) {
+            if (!error && self->timer_.expiry() <= std::chrono::steady_clock::now()) self->drop();
         });
     }
     /// Cancels `wait`, even if the time has just expired.
-    void end_wait() { patience_.expires_at(asio::steady_timer::time_point::max()); }
+    void end_wait() { timer_.expires_at(asio::steady_timer::time_point::max()); }
     /// Stops receiving and sending.
     void leave() {
         open_ = false;
@@ -304,7 +305,7 @@ private:
 
     websocket::stream<beast::tcp_stream> stream_;
     std::shared_ptr<WorkbenchServer::State> state_;
-    asio::steady_timer patience_;
+    asio::steady_timer timer_;
     std::shared_ptr<Backlog> backlog_ = std::make_shared<Backlog>();
     beast::flat_buffer buffer_;
     std::deque<Message> outgoing_;
@@ -330,7 +331,7 @@ public:
     void begin() {
         stream_.expires_after(milliseconds(state_->limits.seconds));
         http::async_read_header(stream_, buffer_, parser_,
-                                [self = shared_from_this()](error_code error, std::size_t) { self->took(error); });
+                                [self = shared_from_this()](error_code error, std::size_t) { self->handle_head(error); });
     }
     void drop() {
         leave();
@@ -342,9 +343,10 @@ private:
         if (list_ != nullptr) list_->erase(place_);
         list_ = nullptr;
     }
-    void took(error_code error) {
+    void handle_head(error_code error) {
         if (!stream_.socket().is_open()) return;
-        if (error == http::error::header_limit) return answer(http::status::request_header_fields_too_large, "too long a head\n");
+        if (error == http::error::header_limit)
+            return answer(http::status::request_header_fields_too_large, "the request head is too long\n");
         if (error == http::error::body_limit) return answer(http::status::method_not_allowed, "only GET\n");
         if (error == http::error::end_of_stream || error == beast::error::timeout) return;
         if (error) return answer(http::status::bad_request, "not understood\n");
@@ -354,7 +356,7 @@ private:
         if (head.method() != http::verb::get) return answer(http::status::method_not_allowed, "only GET\n");
         const auto origin = head.find(http::field::origin);
         if (origin != head.end() && !state_->is_own_origin(view_of(origin->value())))
-            return answer(http::status::forbidden, "asked by another page\n");
+            return answer(http::status::forbidden, "requested by another page\n");
         const std::size_t mark = target.find('?');
         const std::string_view path = target.substr(0, mark),
                                query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
@@ -367,8 +369,8 @@ private:
         if (state_->is_full()) return answer(http::status::service_unavailable, "too many pages are open\n");
         if (path == "/") return serve();
         if (!websocket::is_upgrade(head)) return answer(http::status::upgrade_required, "for messages only\n");
-        if (origin == head.end()) return answer(http::status::forbidden, "asked by no page\n");
-        talk();
+        if (origin == head.end()) return answer(http::status::forbidden, "not requested by a page\n");
+        start_messages();
     }
 
     void serve() {
@@ -376,7 +378,7 @@ private:
         list_ = &state_->served;
         answer(http::status::ok, workbench_page(), "text/html; charset=utf-8");
     }
-    void talk() {
+    void start_messages() {
         http::request<http::empty_body> upgrade;
         upgrade.base() = parser_.get().base();
         stream_.expires_never();
@@ -416,15 +418,16 @@ private:
 WorkbenchServer::State::State(Workbench& w, const ServerLimits& l)
     : workbench(w), limits(l), acceptor(io), token(random_token()) {
     // Allows the scripts and styles of the built page only; WebAssembly decodes the 3D shapes.
-    policy = "default-src 'none'; script-src " + inline_hashes(workbench_page(), "script") + " 'wasm-unsafe-eval'; style-src " +
-             inline_hashes(workbench_page(), "style") +
-             "; img-src data: blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    policy = fmt::format(
+        "default-src 'none'; script-src {} 'wasm-unsafe-eval'; style-src {}; img-src data: blob:; connect-src 'self' data: "
+        "blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        inline_hashes(workbench_page(), "script"), inline_hashes(workbench_page(), "style"));
 }
 
 void WorkbenchServer::State::accept() {
     acceptor.async_accept([self = shared_from_this()](error_code error, tcp::socket socket) {
         if (!self->acceptor.is_open()) return;
-        if (!error) self->take(std::move(socket));
+        if (!error) self->start_visit(std::move(socket));
         if (!error) return self->accept();
         // For instance no free file descriptor: retrying at once would use a full core.
         self->pause.expires_after(std::chrono::milliseconds(50));
@@ -434,7 +437,7 @@ void WorkbenchServer::State::accept() {
     });
 }
 
-void WorkbenchServer::State::take(tcp::socket&& socket) {
+void WorkbenchServer::State::start_visit(tcp::socket&& socket) {
     while (!unauthenticated.empty() && unauthenticated.size() >= limits.unauthenticated) unauthenticated.front()->drop();
     std::make_shared<Visit>(std::move(socket), shared_from_this())->begin();
 }
@@ -447,24 +450,25 @@ bool WorkbenchServer::State::queue(Request request) {
         queued += request.bytes();
         requests.push_back(std::move(request));
     }
-    wakes.notify_one();
+    request_ready.notify_one();
     return true;
 }
 
 /// Waits for a request whose page keeps up with its answers; pages take turns. Returns none if the server ends.
 std::optional<WorkbenchServer::State::Request> WorkbenchServer::State::next() {
-    const auto ready = [&](const Request& one) { return one.backlog->gone || one.backlog->unsent <= limits.unsent; };
+    const auto ready = [&](const Request& request) { return request.backlog->gone || request.backlog->unsent <= limits.unsent; };
     std::unique_lock lock(mutex);
-    auto found = requests.end();
-    wakes.wait(lock, [&] {
-        found = requests.end();
-        for (auto one = requests.begin(); one != requests.end(); ++one)
-            if (ready(*one) && (found == requests.end() || one->backlog->turn < found->backlog->turn)) found = one;
-        return ends || found != requests.end();
+    auto chosen = requests.end();
+    request_ready.wait(lock, [&] {
+        chosen = requests.end();
+        for (auto candidate = requests.begin(); candidate != requests.end(); ++candidate)
+            if (ready(*candidate) && (chosen == requests.end() || candidate->backlog->turn < chosen->backlog->turn))
+                chosen = candidate;
+        return stopping || chosen != requests.end();
     });
-    if (ends) return std::nullopt;
-    Request request = std::move(*found);
-    requests.erase(found);
+    if (stopping) return std::nullopt;
+    Request request = std::move(*chosen);
+    requests.erase(chosen);
     queued -= request.bytes();
     request.backlog->turn = ++turns;
     return request;
@@ -473,11 +477,11 @@ std::optional<WorkbenchServer::State::Request> WorkbenchServer::State::next() {
 /// Makes the worker thread check again whether a request is ready.
 void WorkbenchServer::State::wake() {
     { const std::lock_guard lock(mutex); }
-    wakes.notify_one();
+    request_ready.notify_one();
 }
 
 void WorkbenchServer::State::tell_progress(const Message& message) {
-    tells = false;
+    progress_pending = false;
     for (Peer* peer : peers) peer->tell_progress(message);
 }
 
@@ -497,14 +501,14 @@ void WorkbenchServer::State::answered(const std::weak_ptr<Peer>& from, std::size
 /// Main loop of the worker thread.
 void WorkbenchServer::State::work() {
     workbench.on_progress = [self = shared_from_this()](const std::string& phase, double share) {
-        if (self->tells.exchange(true)) return;
+        if (self->progress_pending.exchange(true)) return;
         Json event(rapidjson::kObjectType);
         add_members(event, event.GetAllocator(), "event", "progress", "phase", phase, "share", share);
         asio::post(self->io, [self, message = text_message(to_compact_text(event))] { self->tell_progress(message); });
     };
     workbench.prepare();
     while (const auto request = next()) {
-        if (request->backlog->gone && only_asks(request->text)) continue;
+        if (request->backlog->gone && is_read_only(request->text)) continue;
         Workbench::Reply reply = workbench.answer(request->text);
         const Message changed =
             reply.changed ? text_message(R"({"event":"changed","place":)" + std::to_string(workbench.session().place()) + "}")
@@ -530,22 +534,20 @@ void WorkbenchServer::State::drop_all() {
 WorkbenchServer::WorkbenchServer(Workbench& workbench, std::uint16_t port, const ServerLimits& limits)
     : state_(std::make_shared<State>(workbench, limits)) {
     error_code error;
-    const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
-    state_->acceptor.open(here.protocol(), error);
+    const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
+    state_->acceptor.open(endpoint.protocol(), error);
     if (!error) state_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) state_->acceptor.bind(here, error);
+    if (!error) state_->acceptor.bind(endpoint, error);
     if (!error) state_->acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (error)
-        throw Error(ErrorKind::failure, "port " + std::to_string(port), "cannot be had: " + error.message(),
-                    "leave --port out, or give another one");
+        throw Error(ErrorKind::failure, "port " + std::to_string(port), "is not available: " + error.message(),
+                    "leave out --port, or give another one");
     state_->port = state_->acceptor.local_endpoint().port();
 }
 
 WorkbenchServer::~WorkbenchServer() = default;
 
-std::string WorkbenchServer::address() const {
-    return "http://127.0.0.1:" + std::to_string(state_->port) + "/?token=" + state_->token;
-}
+std::string WorkbenchServer::address() const { return fmt::format("http://127.0.0.1:{}/?token={}", state_->port, state_->token); }
 std::uint16_t WorkbenchServer::port() const { return state_->port; }
 const std::string& WorkbenchServer::token() const { return state_->token; }
 
@@ -556,9 +558,9 @@ void WorkbenchServer::run() {
     state_->io.run();
     {
         const std::lock_guard lock(state_->mutex);
-        state_->ends = true;
+        state_->stopping = true;
     }
-    state_->wakes.notify_one();
+    state_->request_ready.notify_one();
     worker.join();
     state_->workbench.on_progress = {};
     state_->drop_all();

@@ -9,6 +9,7 @@
 #include "ostraka/template_package/template.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -28,13 +29,13 @@ constexpr const char* file_name = "session.json";
 
 SessionState state_from(const JsonValue& value) {
     SessionState state;
-    for (const JsonValue& one : list_in(value, "objects")) {
-        SessionObject object{text_in(one, "name"), {}};
-        for (const auto& part : one["parts"].GetObject()) object.parts[text_of(part.name)] = text_of(part.value);
+    for (const JsonValue& record : list_in(value, "objects")) {
+        SessionObject object{text_in(record, "name"), {}};
+        for (const auto& part : record["parts"].GetObject()) object.parts[text_of(part.name)] = text_of(part.value);
         state.objects.push_back(std::move(object));
     }
-    for (const JsonValue& one : list_in(value, "files"))
-        state.files.push_back({text_in(one, "name"), text_in(one, "kind"), text_in(one, "file"), text_in(one, "of")});
+    for (const JsonValue& record : list_in(value, "files"))
+        state.files.push_back({text_in(record, "name"), text_in(record, "kind"), text_in(record, "file"), text_in(record, "of")});
     state.active = static_cast<std::size_t>(number_or(value, "active", 0));
     return state;
 }
@@ -48,8 +49,8 @@ Json copy_of(const JsonValue& value) {
 }  // namespace
 
 std::string SessionObject::part(const std::string& which) const {
-    const auto found = parts.find(which);
-    return found == parts.end() ? std::string() : found->second;
+    const auto part_file = parts.find(which);
+    return part_file == parts.end() ? std::string() : part_file->second;
 }
 
 JsonValue to_json(const SessionState& state, JsonAllocator& allocator) {
@@ -61,7 +62,8 @@ JsonValue to_json(const SessionState& state, JsonAllocator& allocator) {
                                      return json_object(allocator, "name", object.name, "parts", std::move(parts));
                                  }),
                        "active", state.active, "files", json_list(state.files, allocator, [&](const SessionFile& file) {
-                           return json_object(allocator, "name", file.name, "kind", file.kind, "file", file.file, "of", file.of);
+                           return json_object(allocator, "name", file.name, "kind", file.kind, "file", file.file, "of",
+                                              file.object);
                        }));
 }
 
@@ -94,7 +96,7 @@ void Session::lock() {
     lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     ::close(std::exchange(lock_, -1));
-    fail_input(folder_.string(), "another workbench is at work on this session",
+    fail_input(folder_.string(), "another workbench uses this session",
                "use the one that is open, or name another folder (--session)");
 }
 
@@ -103,17 +105,17 @@ void Session::read() {
     check_folders();
     const Json document = read_json(file);
     validate(document, "session", file.string());
-    for (const JsonValue& one : list_in(document, "steps")) {
-        SessionStep step{text_in(one, "name"), text_in(one, "title"),   text_in(one, "operation"), {}, {}, {},
-                         !flag_in(one, "no"),  state_from(one["state"])};
+    for (const JsonValue& record : list_in(document, "steps")) {
+        SessionStep step{text_in(record, "name"), text_in(record, "title"),   text_in(record, "operation"), {}, {}, {},
+                         !flag_in(record, "no"),  state_from(record["state"])};
         const auto settings = [&](const char* name) {
-            const JsonValue* value = find_member(one, name);
+            const JsonValue* value = find_member(record, name);
             return value == nullptr ? Json(rapidjson::kObjectType) : copy_of(*value);
         };
         step.with = settings("with");
         step.keep = settings("keep");
-        if (const JsonValue* made = find_member(one, "sha256"))
-            for (const auto& member : made->GetObject()) step.sha256[text_of(member.name)] = text_of(member.value);
+        if (const JsonValue* checksums = find_member(record, "sha256"))
+            for (const auto& member : checksums->GetObject()) step.sha256[text_of(member.name)] = text_of(member.value);
         steps_.push_back(std::move(step));
     }
     place_ = std::min(steps_.size(), static_cast<std::size_t>(number_or(document, "place", 0)));
@@ -131,7 +133,7 @@ void Session::check_numbers() const {
     for (const SessionStep& step : steps_) {
         const std::size_t number = std::stoul(step.name.substr(1));  // the schema ensures the format of names
         if (number <= last || number > counter_)
-            fail_input((folder_ / file_name).string(), "step " + step.name + " is out of order",
+            fail_input((folder_ / file_name).string(), fmt::format("step {} is out of order", step.name),
                        "begin another session (--session)");
         last = number;
     }
@@ -139,12 +141,14 @@ void Session::check_numbers() const {
 
 /// Checks that the files of a step lie in the session's folder or in the root.
 void Session::check_files(const SessionStep& step) const {
-    const std::string where = (folder_ / file_name).string() + ", step " + step.name;
+    const std::string where = fmt::format("{}, step {}", (folder_ / file_name).string(), step.name);
     const auto check = [&](const std::string& file) {
         require_file_name(file, where, "state");
         if (!file.empty() && !is_inside_any((folder_ / file).lexically_normal(), {folder_, root_}))
-            fail_input(where, "names '" + printable(file, 200) + "', which lies neither in the session nor in " + root_.string(),
-                       "open the folder that it lies in, or begin another session (--session)");
+            fail_input(
+                where,
+                fmt::format("names '{}', which lies neither in the session nor in {}", printable(file, 200), root_.string()),
+                "open the folder that it lies in, or begin another session (--session)");
     };
     for (const SessionObject& object : step.state.objects)
         for (const auto& [part, file] : object.parts) check(file);
@@ -155,7 +159,7 @@ void Session::check_files(const SessionStep& step) const {
 void Session::check_file(const std::string& file) const {
     const Path path = (folder_ / file).lexically_normal();
     if (file_exists(path)) return;
-    fail_input((folder_ / file_name).string(), "needs '" + path.string() + "', which is not there any more",
+    fail_input((folder_ / file_name).string(), fmt::format("needs '{}', which does not exist any more", path.string()),
                "put it back, or begin another session (--session)");
 }
 
@@ -169,16 +173,16 @@ void Session::check_folders() const {
 void Session::sweep() const {
     for (const char* part : {"steps", "documents"}) {
         std::error_code code;
-        std::vector<Path> gone;
+        std::vector<Path> removable;
         for (std::filesystem::directory_iterator entry(folder_ / part, code), end; !code && entry != end; entry.increment(code)) {
             const std::string name = entry->path().filename().string(), step = name.substr(0, name.find('-'));
-            const bool is_a_steps =
+            const bool has_step_name =
                 step.size() >= 4 && step[0] == 's' && step.find_first_not_of("0123456789", 1) == std::string::npos;
-            const bool counts =
-                std::any_of(steps_.begin(), steps_.end(), [&](const SessionStep& one) { return one.name == step; });
-            if (is_a_steps && !counts) gone.push_back(entry->path());
+            const bool is_recorded =
+                std::any_of(steps_.begin(), steps_.end(), [&](const SessionStep& recorded) { return recorded.name == step; });
+            if (has_step_name && !is_recorded) removable.push_back(entry->path());
         }
-        for (const Path& path : gone) std::filesystem::remove_all(path, code);
+        for (const Path& path : removable) std::filesystem::remove_all(path, code);
     }
 }
 
@@ -186,16 +190,16 @@ void Session::write() const {
     Json document = json_document("session");
     auto& a = document.GetAllocator();
     add_members(document, a, "place", place_, "counter", counter_, "steps", json_list(steps_, a, [&](const SessionStep& step) {
-                    JsonValue made = json_object(a, "name", step.name, "title", step.title);
+                    JsonValue record = json_object(a, "name", step.name, "title", step.title);
                     if (!step.operation.empty()) {
                         JsonValue sums(rapidjson::kObjectType);
                         for (const auto& [output, sum] : step.sha256) add_members(sums, a, output, sum);
-                        add_members(made, a, "operation", step.operation, "with", JsonValue(step.with, a), "keep",
+                        add_members(record, a, "operation", step.operation, "with", JsonValue(step.with, a), "keep",
                                     JsonValue(step.keep, a), "sha256", std::move(sums));
-                        add_given(made, a, "no", !step.holds);
+                        add_given(record, a, "no", !step.holds);
                     }
-                    add_members(made, a, "state", to_json(step.state, a));
-                    return made;
+                    add_members(record, a, "state", to_json(step.state, a));
+                    return record;
                 }));
     OutputTransaction transaction;
     write_file(folder_ / file_name, to_text(document), FileAccess::owner_only);
@@ -236,9 +240,9 @@ std::string Session::next_name() const {
 
 void Session::add(SessionStep step) {
     // Undone steps can no longer be reached: their files are removed once the session is written without them.
-    std::vector<std::string> gone;
+    std::vector<std::string> discarded_steps;
     for (std::size_t i = place_; i < steps_.size(); ++i)
-        if (!steps_[i].operation.empty()) gone.push_back(steps_[i].name);
+        if (!steps_[i].operation.empty()) discarded_steps.push_back(steps_[i].name);
     std::vector<SessionStep> undone(std::make_move_iterator(steps_.begin() + static_cast<std::ptrdiff_t>(place_)),
                                     std::make_move_iterator(steps_.end()));
     steps_.erase(steps_.begin() + static_cast<std::ptrdiff_t>(place_), steps_.end());
@@ -252,7 +256,7 @@ void Session::add(SessionStep step) {
         steps_.insert(steps_.end(), std::make_move_iterator(undone.begin()), std::make_move_iterator(undone.end()));
         throw;
     }
-    for (const std::string& name : gone) {
+    for (const std::string& name : discarded_steps) {
         std::error_code ignored;
         std::filesystem::remove_all(folder_ / "steps" / name, ignored);
     }
@@ -271,27 +275,27 @@ void Session::go_to(std::size_t place) {
 }
 
 Path Session::path_of(const std::string& file) const {
-    const SessionState& now = state();
-    const auto is_it = [&](const SessionFile& one) { return one.file == file; };
-    bool known = std::any_of(now.files.begin(), now.files.end(), is_it);
-    for (const SessionObject& object : now.objects)
-        for (const auto& [part, name] : object.parts) known = known || name == file;
-    if (!known) fail_request("'" + printable(file, 100) + "' is no file of the session");
+    const SessionState& current = state();
+    const auto is_same_file = [&](const SessionFile& session_file) { return session_file.file == file; };
+    bool is_known = std::any_of(current.files.begin(), current.files.end(), is_same_file);
+    for (const SessionObject& object : current.objects)
+        for (const auto& [part, name] : object.parts) is_known = is_known || name == file;
+    if (!is_known) fail_request(fmt::format("'{}' is not a file of the session", printable(file, 100)));
     return (folder_ / file).lexically_normal();
 }
 
 // ---- choices ----
 
 std::vector<std::string> Session::openable() const {
-    std::vector<std::string> found;
-    const auto look = [&](const Path& folder, const std::string& before) {
+    std::vector<std::string> names;
+    const auto add_openable = [&](const Path& folder, const std::string& prefix) {
         for (const std::string& name : files_in(folder)) {
             if (!is_inside(folder / name, root_)) continue;
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
-            if (is_mesh_name(name) || name.ends_with(".template.json")) found.push_back(before + name);
+            if (is_mesh_name(name) || name.ends_with(".template.json")) names.push_back(prefix + name);
         }
     };
-    look(root_, "");
+    add_openable(root_, "");
     std::error_code ignored;
     std::vector<Path> folders;
     for (const auto& entry : std::filesystem::directory_iterator(root_, ignored))
@@ -300,20 +304,20 @@ std::vector<std::string> Session::openable() const {
             folders.push_back(entry.path());
     std::sort(folders.begin(), folders.end());
     for (const Path& folder : folders)
-        if (!file_exists(folder / file_name)) look(folder, folder.filename().string() + "/");
-    return found;
+        if (!file_exists(folder / file_name)) add_openable(folder, folder.filename().string() + "/");
+    return names;
 }
 
-void Session::open(const std::string& name, const std::function<void(const SessionObject&)>& look) {
-    const std::vector<std::string> known = openable();
-    if (std::find(known.begin(), known.end(), name) == known.end())
-        fail_input(printable(name, 100), "is no mesh or template of " + root_.string(), "open one that is in the list");
+void Session::open(const std::string& name, const std::function<void(const SessionObject&)>& inspect) {
+    const std::vector<std::string> openable_names = openable();
+    if (std::find(openable_names.begin(), openable_names.end(), name) == openable_names.end())
+        fail_input(printable(name, 100), "is not a mesh or template in " + root_.string(), "open one that is in the list");
     const Path file = root_ / name;
     SessionObject object{stem_of(name), {}};
     if (name.ends_with(".template.json")) {
-        const TemplateFile known_parts = read_template(file);
+        const TemplateFile package = read_template(file);
         for (const char* part : {"mesh", "annotations", "graph", "cage", "coordinates"})
-            if (const auto files = known_parts.of(part); !files.empty())
+            if (const auto files = package.of(part); !files.empty())
                 object.parts[part] = relative(std::filesystem::weakly_canonical(files.front()->file));
         if (!object.parts.contains("mesh")) fail_input(name, "has no mesh", "open another template");
     } else {
@@ -331,10 +335,10 @@ void Session::open(const std::string& name, const std::function<void(const Sessi
     for (const auto& [part, ref] : object.parts) {
         const Path path = (folder_ / ref).lexically_normal();
         if (!file_exists(path))
-            fail_input(name, "names '" + ref + "', which is not there", "run: ostraka template check " + name);
+            fail_input(name, fmt::format("names '{}', which does not exist", ref), "run: ostraka template check " + name);
         if (!is_inside(path, root_)) fail_input(path.string(), "leads out of " + root_.string(), "copy it there");
     }
-    if (look) look(object);
+    if (inspect) inspect(object);
     SessionStep step{next_name(), "open " + name, {}, {}, {}, {}, true, state()};
     object.name = free_name(step.state, object.name);
     step.state.objects.push_back(std::move(object));
@@ -343,38 +347,39 @@ void Session::open(const std::string& name, const std::function<void(const Sessi
 }
 
 void Session::change(const JsonValue& request) {
-    const std::string what = text_in(request, "do");
+    const std::string action = text_in(request, "do");
     SessionStep step{next_name(), {}, {}, {}, {}, {}, true, state()};
-    SessionState& now = step.state;
-    const auto chosen = [&] {
-        const auto index = static_cast<std::size_t>(number_or(request, "object", static_cast<double>(now.active)));
-        if (index >= now.objects.size()) fail_request("there is no object " + std::to_string(index));
+    SessionState& current = step.state;
+    const auto chosen_index = [&] {
+        const auto index = static_cast<std::size_t>(number_or(request, "object", static_cast<double>(current.active)));
+        if (index >= current.objects.size()) fail_request("there is no object " + std::to_string(index));
         return index;
     };
-    if (what == "activate") {
-        now.active = chosen();
-        step.title = "work on " + now.objects[now.active].name;
-    } else if (what == "close") {
-        const std::size_t index = chosen();
-        step.title = "close " + now.objects[index].name;
-        now.objects.erase(now.objects.begin() + static_cast<std::ptrdiff_t>(index));
-        if (now.active > index || now.active >= now.objects.size()) now.active = now.active == 0 ? 0 : now.active - 1;
-    } else if (what == "accept" || what == "withdraw") {
-        SessionObject& object = now.objects[chosen()];
+    if (action == "activate") {
+        current.active = chosen_index();
+        step.title = "work on " + current.objects[current.active].name;
+    } else if (action == "close") {
+        const std::size_t index = chosen_index();
+        step.title = "close " + current.objects[index].name;
+        current.objects.erase(current.objects.begin() + static_cast<std::ptrdiff_t>(index));
+        if (current.active > index || current.active >= current.objects.size())
+            current.active = current.active == 0 ? 0 : current.active - 1;
+    } else if (action == "accept" || action == "withdraw") {
+        SessionObject& object = current.objects[chosen_index()];
         auto& parts = object.parts;
         if (!parts.contains("deformed")) fail_request("nothing is being deformed", "move some control points first");
-        step.title = what + " the deformation of " + object.name;
-        if (what == "accept") {
+        step.title = fmt::format("{} the deformation of {}", action, object.name);
+        if (action == "accept") {
             parts["mesh"] = parts["deformed"];
             for (const char* part : {"cage", "annotations"})
-                if (const auto made = parts.find(std::string("deformed ") + part); made != parts.end())
-                    parts[part] = made->second;
+                if (const auto deformed_part = parts.find(std::string("deformed ") + part); deformed_part != parts.end())
+                    parts[part] = deformed_part->second;
             parts.erase("coordinates");  // coordinates belong to the undeformed shape
             parts.erase("recipe");
         }
         for (const char* part : {"edit", "deformed", "deformed cage", "deformed annotations"}) parts.erase(part);
     } else {
-        fail_request("'" + printable(what, 40) + "' is no change");
+        fail_request(fmt::format("'{}' is not a change", printable(action, 40)));
     }
     add(std::move(step));
 }

@@ -6,6 +6,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/workbench/session.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka::workbench {
@@ -39,11 +41,12 @@ inline bool is_plain_name(const std::string& name) {
 
 /// `name`, with a number appended if an object already has it.
 inline std::string free_name(const SessionState& state, const std::string& name) {
-    const auto taken = [&](const std::string& one) {
-        return std::any_of(state.objects.begin(), state.objects.end(), [&](const SessionObject& o) { return o.name == one; });
+    const auto is_taken = [&](const std::string& candidate) {
+        return std::any_of(state.objects.begin(), state.objects.end(),
+                           [&](const SessionObject& o) { return o.name == candidate; });
     };
     std::string free = name;
-    for (int i = 2; taken(free); ++i) free = name + "-" + std::to_string(i);
+    for (int i = 2; is_taken(free); ++i) free = fmt::format("{}-{}", name, i);
     return free;
 }
 

@@ -4,6 +4,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/safe_path.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 using workbench::fail_request;
@@ -24,10 +26,10 @@ struct Session::Settings {
 std::string Session::reference(const std::string& file) const {
     for (std::size_t i = 0; i < place_; ++i) {
         const SessionStep& step = steps_[i];
-        if (step.operation.empty() || !file.starts_with("steps/" + step.name + "/")) continue;
+        if (step.operation.empty() || !file.starts_with(fmt::format("steps/{}/", step.name))) continue;
         for (const auto& member : step.keep.GetObject())
-            if (file == "steps/" + step.name + "/" + text_of(member.value))
-                return "${" + step.name + "." + text_of(member.name) + "}";
+            if (file == fmt::format("steps/{}/{}", step.name, text_of(member.value)))
+                return fmt::format("${{{}.{}}}", step.name, text_of(member.name));
     }
     return file;
 }
@@ -47,45 +49,47 @@ Path Session::with_beside(const SessionObject& object, const std::string& step, 
 
 Path Session::resolved(const JsonValue& value, const Slot& input, const std::string& step, Settings& settings) const {
     const std::string& slot = input.name;
-    if (!value.IsObject()) fail_request("input '" + printable(slot, 40) + "' is not given as a part, a file or a document");
+    if (!value.IsObject())
+        fail_request(fmt::format("input '{}' is not given as a part, a file or a document", printable(slot, 40)));
     if (const JsonValue* document = find_member(value, "document")) {
-        if (!document->IsObject()) fail_request("the document of '" + printable(slot, 40) + "' is no object");
-        const Path file = folder_ / "documents" / (step + "-" + slot + ".json");
+        if (!document->IsObject()) fail_request(fmt::format("the document of '{}' is not an object", printable(slot, 40)));
+        const Path file = folder_ / "documents" / fmt::format("{}-{}.json", step, slot);
         settings.documents.emplace_back(file, to_text(*document));
         return file;
     }
     if (find_member(value, "file") != nullptr) return path_of(text_in(value, "file"));
-    const SessionState& now = state();
-    const auto index = static_cast<std::size_t>(number_or(value, "object", static_cast<double>(now.active)));
-    if (index >= now.objects.size()) fail_request("no object is open", "open a mesh or a template");
-    const std::string part = text_in(value, "part"), file = now.objects[index].part(part);
+    const SessionState& current = state();
+    const auto index = static_cast<std::size_t>(number_or(value, "object", static_cast<double>(current.active)));
+    if (index >= current.objects.size()) fail_request("no object is open", "open a mesh or a template");
+    const std::string part = text_in(value, "part"), file = current.objects[index].part(part);
     if (file.empty())
-        fail_request(now.objects[index].name + " has no " + printable(part.empty() ? "part" : part, 40),
+        fail_request(fmt::format("{} has no {}", current.objects[index].name, printable(part.empty() ? "part" : part, 40)),
                      part == "annotations"   ? "annotate it first"
                      : part == "cage"        ? "make a cage first"
                      : part == "coordinates" ? "link the cage with the mesh first"
                      : part == "graph"       ? "add a relationship first"
                                              : "choose another input");
     if (settings.object == no_index || slot == "target") settings.object = index;
-    if (input.reads_beside && part == "mesh" && !now.objects[index].part("annotations").empty())
-        return with_beside(now.objects[index], step, settings);
+    if (input.reads_beside && part == "mesh" && !current.objects[index].part("annotations").empty())
+        return with_beside(current.objects[index], step, settings);
     return (folder_ / file).lexically_normal();
 }
 
 void Session::name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const {
-    std::map<std::string, std::string> wanted;  // output -> file name, if given
-    for (const JsonValue& one : list_in(request, "keep")) {
-        if (one.IsString()) wanted[text_of(one)];
-        if (!one.IsObject()) continue;
-        const std::string file = text_in(one, "file");
+    std::map<std::string, std::string> requested;  // output -> file name, if given
+    for (const JsonValue& entry : list_in(request, "keep")) {
+        if (entry.IsString()) requested[text_of(entry)];
+        if (!entry.IsObject()) continue;
+        const std::string file = text_in(entry, "file");
         if (!is_plain_name(file))
-            fail_request("'" + printable(file, 60) + "' is no name for a file", "use letters, digits, . - and _");
-        wanted[text_in(one, "output")] = file;
+            fail_request(fmt::format("'{}' is not a valid file name", printable(file, 60)), "use letters, digits, . - and _");
+        requested[text_in(entry, "output")] = file;
     }
-    for (const auto& [name, file] : wanted)
-        if (call.slot(name).role != Role::output) fail_request("'" + printable(name, 40) + "' is no output");
-    const SessionState& now = state();
-    std::string stem = settings.object < now.objects.size() ? stem_of(now.objects[settings.object].part("mesh")) : std::string();
+    for (const auto& [name, file] : requested)
+        if (call.slot(name).role != Role::output) fail_request(fmt::format("'{}' is not an output", printable(name, 40)));
+    const SessionState& current = state();
+    std::string stem =
+        settings.object < current.objects.size() ? stem_of(current.objects[settings.object].part("mesh")) : std::string();
     std::string word = call.entry().name;
     word = word.substr(word.rfind(' ') + 1);
     bool makes_mesh = false;
@@ -93,14 +97,14 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
         makes_mesh = makes_mesh || (slot->role == Role::output && slot->kind == Kind::mesh && slot->needed);
     if (stem.empty()) stem = word;
     else if (makes_mesh) stem += text_in(request, "as") == "deformed" ? "-deformed" : "-" + word;
-    std::map<std::string, std::string> taken;  // file name -> slot
+    std::map<std::string, std::string> used_names;  // file name -> slot
     for (Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output) continue;
-        const auto own = wanted.find(slot->name);
-        const bool asked = own != wanted.end();
+        const auto request_of_slot = requested.find(slot->name);
+        const bool is_requested = request_of_slot != requested.end();
         const bool updates = slot->updated != nullptr && !slot->updated->sources.empty();
-        const bool begins = slot->updated != nullptr && slot->updated->needed;
-        if (!asked && !updates && !slot->needed && !begins) continue;
+        const bool is_created = slot->updated != nullptr && slot->updated->needed;
+        if (!is_requested && !updates && !slot->needed && !is_created) continue;
         std::string name;
         switch (slot->kind) {
             case Kind::mesh:
@@ -125,14 +129,14 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
                 name = stem + ".template.json";
                 break;
             default:
-                name = stem + "-" + slot->name + call.usual_ending(slot->name);
+                name = fmt::format("{}-{}{}", stem, slot->name, call.usual_ending(slot->name));
         }
-        if (asked && !own->second.empty()) name = own->second;
+        if (is_requested && !request_of_slot->second.empty()) name = request_of_slot->second;
         if (updates) name = Path(slot->updated->file()).filename().string();
-        if (!taken.emplace(name, slot->name).second) {
+        if (!used_names.emplace(name, slot->name).second) {
             const std::string ending = Path(name).extension().string();
-            name = stem + "-" + slot->name + ending;
-            taken.emplace(name, slot->name);
+            name = fmt::format("{}-{}{}", stem, slot->name, ending);
+            used_names.emplace(name, slot->name);
         }
         settings.outputs[slot->name] = name;
         add_members(settings.keep, settings.keep.GetAllocator(), slot->name, name);
@@ -143,8 +147,8 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
 Report Session::run(const JsonValue& request, Context& context) {
     const OperationEntry& entry = find_operation(text_in(request, "operation"));
     if (entry.runs_others || std::string_view(entry.name) == "operations")
-        fail_request("'" + std::string(entry.name) + "' is not run here",
-                     "run it as a command: ostraka " + std::string(entry.name));
+        fail_request(fmt::format("'{}' cannot be run in the workbench", entry.name),
+                     fmt::format("run it as a command: ostraka {}", entry.name));
     Call call(entry);
     SessionStep step{next_name(), text_in(request, "title"), entry.name, {}, {}, {}, true, state()};
     if (step.title.empty()) step.title = entry.name;
@@ -158,23 +162,28 @@ Report Session::run(const JsonValue& request, Context& context) {
             const Slot* slot = call.parameters().slot(name);
             if (slot == nullptr) {
                 if (const Option* option = call.parameters().options.find(name); option != nullptr && !option->from_files)
-                    fail_request("'" + printable(name, 40) + "' may be set by the caller of a command only", "leave it out");
+                    fail_request(fmt::format("'{}' may be set by the caller of a command only", printable(name, 40)),
+                                 "leave it out");
                 if (to_compact_text(member.value).find("${") != std::string::npos)
-                    fail_request("'" + printable(name, 40) + "' holds '${', which means something else in study files",
-                                 "write it otherwise");
+                    fail_request(
+                        fmt::format("'{}' contains '${{', which has a special meaning in study files", printable(name, 40)),
+                        "leave it out of the value");
                 add_members(settings.options, settings.options.GetAllocator(), name, member.value);
                 add_members(settings.with, with, name, member.value);
                 continue;
             }
-            if (slot->role == Role::output) fail_request("'" + printable(name, 40) + "' is an output", "name it in 'keep'");
-            const auto take = [&](const JsonValue& value) {
+            if (slot->role == Role::output)
+                fail_request(fmt::format("'{}' is an output", printable(name, 40)), "name it in 'keep'");
+            const auto resolve_input = [&](const JsonValue& value) {
                 const Path file = resolved(value, *slot, step.name, settings);
-                if (!slot->repeated && !slot->sources.empty()) fail_request("'" + printable(name, 40) + "' is given twice");
+                if (!slot->repeated && !slot->sources.empty())
+                    fail_request(fmt::format("'{}' is given twice", printable(name, 40)));
                 call.set_file(name, file);
                 return reference(relative(file));
             };
-            if (member.value.IsArray()) add_members(settings.with, with, name, json_list(member.value.GetArray(), with, take));
-            else add_members(settings.with, with, name, take(member.value));
+            if (member.value.IsArray())
+                add_members(settings.with, with, name, json_list(member.value.GetArray(), with, resolve_input));
+            else add_members(settings.with, with, name, resolve_input(member.value));
         }
     call.set(settings.options, entry.name);
     name_outputs(call, request, step.name, settings);
@@ -187,7 +196,7 @@ Report Session::run(const JsonValue& request, Context& context) {
     };
     std::error_code ignored;
     check_folders();
-    const WriteScope written(folder_);  // also for links that the folder already held
+    const WriteScope write_scope(folder_);  // also for links that the folder already held
     for (const auto& [file, text] : settings.documents) require_writable_inside(file, folder_);
     std::filesystem::remove_all(folder, ignored);  // left by a killed run
     try {
@@ -210,44 +219,46 @@ Report Session::run(const JsonValue& request, Context& context) {
 }
 
 void Session::take_outputs(const Call& call, const JsonValue& request, const Settings& settings, SessionStep& step) const {
-    SessionState& now = step.state;
+    SessionState& current = step.state;
     const bool deforms = text_in(request, "as") == "deformed";
     std::size_t target = settings.object;
-    const auto made = [&](const std::string& name) { return "steps/" + step.name + "/" + name; };
-    const auto is_there = [&](const std::string& name) {
-        return file_exists(folder_ / made(name)) || is_folder(folder_ / made(name));
+    const auto step_file = [&](const std::string& name) { return fmt::format("steps/{}/{}", step.name, name); };
+    const auto exists = [&](const std::string& name) {
+        return file_exists(folder_ / step_file(name)) || is_folder(folder_ / step_file(name));
     };
     // A resulting mesh is a new object; the other outputs belong to it.
     for (const auto& [output, name] : settings.outputs) {
         const Slot* slot = call.parameters().slot(output);
-        if (slot->kind != Kind::mesh || !slot->needed || deforms || !is_there(name)) continue;
-        now.objects.push_back({free_name(now, stem_of(name)), {{"mesh", made(name)}}});
-        target = now.active = now.objects.size() - 1;
+        if (slot->kind != Kind::mesh || !slot->needed || deforms || !exists(name)) continue;
+        current.objects.push_back({free_name(current, stem_of(name)), {{"mesh", step_file(name)}}});
+        target = current.active = current.objects.size() - 1;
     }
     for (const auto& [output, name] : settings.outputs) {
-        if (!is_there(name)) continue;
+        if (!exists(name)) continue;
         const Slot* slot = call.parameters().slot(output);
         std::string part = part_of(slot->kind);
         if (deforms && slot->kind == Kind::mesh) part = "deformed";
         else if (deforms && (part == "cage" || part == "annotations")) part.insert(0, "deformed ");
         if (slot->kind == Kind::mesh && slot->needed && !deforms) continue;
-        if (part.empty() || target >= now.objects.size() || (slot->kind == Kind::mesh && !slot->needed)) {
-            const std::string of = target < now.objects.size() ? now.objects[target].name : std::string();
-            std::erase_if(now.files, [&](const SessionFile& one) { return one.name == name && one.of == of; });
-            const bool folder = is_folder(folder_ / made(name));
+        if (part.empty() || target >= current.objects.size() || (slot->kind == Kind::mesh && !slot->needed)) {
+            const std::string object_name = target < current.objects.size() ? current.objects[target].name : std::string();
+            std::erase_if(current.files, [&](const SessionFile& session_file) {
+                return session_file.name == name && session_file.object == object_name;
+            });
+            const bool folder = is_folder(folder_ / step_file(name));
             const std::string kind = slot->kind == Kind::folder && !folder ? "file" : to_string(slot->kind);
-            now.files.push_back({name, kind, made(name), of});
-            if (folder) take_folder(made(name), now);
+            current.files.push_back({name, kind, step_file(name), object_name});
+            if (folder) take_folder(step_file(name), current);
             continue;
         }
-        now.objects[target].parts[part] = made(name);
-        if (part == "cage") now.objects[target].parts.erase("coordinates");
+        current.objects[target].parts[part] = step_file(name);
+        if (part == "cage") current.objects[target].parts.erase("coordinates");
         // A recipe that no longer reproduces the annotations is removed.
-        if (part == "annotations" && !settings.outputs.contains("recipe")) now.objects[target].parts.erase("recipe");
+        if (part == "annotations" && !settings.outputs.contains("recipe")) current.objects[target].parts.erase("recipe");
     }
-    if (!deforms || target >= now.objects.size()) return;
+    if (!deforms || target >= current.objects.size()) return;
     for (const auto& [file, text] : settings.documents)
-        if (file.filename().string().ends_with("-edit.json")) now.objects[target].parts["edit"] = relative(file);
+        if (file.filename().string().ends_with("-edit.json")) current.objects[target].parts["edit"] = relative(file);
 }
 
 /// Adds the meshes in an output folder as objects, with their annotations.
@@ -257,7 +268,7 @@ void Session::take_folder(const std::string& folder, SessionState& state) const 
     for (const std::string& name : files_in(folder_ / folder)) {
         if (extension(name) != ".ply" || ++count > maximum) continue;
         SessionObject object{free_name(state, stem_of(name)), {{"mesh", folder + "/" + name}}};
-        const std::string annotations = folder + "/" + stem_of(name) + ".ant.json";
+        const std::string annotations = fmt::format("{}/{}.ant.json", folder, stem_of(name));
         if (file_exists(folder_ / annotations)) object.parts["annotations"] = annotations;
         state.objects.push_back(std::move(object));
         state.active = state.objects.size() - 1;
@@ -266,18 +277,18 @@ void Session::take_folder(const std::string& folder, SessionState& state) const 
 
 Path Session::save(const std::string& name, Context& context) const {
     if (!is_plain_name(name))
-        fail_request("'" + printable(name, 60) + "' is no name for a folder", "use letters, digits, - and _");
+        fail_request(fmt::format("'{}' is not a valid folder name", printable(name, 60)), "use letters, digits, - and _");
     const SessionObject* object = state().object();
     if (object == nullptr) fail_request("no object is open", "open a mesh or a template");
     if (object->part("annotations").empty()) fail_request(object->name + " has no annotations", "annotate it first");
-    const Path folder = root_ / name, saved = folder / (name + ".template.json");
-    if (file_exists(folder) || (is_folder(folder) && !std::filesystem::is_empty(folder) && !file_exists(saved)))
-        fail_input(folder.string(), "is there already and holds something else", "give another name");
-    const WriteScope written(root_);
+    const Path folder = root_ / name, template_file = folder / (name + ".template.json");
+    if (file_exists(folder) || (is_folder(folder) && !std::filesystem::is_empty(folder) && !file_exists(template_file)))
+        fail_input(folder.string(), "exists already and holds other data", "give another name");
+    const WriteScope write_scope(root_);
     make_folder(folder);
     Call call(find_operation("template pack"));
     call.set("copy", true);
-    call.set_file("output", saved);
+    call.set_file("output", template_file);
     for (const char* part : {"mesh", "annotations", "graph", "cage", "coordinates"})
         if (const std::string file = object->part(part); !file.empty()) call.set_file(part, (folder_ / file).lexically_normal());
     const Report report = call.run(context);
@@ -289,7 +300,7 @@ Path Session::save(const std::string& name, Context& context) const {
         const Path source = (folder_ / recipe).lexically_normal();
         write_file(folder / source.filename(), read_file(source));
     }
-    return saved;
+    return template_file;
 }
 
 }  // namespace ostraka

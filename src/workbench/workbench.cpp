@@ -13,6 +13,8 @@
 #include "ostraka/semantic/cage_reach.h"
 #include "ostraka/vocabulary/skos.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <set>
 
@@ -34,11 +36,11 @@ std::string_view bytes_of(const Numbers& numbers) {
 }
 
 /// Appends data at the next multiple of eight bytes; returns its offset and size.
-JsonValue keep(std::string& bytes, std::string_view more, JsonAllocator& a) {
+JsonValue append(std::string& bytes, std::string_view data, JsonAllocator& a) {
     bytes.resize((bytes.size() + 7) / 8 * 8, '\0');
-    JsonValue place = json_value(std::array{bytes.size(), more.size()}, a);
-    bytes += more;
-    return place;
+    JsonValue range = json_value(std::array{bytes.size(), data.size()}, a);
+    bytes += data;
+    return range;
 }
 
 }  // namespace
@@ -52,8 +54,8 @@ struct Workbench::Shape {
 
 /// State of a drag, kept between frames.
 struct Workbench::Deformation {
-    std::size_t place = 0;  ///< step of the session
-    std::string of;         ///< name of the object
+    std::size_t place = 0;    ///< step of the session
+    std::string object_name;  ///< name of the object
     std::shared_ptr<const Shape> rest;
     const AnnotationSet* set = nullptr;
     Coordinates coordinates;
@@ -94,7 +96,7 @@ void Workbench::cancel() {
 }
 
 const std::map<std::string, Workbench::Answer>& Workbench::answers() {
-    static const std::map<std::string, Answer> all{
+    static const std::map<std::string, Answer> handlers{
         {"hello", &Workbench::hello},         {"scene", &Workbench::scene},
         {"select", &Workbench::select},       {"run", &Workbench::run},
         {"grab", &Workbench::grab},           {"drag", &Workbench::drag},
@@ -102,7 +104,7 @@ const std::map<std::string, Workbench::Answer>& Workbench::answers() {
         {"handles", &Workbench::handles},     {"parts", &Workbench::parts},
         {"reach", &Workbench::reach},
     };
-    return all;
+    return handlers;
 }
 
 Workbench::Reply Workbench::answer(std::string_view text) {
@@ -122,23 +124,23 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     }
     try {
         const Json request = parse_json(text, "the message");
-        if (!request.IsObject()) fail_request("a message that is no object", "load the page again");
+        if (!request.IsObject()) fail_request("the message is not an object", "load the page again");
         if (const JsonValue* number = find_member(request, "id"); number != nullptr && number->IsNumber())
             id = number->GetDouble();
         const JsonValue* word = find_member(request, "do");
-        const std::string what = word != nullptr && word->IsString() ? text_of(*word) : std::string();
+        const std::string action = word != nullptr && word->IsString() ? text_of(*word) : std::string();
         const WatchScope watched(&context_->watch);
-        if (const auto known = answers().find(what); known != answers().end()) {
-            (this->*known->second)(request, result, reply.bytes);
-        } else if (what == "open") {
+        if (const auto handler = answers().find(action); handler != answers().end()) {
+            (this->*handler->second)(request, result, reply.bytes);
+        } else if (action == "open") {
             const JsonValue* name = find_member(request, "name");
             session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string(),
                           [this](const SessionObject& object) { static_cast<void>(shape_of(object, false)); });
-        } else if (what == "go") {
-            const JsonValue* to = find_member(request, "place");
-            if (to == nullptr || !to->IsUint()) fail_request("no place is given", "load the page again");
-            session_.go_to(to->GetUint());
-        } else if (what == "save") {
+        } else if (action == "go") {
+            const JsonValue* target_place = find_member(request, "place");
+            if (target_place == nullptr || !target_place->IsUint()) fail_request("no place is given", "load the page again");
+            session_.go_to(target_place->GetUint());
+        } else if (action == "save") {
             const JsonValue* name = find_member(request, "name");
             const Path file = session_.save(name != nullptr && name->IsString() ? text_of(*name) : std::string(), *context_);
             add_members(result, result.GetAllocator(), "file", file.string());
@@ -149,7 +151,7 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     } catch (const Error& error) {
         fail(error.problem(), error.where(), error.remedy());
     } catch (const std::bad_alloc&) {
-        fail("there is no memory for it", "", "use a smaller mesh");
+        fail("there is not enough memory", "", "use a smaller mesh");
     } catch (const std::exception& error) {
         fail(std::string("internal error: ") + error.what(), "", "please report it with what you did");
     }
@@ -172,19 +174,19 @@ void Workbench::add_session(Json& result) const {
 
 /// Labels of the concepts of all vocabularies in the root, by language; unreadable files are skipped.
 JsonValue Workbench::words(JsonAllocator& a) const {
-    JsonValue found(rapidjson::kObjectType);
+    JsonValue languages(rapidjson::kObjectType);
     std::map<std::string, std::set<std::string>> labels;  // by language
     for (const std::string& name : files_in(session_.root())) {
         if (!name.ends_with(".vocabulary.json") && !is_skos(name)) continue;
         try {
             const Path file = session_.root() / name;
-            for (const Concept& one : (is_skos(name) ? read_skos(file) : read_vocabulary(file)).concepts)
-                for (const auto& [language, label] : one.labels) labels[language].insert(label);
+            for (const Concept& vocabulary_concept : (is_skos(name) ? read_skos(file) : read_vocabulary(file)).concepts)
+                for (const auto& [language, label] : vocabulary_concept.labels) labels[language].insert(label);
         } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
         }
     }
-    for (const auto& [language, list] : labels) add_members(found, a, language, list);
-    return found;
+    for (const auto& [language, texts] : labels) add_members(languages, a, language, texts);
+    return languages;
 }
 
 void Workbench::hello(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
@@ -201,8 +203,8 @@ std::shared_ptr<const MeshFile> Workbench::mesh_of(const std::string& file) {
     const Path path = located(file);
     std::error_code ignored;
     const auto changed = std::filesystem::last_write_time(path, ignored).time_since_epoch().count();
-    const std::string key = path.string() + "@" + std::to_string(changed) + "/" + std::to_string(size_of_file(path));
-    if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
+    const std::string key = fmt::format("{}@{}/{}", path.string(), changed, size_of_file(path));
+    if (const auto cached = meshes_.find(key); cached != meshes_.end()) return cached->second;
     if (meshes_.size() >= kept_meshes) meshes_.clear();
     return meshes_[key] = std::make_shared<const MeshFile>(in_file(path.string(), [&] { return read_mesh(path); }));
 }
@@ -211,8 +213,8 @@ std::shared_ptr<const Workbench::Shape> Workbench::shape_of(const SessionObject&
     auto shape = std::make_shared<Shape>();
     const std::string before = deformed ? "deformed" : "";
     const auto part = [&](const std::string& name) {
-        const std::string own = object.part(deformed ? "deformed " + name : name);
-        return own.empty() && deformed && name != "cage" ? object.part(name) : own;
+        const std::string part_file = object.part(deformed ? "deformed " + name : name);
+        return part_file.empty() && deformed && name != "cage" ? object.part(name) : part_file;
     };
     shape->mesh = mesh_of(object.part(deformed ? "deformed" : "mesh"));
     if (const std::string file = part("annotations"); !file.empty()) {
@@ -228,38 +230,38 @@ std::shared_ptr<const Workbench::Shape> Workbench::shape_of(const SessionObject&
 
 void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes) {
     auto& a = result.GetAllocator();
-    std::vector<std::string> known;
+    std::vector<std::string> known_keys;
     for (const JsonValue& key : list_in(request, "known"))
-        if (key.IsString()) known.push_back(text_of(key));
+        if (key.IsString()) known_keys.push_back(text_of(key));
     const SessionState& state = session_.state();
-    workbench::Scene scene(known);
-    JsonValue shown(rapidjson::kArrayType);
+    workbench::Scene scene(known_keys);
+    JsonValue shown_objects(rapidjson::kArrayType);
     for (std::size_t i = 0; i < state.objects.size(); ++i) {
         const SessionObject& object = state.objects[i];
         for (const bool deformed : {false, true}) {
             if (deformed && object.part("deformed").empty()) continue;
             const auto shape = shape_of(object, deformed);
             const std::string file = object.part(deformed ? "deformed" : "mesh");
-            workbench::ShownShape one;
-            one.name = deformed ? object.name + " (deformed)" : object.name;
-            one.key = file + "@" + std::to_string(size_of_file(session_.path_of(file)));
-            if (shape->cage) one.key += "+" + object.part(deformed ? "deformed cage" : "cage");
-            one.mesh = &shape->mesh->mesh;
-            one.set = shape->set ? &*shape->set : nullptr;
-            one.graph = shape->graph ? &*shape->graph : nullptr;
-            one.cage = shape->cage ? &shape->cage->mesh : nullptr;
+            workbench::ShownShape shown_shape;
+            shown_shape.name = deformed ? object.name + " (deformed)" : object.name;
+            shown_shape.key = fmt::format("{}@{}", file, size_of_file(session_.path_of(file)));
+            if (shape->cage) shown_shape.key += "+" + object.part(deformed ? "deformed cage" : "cage");
+            shown_shape.mesh = &shape->mesh->mesh;
+            shown_shape.set = shape->set ? &*shape->set : nullptr;
+            shown_shape.graph = shape->graph ? &*shape->graph : nullptr;
+            shown_shape.cage = shape->cage ? &shape->cage->mesh : nullptr;
             if (i == state.active && !deformed && extension(file) == ".ply")
-                one.maps = ply_maps(session_.path_of(file), *shape->mesh);
-            if (i == state.active) one.files = workbench::files_for(session_, deformed);
-            scene.add(one);
-            shown.PushBack(json_object(a, "object", i, "deformed", deformed), a);
+                shown_shape.maps = ply_maps(session_.path_of(file), *shape->mesh);
+            if (i == state.active) shown_shape.files = workbench::files_for(session_, deformed);
+            scene.add(shown_shape);
+            shown_objects.PushBack(json_object(a, "object", i, "deformed", deformed), a);
         }
     }
     if (session_.place() > 0)
         if (const SessionStep& step = session_.steps()[session_.place() - 1]; !step.operation.empty())
             scene.add_report(session_.folder() / "steps" / step.name / "report.json", step.operation);
     Page::Content content = scene.content("the workbench");
-    add_members(result, a, "shown", std::move(shown), "content", content.data);
+    add_members(result, a, "shown", std::move(shown_objects), "content", content.data);
     add_session(result);
     add_members(result, a, "openable", session_.openable());
     bytes = std::move(content.bytes);
@@ -273,12 +275,13 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
     const JsonValue* expression = find_member(request, "expression");
     if (expression == nullptr) fail_request("nothing is selected", "load the page again");
     const auto shape = shape_of(*object, false);
-    const JsonValue* type_asked = find_member(request, "type");
-    const std::string asked = type_asked != nullptr && type_asked->IsString() ? text_of(*type_asked) : "region";
+    const JsonValue* requested_type = find_member(request, "type");
+    const std::string annotation_type =
+        requested_type != nullptr && requested_type->IsString() ? text_of(*requested_type) : "region";
     Json recipe = json_document("recipe");
     auto& r = recipe.GetAllocator();
     add_members(recipe, r, "annotations",
-                json_list_of(json_object(r, "id", 0, "tag", "selection", "type", asked, "outline", "edges", "select",
+                json_list_of(json_object(r, "id", 0, "tag", "selection", "type", annotation_type, "outline", "edges", "select",
                                          JsonValue(*expression, r)),
                              r));
     if (shape->set && shape->set->up) add_members(recipe, r, "up", *shape->set->up);
@@ -288,23 +291,23 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
         start.annotations.annotations = shape->set->annotations;
         start.annotations.up = shape->set->up;
         int id = 0;
-        for (const Annotation& one : shape->set->annotations) id = std::max(id, one.id + 1);
-        for (Annotation& one : start.annotations.annotations) one.attributes.clear();  // attributes are not used
+        for (const Annotation& annotation : shape->set->annotations) id = std::max(id, annotation.id + 1);
+        for (Annotation& annotation : start.annotations.annotations) annotation.attributes.clear();  // attributes are not used
         recipe["annotations"][0]["id"].SetInt(id);
     }
-    const int own = recipe["annotations"][0]["id"].GetInt();
+    const int selection_id = recipe["annotations"][0]["id"].GetInt();
     const AnnotationSet set = follow_recipe(recipe, shape->mesh->mesh, std::move(start), "the selection");
-    const Annotation* found = set.find(own);
+    const Annotation* selection = set.find(selection_id);
     auto& a = result.GetAllocator();
-    const std::string type = to_string(found->type);
+    const std::string type = to_string(selection->type);
     add_members(result, a, "type", type);
-    if (found->type == AnnotationType::region) {
-        std::vector<std::uint32_t> faces(found->faces.begin(), found->faces.end());
-        add_members(result, a, "count", faces.size(), "faces", keep(bytes, bytes_of(faces), a));
-    } else if (found->type == AnnotationType::line) {
-        add_members(result, a, "count", found->polylines.size(), "lines", found->polylines);
+    if (selection->type == AnnotationType::region) {
+        std::vector<std::uint32_t> faces(selection->faces.begin(), selection->faces.end());
+        add_members(result, a, "count", faces.size(), "faces", append(bytes, bytes_of(faces), a));
+    } else if (selection->type == AnnotationType::line) {
+        add_members(result, a, "count", selection->polylines.size(), "lines", selection->polylines);
     } else {
-        add_members(result, a, "count", found->points.size(), "points", found->points);
+        add_members(result, a, "count", selection->points.size(), "points", selection->points);
     }
 }
 
@@ -333,15 +336,16 @@ Workbench::Deformation& Workbench::deformation() {
     if (object == nullptr) fail_request("no object is open", "open a mesh or a template");
     if (object->part("cage").empty()) fail_request(object->name + " has no cage", "make one first");
     if (object->part("coordinates").empty()) fail_request(object->name + " is not linked with its cage", "link them first");
-    if (deformation_ && deformation_->place == session_.place() && deformation_->of == object->name) return *deformation_;
+    if (deformation_ && deformation_->place == session_.place() && deformation_->object_name == object->name)
+        return *deformation_;
     auto fresh = std::make_unique<Deformation>();
     fresh->place = session_.place();
-    fresh->of = object->name;
+    fresh->object_name = object->name;
     fresh->rest = shape_of(*object, false);
     // The coordinates stay the same from drag to drag.
     const std::string file = object->part("coordinates");
     static const AnnotationSet none;
-    if (deformation_ && deformation_->of == object->name && !deformation_->coordinates.kind.empty() &&
+    if (deformation_ && deformation_->object_name == object->name && !deformation_->coordinates.kind.empty() &&
         deformation_->rest->mesh == fresh->rest->mesh && deformation_->rest->cage == fresh->rest->cage)
         fresh->coordinates = std::move(deformation_->coordinates), fresh->weights = std::move(deformation_->weights);
     else fresh->coordinates = read_coordinates(session_.path_of(file), fresh->rest->mesh->mesh, fresh->rest->cage->mesh);
@@ -360,33 +364,34 @@ Workbench::Deformation& Workbench::deformation() {
 void Workbench::handles(const JsonValue& request, Json& result, std::string& /*bytes*/) {
     Deformation& drag = deformation();
     const JsonValue *id = find_member(request, "annotation"), *threshold = find_member(request, "threshold");
-    const Annotation* one = id != nullptr && id->IsInt() ? drag.set->find(id->GetInt()) : nullptr;
-    if (one == nullptr) fail_request("there is no such annotation", "choose one of the list");
-    const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, *one);
-    const double least =
+    const Annotation* annotation = id != nullptr && id->IsInt() ? drag.set->find(id->GetInt()) : nullptr;
+    if (annotation == nullptr) fail_request("there is no such annotation", "choose one of the list");
+    const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, *annotation);
+    const double min_influence =
         threshold != nullptr && threshold->IsNumber()
             ? threshold->GetDouble()
             : influence_threshold(drag.coordinates.vertex,
                                   threshold != nullptr && threshold->IsString() ? text_of(*threshold) : "auto-mesh", rows);
-    add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, least), "threshold", least);
+    add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, min_influence), "threshold",
+                min_influence);
 }
 
 /// For each cage vertex the indices of the annotations it influences; only regions that contain no other are listed.
 void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
-    std::vector<std::vector<std::size_t>> of(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
-    const auto& all = drag.set->annotations;
+    std::vector<std::vector<std::size_t>> annotations_of_vertex(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
+    const auto& annotations = drag.set->annotations;
     const ContainmentOrder order = topology(drag.rest->mesh->mesh, *drag.set).order;
-    std::vector<bool> contains(all.size(), false);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (order.parent[i] && all[i].type == AnnotationType::region) contains[*order.parent[i]] = true;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (all[i].type != AnnotationType::region || contains[i]) continue;
-        const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, all[i]);
+    std::vector<bool> contains(annotations.size(), false);
+    for (std::size_t i = 0; i < annotations.size(); ++i)
+        if (order.parent[i] && annotations[i].type == AnnotationType::region) contains[*order.parent[i]] = true;
+    for (std::size_t i = 0; i < annotations.size(); ++i) {
+        if (annotations[i].type != AnnotationType::region || contains[i]) continue;
+        const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, annotations[i]);
         for (const Index h : influential(drag.coordinates, rows, influence_threshold(drag.coordinates.vertex, "auto-mesh", rows)))
-            of[h].push_back(i);
+            annotations_of_vertex[h].push_back(i);
     }
-    add_members(result, result.GetAllocator(), "parts", of);
+    add_members(result, result.GetAllocator(), "parts", annotations_of_vertex);
 }
 
 /// Influence of the handles on each vertex, from 0 to 1: {"handles": [INDEX, ...]}.
@@ -394,27 +399,27 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
     Deformation& drag = deformation();
     const WeightMatrix& weights = drag.coordinates.vertex;
     std::vector<float> sums(static_cast<std::size_t>(weights.rows()), 0);
-    for (const JsonValue& one : list_in(request, "handles")) {
-        if (!one.IsUint() || one.GetUint() >= weights.cols())
-            fail_request("a handle is no vertex of the cage", "load the page again");
+    for (const JsonValue& handle : list_in(request, "handles")) {
+        if (!handle.IsUint() || handle.GetUint() >= weights.cols())
+            fail_request("a handle is not a vertex of the cage", "load the page again");
         for (Eigen::Index i = 0; i < weights.rows(); ++i)
-            sums[static_cast<std::size_t>(i)] += static_cast<float>(weights(i, one.GetUint()));
+            sums[static_cast<std::size_t>(i)] += static_cast<float>(weights(i, handle.GetUint()));
     }
     auto& a = result.GetAllocator();
-    add_members(result, a, "values", keep(bytes, bytes_of(sums), a));
+    add_members(result, a, "values", append(bytes, bytes_of(sums), a));
 }
 
 /// Constraints that the cage cannot satisfy, before any edit: the number of constraints, and one sentence for each unsatisfied
 /// one.
 void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
-    if (!drag.rest->graph) fail_request(drag.of + " has no relationships", "state a constraint first");
+    if (!drag.rest->graph) fail_request(drag.object_name + " has no relationships", "state a constraint first");
     const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
-    const auto list = cage_reach(space, *drag.rest->graph);
+    const auto reaches = cage_reach(space, *drag.rest->graph);
     std::vector<std::string> texts;
-    for (const ConstraintReach& one : list)
-        if (!one.reached) texts.push_back(describe(one, *drag.set));
-    add_members(result, result.GetAllocator(), "constraints", list.size(), "texts", texts);
+    for (const ConstraintReach& constraint : reaches)
+        if (!constraint.reached) texts.push_back(describe(constraint, *drag.set));
+    add_members(result, result.GetAllocator(), "constraints", reaches.size(), "texts", texts);
 }
 
 /// Starts a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. Returns four numbers (m, w) per vertex. While all handles
@@ -423,17 +428,18 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
     Deformation& drag = deformation();
     const Index count = static_cast<Index>(drag.rest->cage->mesh.number_of_vertices());
     drag.handles.clear();
-    for (const JsonValue& one : list_in(request, "handles")) {
-        if (!one.IsUint() || one.GetUint() >= count) fail_request("a handle is no vertex of the cage", "load the page again");
-        drag.handles.push_back(one.GetUint());
+    for (const JsonValue& handle : list_in(request, "handles")) {
+        if (!handle.IsUint() || handle.GetUint() >= count)
+            fail_request("a handle is not a vertex of the cage", "load the page again");
+        drag.handles.push_back(handle.GetUint());
     }
     std::sort(drag.handles.begin(), drag.handles.end());
     drag.handles.erase(std::unique(drag.handles.begin(), drag.handles.end()), drag.handles.end());
     if (drag.handles.empty()) fail_request("no control point is chosen", "choose some");
     RelationGraph graph;
     if (flag_in(request, "constraints") && drag.rest->graph)
-        for (const Relationship& one : drag.rest->graph->relationships)
-            if (one.is_constraint) graph.relationships.push_back(one);
+        for (const Relationship& relationship : drag.rest->graph->relationships)
+            if (relationship.is_constraint) graph.relationships.push_back(relationship);
     const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
     if (drag.weights.size() == 0) drag.weights = drag.coordinates.vertex.cast<float>();
     drag.live = std::make_unique<LiveDeformation>(space, graph, drag.edit, drag.handles);
@@ -453,7 +459,7 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
         for (std::size_t k = 0; k < 4; ++k) moved[4 * static_cast<std::size_t>(i) + k] = static_cast<float>(sum[k]);
     }
     add_members(result, a, "constrained", drag.live->has_constraints(), "handles", drag.handles, "edit", JsonValue(drag.edit, a),
-                "weights", keep(bytes, bytes_of(moved), a));
+                "weights", append(bytes, bytes_of(moved), a));
 }
 
 /// Surface that satisfies the constraints with the handles at {"places": [[x, y, z], ...]}, in their order; positions are
@@ -464,10 +470,11 @@ void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes)
     Deformation& drag = *deformation_;
     const Stopwatch watch;
     std::vector<Point> places;
-    for (const JsonValue& one : list_in(request, "places")) {
-        if (!one.IsArray() || one.Size() != 3 || !one[0].IsNumber() || !one[1].IsNumber() || !one[2].IsNumber())
-            fail_request("a place is no list of three numbers", "load the page again");
-        places.emplace_back(one[0].GetDouble(), one[1].GetDouble(), one[2].GetDouble());
+    for (const JsonValue& position : list_in(request, "places")) {
+        if (!position.IsArray() || position.Size() != 3 || !position[0].IsNumber() || !position[1].IsNumber() ||
+            !position[2].IsNumber())
+            fail_request("a position is not a list of three numbers", "load the page again");
+        places.emplace_back(position[0].GetDouble(), position[1].GetDouble(), position[2].GetDouble());
     }
     const std::vector<Point>& cage = drag.live->follow(places);
     const double solving = watch.seconds();
@@ -486,7 +493,7 @@ void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes)
                                 static_cast<std::size_t>(matrix.size()) * sizeof(float));
     };
     auto& a = result.GetAllocator();
-    add_members(result, a, "positions", keep(bytes, bytes_in(shape), a), "cage", keep(bytes, bytes_in(moved), a), "solving",
+    add_members(result, a, "positions", append(bytes, bytes_in(shape), a), "cage", append(bytes, bytes_in(moved), a), "solving",
                 solving, "seconds", watch.seconds());
 }
 

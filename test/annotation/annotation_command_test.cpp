@@ -154,6 +154,6 @@ TEST(AnnotationCommand, WrongInputLeavesNothingBehind) {
     expect("apply " + mesh + " " + recipe + " " + out + " --ply " + folder.at("c.xyz"), 2, "xyz");
     expect("apply " + recipe + " " + recipe + " " + out, 2, "r.recipe.json");
     expect("list " + mesh + " " + recipe, 1, "ostraka-recipe");
-    expect("check " + mesh + " " + mesh, 1, "mind the order of the files");
+    expect("check " + mesh + " " + mesh, 1, "check the order of the files");
     expect("check " + mesh + " " + recipe, 3, "ostraka-recipe");
 }

@@ -88,7 +88,7 @@ TEST(ConvertCommand, PolygonsOfAnotherFileAreRestored) {
         const Path other_mesh = scratch.file("wrong.obj", obj);
         const auto result = run_command(words(bent, scratch / "c.obj", "--polygons-of " + other_mesh.string()));
         EXPECT_EQ(result.code, 1) << result.err;
-        EXPECT_NE(result.err.find("read from at first"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("originally read from"), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(scratch / "c.obj"));
     }
 }

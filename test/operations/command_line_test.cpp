@@ -32,7 +32,7 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
     expect_refusal("annotation transfer --no-overlop a b c d", "did you mean 'no-overlap'");
     expect_refusal("mesh info " + vase + " --input x", "input is given without a flag");
     expect_refusal("mesh info " + vase + " more", "one argument too many");
-    expect_refusal("--quiet mesh info " + vase, "stands before a command");
+    expect_refusal("--quiet mesh info " + vase, "precedes the command");
     expect_refusal("mesh info " + vase + " --threads 1 --threads 2", "ostraka: mesh info: --threads");
 }
 
@@ -61,7 +61,7 @@ TEST(CommandLine, HelpIsAWordToo) {
     }
     EXPECT_EQ(run_command("annotation help").out, run_command("annotation --help").out);
     expect_refusal("help anotation", "did you mean 'annotation'");
-    expect_refusal("help no", "is no command");
+    expect_refusal("help no", "is not a command");
 }
 
 TEST(CommandLine, AmountsAreNumbersWithADecimalPoint) {

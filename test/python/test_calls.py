@@ -152,7 +152,7 @@ def test_files_that_are_not_there_or_not_that(data, tmp_path):
         ostraka.annotation.list(data / "teapot.ply", data / "chair.ant.json")
     with pytest.raises(ostraka.InputError, match="annotations.ant.json: at /annotations/0"):
         ostraka.annotation.list(data / "teapot.ply", {"annotations": [1]})
-    with pytest.raises(ostraka.InputError, match="no JSON document"):
+    with pytest.raises(ostraka.InputError, match="not a JSON document"):
         ostraka.annotation.list(data / "teapot.ply", {"annotations": float("nan")})
     with pytest.raises(ostraka.UsageError):
         ostraka.mesh.convert(data / "teapot.ply", tmp_path / "pot.xyz")

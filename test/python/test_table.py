@@ -94,7 +94,7 @@ def test_stubs_declare_every_function():
 
 def test_stubs_can_be_written(tmp_path):
     _stubs.write_stubs(pathlib.Path(tmp_path))
-    assert (tmp_path / "study" / "make.pyi").read_text(encoding="utf-8").startswith("# Made from the table")
+    assert (tmp_path / "study" / "make.pyi").read_text(encoding="utf-8").startswith("# Generated from the table")
 
 
 def test_version_is_that_of_the_toolkit(command):

@@ -135,7 +135,7 @@ TEST_F(FitCommand, InputsAndEarlierResultsAreNotMixedUp) {
     const auto over = fit(quoted(scratch / "out" / "completed.ply"));
     EXPECT_NE(over.code, 0);
     EXPECT_EQ(read_file(scratch / "out" / "completed.ply"), before) << over.err;
-    // Nothing placed: what an earlier run left goes. (What was changed since is somebody's, and stays: it is written anew first.)
+    // Nothing placed: what an earlier run left goes. (What was changed since is kept: it is written again first.)
     ASSERT_EQ(fit(quoted(scratch / "top.ply") + " --placed").code, 3);
     Json annotations = read_json(scratch / "top.ant.json");
     annotations["annotations"].Clear();
@@ -164,7 +164,7 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
     validate(kept, "searches", "searches");
     const auto before = contents();
     const auto repeated = fit(quoted(scratch / "bare.ply"));
-    EXPECT_NE(repeated.err.find("1 of 1 searches of poses are those of an earlier fit"), std::string::npos) << repeated.err;
+    EXPECT_NE(repeated.err.find("1 of 1 pose searches are reused from an earlier fit"), std::string::npos) << repeated.err;
     EXPECT_EQ(contents(), before);
     EXPECT_EQ(repeated.out, first.out);
     // Another one comes, and goes.
@@ -182,7 +182,7 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
     EXPECT_EQ(contents()[0], before[0]);
     write_file(scratch / "out" / "fit.searches.json", "{}");
     const auto other = fit(quoted(scratch / "bare.ply"));
-    EXPECT_NE(other.err.find("is not used, and written anew"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("is not used, and is written again"), std::string::npos) << other.err;
     EXPECT_EQ(contents()[0], before[0]);
     // The fragment's own file has changed.
     ASSERT_EQ(run_command("mesh break " + quoted(scratch / "made" / "statuette-1.ply") + " " + quoted(scratch / "bare.ply") +

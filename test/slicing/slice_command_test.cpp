@@ -198,7 +198,7 @@ TEST(SliceCommand, InvalidInputIsReportedAndWritesNothing) {
     expect_fails("slice " + vase + "--medial-axis 2 --output " + file, 2, "use a value from 0.001 to 1");
     expect_fails("slice " + vase + "--colour-by beauty --output " + (scratch / "o.ply").string(), 2, "beauty");
     expect_fails("slice " + vase + "--output " + (scratch / "o.txt").string(), 2, "end its name in");
-    expect_fails("slice " + vase + "--profile " + (scratch / "o.gif").string(), 2, "no drawing");
+    expect_fails("slice " + vase + "--profile " + (scratch / "o.gif").string(), 2, "is not a drawing");
     expect_fails("slice " + data + "vase.ply --annotation foo", 2, "no annotation file is given");
     expect_fails("slice " + data + "vase.ply --output " + data + "vase.ply", 2, "vase.ply");
     const std::string ball = (scratch / "ball.ply").string();
@@ -211,8 +211,8 @@ TEST(SliceCommand, ReportsInvalidNumbers) {
     const auto fails = [](const std::string& flags, const std::string& words) {
         expect_fails("slice " + vase + flags, 2, words);
     };
-    fails("--plane 1e300,0,0,0,0,1", "its point is no place");
-    fails("--plane nan,0,0,0,0,1", "its point is no place");
+    fails("--plane 1e300,0,0,0,0,1", "its point is not valid");
+    fails("--plane nan,0,0,0,0,1", "its point is not valid");
     fails("--plane 0,0,0,0,0,0", "its normal has no direction");
     fails("--plane 0,0,0,inf,0,0", "its normal has no direction");
     for (const char* angle : {"nan", "inf", "1e300", "3,4", "x"})
@@ -238,7 +238,7 @@ TEST(SliceCommand, ReportsInvalidNumbers) {
     // A plane that misses says where the mesh is.
     const auto missed = run_command("slice " + vase + "--plane 0,0,1000,0,0,1");
     EXPECT_EQ(missed.code, 3);
-    EXPECT_NE(missed.err.find("heights over it go from -1000"), std::string::npos) << missed.err;
+    EXPECT_NE(missed.err.find("heights above it go from -1000"), std::string::npos) << missed.err;
 }
 
 TEST(SliceCommand, RejectsInvalidOutputs) {
@@ -295,7 +295,7 @@ TEST(SliceCommand, ReportsIntersectingAndReversedParts) {
     EXPECT_TRUE(middle["descriptors"].HasMember("box_length"));
     EXPECT_TRUE(json["slices"][0]["descriptors"].HasMember("area"));
     const auto cavity = run("cavity", joined(ball, moved(ball, 0.5, {0, 0, 0})));
-    EXPECT_NE(cavity.err.find("ran against their nesting"), std::string::npos) << cavity.err;
+    EXPECT_NE(cavity.err.find("orientation contradicts their nesting"), std::string::npos) << cavity.err;
     const Json nested = read_json(scratch / "cavity" / "slices.json");
     validate(nested, "slices", "slices.json");
     EXPECT_EQ(nested["slices"][10]["descriptors"]["holes"].GetInt(), 1);
@@ -304,7 +304,7 @@ TEST(SliceCommand, ReportsIntersectingAndReversedParts) {
     EXPECT_EQ(clay.code, 0);
     EXPECT_NE(clay.err.find("contours that cross"), std::string::npos) << clay.err;
     const auto reversed = run_command("measure clay " + (scratch / "cavity.ply").string());
-    EXPECT_NE(reversed.err.find("against their nesting"), std::string::npos) << reversed.err;
+    EXPECT_NE(reversed.err.find("contradicts their nesting"), std::string::npos) << reversed.err;
 }
 
 TEST(SliceCommand, MeshesWithoutSurfaceOrSkeleton) {
@@ -326,15 +326,15 @@ TEST(SliceCommand, ProfilesRequireSurfacesOfRevolution) {
     write_triangles(cube, box(3));
     const auto left_out = run_command("slice --count 4 " + cube + " --output " + folder);
     EXPECT_EQ(left_out.code, 0) << left_out.err;
-    EXPECT_NE(left_out.err.find("not a turned object"), std::string::npos) << left_out.err;
+    EXPECT_NE(left_out.err.find("not a surface of revolution"), std::string::npos) << left_out.err;
     EXPECT_FALSE(std::filesystem::exists(Path(folder) / "profile.svg"));
     const auto requested =
         run_command("slice --count 4 " + cube + " --title 'A box of mine' --profile " + (scratch / "p.svg").string());
     EXPECT_EQ(requested.code, 0);
-    EXPECT_NE(requested.err.find("not a turned object"), std::string::npos) << requested.err;
+    EXPECT_NE(requested.err.find("not a surface of revolution"), std::string::npos) << requested.err;
     EXPECT_TRUE(std::filesystem::exists(scratch / "p.svg"));
     const auto revolved = run_command("slice --count 4 " + vase + "--output " + folder);
-    EXPECT_EQ(revolved.err.find("not a turned object"), std::string::npos) << revolved.err;
+    EXPECT_EQ(revolved.err.find("not a surface of revolution"), std::string::npos) << revolved.err;
     EXPECT_TRUE(std::filesystem::exists(Path(folder) / "profile.svg"));
 }
 
@@ -361,7 +361,7 @@ TEST(SliceCommand, ReportsOfTwoSlicesAndSkeletons) {
     EXPECT_NE(pair.out.find("two barycentres are always collinear"), std::string::npos) << pair.out;
     EXPECT_NE(pair.out.find("2 of 2 slices show the wall alone"), std::string::npos) << pair.out;
     const auto single = run_command("slice " + vase + "--heights 60");
-    EXPECT_NE(single.out.find("one slice tells nothing"), std::string::npos) << single.out;
+    EXPECT_NE(single.out.find("the variation between slices needs two of them"), std::string::npos) << single.out;
     EXPECT_EQ(single.out.find("along the curve"), std::string::npos);
     const auto curve = run_command("slice " + vase + "--direction skeleton --count 4");
     EXPECT_NE(curve.out.find("along the curve"), std::string::npos) << curve.out;

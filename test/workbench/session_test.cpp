@@ -184,9 +184,10 @@ TEST(Session, RefusesInWordsAndChangesNothing) {
     for (
         const auto& [message, words] : std::vector<std::pair<std::string, std::string>>{
             {R"({"id":1,"do":"run","operation":"mesh explode"})", "no operation"},
-            {R"({"id":1,"do":"run","operation":"run","with":{}})", "not run here"},
+            {R"({"id":1,"do":"run","operation":"run","with":{}})", "cannot be run in the workbench"},
             {R"({"id":1,"do":"run","operation":"mesh info","with":{"input":"/etc/passwd"}})", "not given as a part"},
-            {R"({"id":1,"do":"run","operation":"mesh info","with":{"input":{"file":"/etc/passwd"}}})", "no file of the session"},
+            {R"({"id":1,"do":"run","operation":"mesh info","with":{"input":{"file":"/etc/passwd"}}})",
+             "is not a file of the session"},
             {R"({"id":1,"do":"run","operation":"mesh info","with":{"input":{"part":"mesh","object":9}}})", "no object"},
             {R"({"id":1,"do":"run","operation":"mesh simplify","with":{"input":{"part":"mesh"},"output":{"part":"mesh"}}})",
              "is an output"},
@@ -200,12 +201,12 @@ TEST(Session, RefusesInWordsAndChangesNothing) {
             {R"({"id":1,"do":"close","object":4})", "no object 4"},
             {R"({"id":1,"do":"grab","handles":[0]})", "no cage"},
             {R"({"id":1,"do":"drag","places":[]})", "nothing has been grabbed"},
-            {R"({"id":1,"do":"file","file":"../ball.ply/../../x"})", "no file of the session"},
-            {R"({"id":1,"do":"save","name":"../up"})", "no name for a folder"},
+            {R"({"id":1,"do":"file","file":"../ball.ply/../../x"})", "is not a file of the session"},
+            {R"({"id":1,"do":"save","name":"../up"})", "is not a valid folder name"},
             {R"({"id":1,"do":"save","name":"x"})", "has no annotations"},
             {R"({"id":1,"do":"select","expression":{"halfspace":7}})", "does not match"},
-            {R"({"id":1,"do":"dance"})", "is no change"},
-            {R"({"id":1})", "is no change"},
+            {R"({"id":1,"do":"dance"})", "is not a change"},
+            {R"({"id":1})", "is not a change"},
             {R"([1,2])", "no object"},
             {R"({"id":1,"do":)", ""},
             {"", ""}})
@@ -250,7 +251,7 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     write_file(file, whole);
     std::filesystem::remove(bench.scratch / "session/steps/s002/ball.ant.json");
     EXPECT_THROW(bench.start(), Error);
-    EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds something else";
+    EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds other data";
 }
 
 TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
@@ -409,5 +410,5 @@ TEST(Session, SavesATemplateThatIsWhole) {
     EXPECT_FALSE(bench.state().object()->part("coordinates").empty());
     bench.ask(R"({"id":1,"do":"save","name":"kept"})");  // again
     write_file(bench.scratch / "other", "x");
-    EXPECT_NE(bench.refused(R"({"id":1,"do":"save","name":"other"})").find("holds something else"), std::string::npos);
+    EXPECT_NE(bench.refused(R"({"id":1,"do":"save","name":"other"})").find("holds other data"), std::string::npos);
 }

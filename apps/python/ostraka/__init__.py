@@ -1,11 +1,11 @@
 """Ostraka: semantics-aware modelling of 3D shapes.
 
-Every command of the toolkit is a function: `ostraka annotation transfer` is `ostraka.annotation.transfer`. In names "-" is "_",
-and a word that Python has for itself ends in "_": `ostraka.mesh.break_`. `help()` of a function shows what it takes.
+Every command of the toolkit is a function: `ostraka annotation transfer` is `ostraka.annotation.transfer`. In names, "-"
+becomes "_", and "_" is appended to keywords of Python: `ostraka.mesh.break_`. `help()` of a function shows its parameters.
 
-An input is a file, or an object: `Mesh`, `Annotations`, `Document`, `Array`, `Bytes`, arrays of NumPy, dicts, meshes of trimesh
-and PyVista. An output is written to the file that is named for it. One that is needed and not named comes back as an object;
-True asks for one that is optional, and "memory:NAME" for one that is called so. What a function returns is a `Result`.
+An input is a file or an object: `Mesh`, `Annotations`, `Document`, `Array`, `Bytes`, NumPy arrays, dicts, meshes of trimesh and
+PyVista. An output is written to the file given for it. A required output without a file is returned as an object; True requests
+an optional output as an object, and "memory:NAME" an object with this name. Functions return a `Result`.
 """
 
 import os as _os
@@ -15,7 +15,7 @@ import types as _types
 
 
 def _openmp_spins() -> bool:
-    """Whether OpenMP is loaded already, and was not told how its threads shall wait."""
+    """Whether OpenMP is loaded already, without a setting of how its threads wait."""
     if "OMP_WAIT_POLICY" in _os.environ or "GOMP_SPINCOUNT" in _os.environ:
         return False
     try:
@@ -40,32 +40,32 @@ if _spins:
 
 
 def threads() -> int:
-    """How many threads an operation may use. Results do not depend on it."""
+    """Number of threads that an operation may use. Results do not depend on it."""
     return _ostraka.threads()
 
 
 def set_threads(count: int) -> None:
-    """From here on so many; 0: all cores of the machine."""
+    """Sets the number of threads for later operations; 0: all cores of the machine."""
     if not isinstance(count, int) or isinstance(count, bool) or not 0 <= count <= 1024:
         raise UsageError(f"the number of threads is {count!r}", "", "use 0 (all) to 1024")
     _ostraka.set_threads(count)
 
 
 def memory_limit() -> float:
-    """Gigabytes (10^9 bytes) that the process may occupy while an operation works: what was set, or what the machine has."""
+    """Memory limit of the process during operations, in gigabytes (10^9 bytes): the limit set, or the memory of the machine."""
     return _ostraka.memory_limit() / 1e9
 
 
 def set_memory_limit(gigabytes: float) -> None:
-    """From here on so many; 0: what the machine has. An operation that needs more is refused with a WorkError."""
+    """Sets the memory limit; 0: the memory of the machine. An operation that needs more raises a WorkError."""
     is_number = isinstance(gigabytes, (int, float)) and not isinstance(gigabytes, bool)
     if not is_number or not 0 <= gigabytes <= 1e9:
-        raise UsageError(f"the memory limit is {gigabytes!r}", "", "use gigabytes from 0 (what the machine has)")
+        raise UsageError(f"the memory limit is {gigabytes!r}", "", "use gigabytes, or 0 (the memory of the machine)")
     _ostraka.set_memory_limit(1e9 * gigabytes)
 
 
 def _add_groups() -> dict[str, _types.ModuleType]:
-    """A module for each group of operations, by its name in the table."""
+    """Creates a module for each group of operations; returns them by their names in the table."""
     package = _sys.modules[__name__]
     modules = {"": package}
     for name, help_text in _ostraka.groups():
@@ -80,9 +80,9 @@ def _add_groups() -> dict[str, _types.ModuleType]:
 
 
 def _add_functions(modules: dict[str, _types.ModuleType]) -> None:
-    for declared in _functions.declarations():
-        group, _, word = declared["name"].rpartition(" ")
-        function = _functions.make_function(declared)
+    for declaration in _functions.declarations():
+        group, _, word = declaration["name"].rpartition(" ")
+        function = _functions.make_function(declaration)
         name = _functions.free_name(word, vars(modules[group]))
         function.__name__ = function.__qualname__ = name
         function.__module__ = modules[group].__name__

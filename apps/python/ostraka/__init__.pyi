@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -383,7 +383,7 @@ def run(
     programs: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RunResult:
-    """Run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)."""
+    """Run the steps of a study file; steps that have not changed are not run again (exit code 3: a step failed)."""
 
 class _ReplayResult(Result):
     output: Folder | Path | None
@@ -397,7 +397,7 @@ def replay(
     programs: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ReplayResult:
-    """Repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs."""
+    """Repeat a run of a study and compare all its outputs, to the bit; exit code 3 if something differs."""
 
 class _OperationsResult(Result):
     pages: Folder | Path | None

@@ -1,4 +1,4 @@
-"""`python3 -m ostraka stubs FOLDER` writes the type stubs; by default beside this file."""
+"""`python3 -m ostraka stubs FOLDER` writes the type stubs to the folder; by default to the folder of this file."""
 
 import pathlib
 import sys

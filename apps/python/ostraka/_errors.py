@@ -2,14 +2,14 @@
 
 
 class Error(Exception):
-    """What went wrong, where, and the remedy.
+    """An error of the toolkit: the problem, its place and the remedy.
 
     Attributes
     ----------
     kind : "input", "failure" or "usage"
     where : the file, the element or the operation; may be empty
-    problem : what is wrong with it
-    remedy : what to do about it; may be empty
+    problem : description of the problem
+    remedy : how to solve it; may be empty
     """
 
     kind = ""
@@ -26,25 +26,25 @@ class Error(Exception):
 
 
 class InputError(Error):
-    """A file, a mesh or an array is not what it should be."""
+    """A file, a mesh or an array is invalid."""
 
     kind = "input"
 
 
 class WorkError(Error):
-    """The work could not be done: no space, no solution."""
+    """The work could not be completed: not enough space, no solution."""
 
     kind = "failure"
 
 
 class UsageError(Error, ValueError):
-    """Options or names that make no sense."""
+    """Invalid options or names."""
 
     kind = "usage"
 
 
 class ArgumentError(UsageError, TypeError):
-    """A function has no such parameter, or one that it needs is missing."""
+    """A function has no such parameter, or a required one is missing."""
 
 
 for _class in (Error, InputError, WorkError, UsageError, ArgumentError):

@@ -1,4 +1,4 @@
-"""A function for each operation, made from the declarations of the table."""
+"""A function for each operation, generated from the declarations of the table."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from typing import Any, Callable, Container
 
 from . import _ostraka
 from ._errors import ArgumentError, UsageError, WorkError
-from ._objects import Object, as_given, refuse_masks, shown
+from ._objects import Object, as_given, from_native, refuse_masks
 from ._report import Report, Result
 
 
 def python_name(name: str) -> str:
-    """Of an operation, a parameter or an output: "-" and " " are "_", and a word that Python has for itself ends in "_"."""
+    """Python name of an operation, a parameter or an output: "-" and " " become "_", and "_" is appended to keywords."""
     word = name.replace("-", "_").replace(" ", "_")
     return word + "_" if keyword.iskeyword(word) else word
 
 
 def free_name(word: str, taken: Container[str]) -> str:
-    """Of an operation beside others: where a group has it already, it ends in "_"."""
+    """Python name of an operation; "_" is appended if the group has the name already."""
     name = python_name(word)
     while name in taken:
         name += "_"
@@ -35,59 +35,60 @@ def free_name(word: str, taken: Container[str]) -> str:
 class Parameter:
     """An input, an output or an option of an operation."""
 
-    def __init__(self, role: str, declared: dict[str, Any], has_place: bool) -> None:
+    def __init__(self, role: str, declaration: dict[str, Any], has_place: bool) -> None:
         self.role = role  # "input", "output" or "option"
-        self.declared = declared
-        self.name: str = declared["name"]
+        self.declaration = declaration
+        self.name: str = declaration["name"]
         self.python_name = python_name(self.name)
         self.has_place = has_place
-        self.needed = role != "output" and declared["required"] and not declared.get("new", False)
-        self.default = _default(declared) if role == "option" else None
+        self.needed = role != "output" and declaration["required"] and not declaration.get("new", False)
+        self.default = _default(declaration) if role == "option" else None
 
     @property
     def is_list(self) -> bool:
-        return self.declared.get("repeated", False) or self.declared.get("type") in ("texts", "numbers", "integers")
+        return self.declaration.get("repeated", False) or self.declaration.get("type") in ("texts", "numbers", "integers")
 
 
-def _default(declared: dict[str, Any]) -> Any:
-    """That of an option; of lists a tuple."""
-    value = declared.get("default")
-    kind = declared["type"]
+def _default(declaration: dict[str, Any]) -> Any:
+    """Default value of an option; for lists a tuple."""
+    value = declaration.get("default")
+    kind = declaration["type"]
     if value is None or kind not in ("texts", "numbers", "integers"):
         return value
-    words = value.split("; " if kind == "texts" and "choices" not in declared else ",")
+    words = value.split("; " if kind == "texts" and "choices" not in declaration else ",")
     if kind == "texts":
         return tuple(words)
     return tuple(int(word) if kind == "integers" else float(word) for word in words)
 
 
-def parameters_of(declared: dict[str, Any]) -> list[Parameter]:
-    """In the order of the function: what is needed stands first, then what the command takes by its place, then the rest."""
-    order = declared["arguments"][0] if declared["arguments"] else []
+def parameters_of(declaration: dict[str, Any]) -> list[Parameter]:
+    """Parameters in the order of the function: required positional ones, other positional ones, then the rest."""
+    order = declaration["arguments"][0] if declaration["arguments"] else []
     parameters = []
     for role in ("input", "output", "option"):
-        parameters += [Parameter(role, one, one["name"] in order) for one in declared[role + "s"]]
-    placed = [one for one in parameters if one.has_place]
-    placed.sort(key=lambda one: (not one.needed, order.index(one.name)))
-    return placed + [one for one in parameters if not one.has_place]
+        parameters += [Parameter(role, parameter, parameter["name"] in order) for parameter in declaration[role + "s"]]
+    placed = [parameter for parameter in parameters if parameter.has_place]
+    placed.sort(key=lambda parameter: (not parameter.needed, order.index(parameter.name)))
+    return placed + [parameter for parameter in parameters if not parameter.has_place]
 
 
 # ---- values ----
 
 
 def _word(value: Any) -> str | None:
-    """Text of an option: a text, a name of a file, or numbers with commas; None where it is none of these."""
+    """Text of an option: a text, a file name, or numbers joined by commas; None for other values."""
     if isinstance(value, str):
         return value
     if isinstance(value, os.PathLike):
         return os.fsdecode(value)
-    if isinstance(value, (list, tuple)) and value and all(isinstance(one, (int, float)) for one in value):
-        return ",".join(repr(int(one) if one == one and abs(one) < 1e15 and one == int(one) else one) for one in value)
+    if isinstance(value, (list, tuple)) and value and all(isinstance(number, (int, float)) for number in value):
+        return ",".join(repr(int(number) if number == number and abs(number) < 1e15 and number == int(number) else number)
+                        for number in value)
     return None
 
 
 def _option_value(name: str, kind: str, value: Any) -> Any:
-    """As the native module takes it: a boolean, number, text, or list of numbers or texts. It checks them."""
+    """The value in the form of the native module, which checks it: a boolean, number, text, or list of numbers or texts."""
     refuse_masks(name, value)
     if hasattr(value, "tolist"):
         value = value.tolist()
@@ -95,38 +96,39 @@ def _option_value(name: str, kind: str, value: Any) -> Any:
         if isinstance(value, (str, os.PathLike)) or _word(value) is not None:
             return [_word(value)]
         if isinstance(value, (list, tuple)):
-            words = [_word(one.tolist() if hasattr(one, "tolist") else one) for one in value]
-            return [one if word is None else word for one, word in zip(value, words)]
+            words = [_word(element.tolist() if hasattr(element, "tolist") else element) for element in value]
+            return [element if word is None else word for element, word in zip(value, words)]
         return [value]
     if kind in ("numbers", "integers"):
-        listed = list(value) if isinstance(value, (list, tuple)) else [value]
-        return [one.tolist() if hasattr(one, "tolist") else one for one in listed]
+        elements = list(value) if isinstance(value, (list, tuple)) else [value]
+        return [element.tolist() if hasattr(element, "tolist") else element for element in elements]
     if kind in ("text", "choice") and _word(value) is not None:
         return _word(value)
     return list(value) if isinstance(value, tuple) else value
 
 
 def _given_inputs(slot: dict[str, Any], value: Any) -> list[tuple[str, Any, str]]:
-    """An input's name, value and label, once for each of several."""
+    """Name, value and label of each value of an input."""
     name, kind = slot["name"], slot["kind"]
 
-    def one(element: Any, label: str = "") -> tuple[str, Any, str]:
+    def input_of(element: Any, label: str = "") -> tuple[str, Any, str]:
         if element is None and slot["none"]:
             return name, None, ""
         return name, as_given(element, kind, name, slot["called"]), label
 
     if slot["named"] and isinstance(value, dict):
-        return [one(element, label) for label, element in value.items()]
+        return [input_of(element, label) for label, element in value.items()]
     if slot["named"] and isinstance(value, (str, os.PathLike)):
         label, equals, file = os.fsdecode(value).partition("=")
         if not equals:
             raise UsageError(f"{name} is '{label}'", "", "give a dict of names and files")
-        return [one(file, label)]
+        return [input_of(file, label)]
     if slot["repeated"] and isinstance(value, (list, tuple)):
         if not value:
             raise UsageError(f"{name} is an empty list", "", f"give {slot['help']}")
-        return [entry for element in value for entry in (_given_inputs(slot, element) if slot["named"] else [one(element)])]
-    return [one(value)]
+        return [entry for element in value
+                for entry in (_given_inputs(slot, element) if slot["named"] else [input_of(element)])]
+    return [input_of(value)]
 
 
 def _given_output(name: str, value: Any) -> tuple[str, Any]:
@@ -134,7 +136,7 @@ def _given_output(name: str, value: Any) -> tuple[str, Any]:
         return name, None
     if isinstance(value, str) and value.startswith("memory:"):
         if value == "memory:":
-            raise UsageError(f"{name} is 'memory:' without a name", "", "give True, or a name behind it")
+            raise UsageError(f"{name} is 'memory:' without a name", "", "give True, or a name after the colon")
         return name, value[len("memory:"):]
     if isinstance(value, (str, os.PathLike)):
         return name, os.fsencode(value)
@@ -149,19 +151,20 @@ def progress_bar(phase: str, share: float) -> None:
 # ---- functions ----
 
 
-def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
-    operation: str = declared["name"]
-    parameters = parameters_of(declared)
-    by_name = {one.python_name: one for one in parameters}
-    placed = [one.python_name for one in parameters if one.has_place]
+def make_function(declaration: dict[str, Any]) -> Callable[..., Result]:
+    operation: str = declaration["name"]
+    parameters = parameters_of(declaration)
+    by_name = {parameter.python_name: parameter for parameter in parameters}
+    positional = [parameter.python_name for parameter in parameters if parameter.has_place]
 
     def refuse(problem: str, remedy: str) -> None:
         raise ArgumentError(problem, operation, remedy)
 
     def function(*arguments: Any, progress: Any = None, **named: Any) -> Result:
-        if len(arguments) > len(placed):
-            refuse(f"{len(arguments)} arguments are given without a name, and it takes {len(placed)}", "name the others")
-        for name, value in zip(placed, arguments):
+        if len(arguments) > len(positional):
+            refuse(f"{len(arguments)} arguments are given without a name, but at most {len(positional)} are allowed",
+                   "name the others")
+        for name, value in zip(positional, arguments):
             if name in named:
                 refuse(f"{name} is given twice", "give it once")
             named[name] = value
@@ -170,38 +173,38 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
         outputs: list[tuple[str, Any]] = []
         files: dict[str, pathlib.Path] = {}
         for name, value in named.items():
-            one = by_name.get(name)
-            if one is None:
-                near = _ostraka.nearest_name(name, [*by_name, "progress"])
-                refuse(f"there is no parameter '{name}'", f"did you mean '{near}'?" if near else "help() shows them")
-            if value is None or (value is False and one.role == "output"):
+            parameter = by_name.get(name)
+            if parameter is None:
+                nearest = _ostraka.nearest_name(name, [*by_name, "progress"])
+                refuse(f"there is no parameter '{name}'", f"did you mean '{nearest}'?" if nearest else "help() shows them")
+            if value is None or (value is False and parameter.role == "output"):
                 continue
-            if one.role == "option":
-                options[one.name] = _option_value(name, one.declared["type"], value)
+            if parameter.role == "option":
+                options[parameter.name] = _option_value(name, parameter.declaration["type"], value)
                 continue
             try:
-                if one.role == "input":
-                    inputs += _given_inputs(one.declared, value)
+                if parameter.role == "input":
+                    inputs += _given_inputs(parameter.declaration, value)
                 else:
-                    outputs.append(_given_output(one.name, value))
+                    outputs.append(_given_output(parameter.name, value))
                     if isinstance(outputs[-1][1], bytes):
-                        files[one.name] = pathlib.Path(os.fsdecode(value))
+                        files[parameter.name] = pathlib.Path(os.fsdecode(value))
             except UsageError as error:
                 raise type(error)(error.problem, error.where or operation, error.remedy) from None
-        for one in parameters:
-            if one.needed and named.get(one.python_name) is None:
-                refuse(f"{one.python_name} is missing", "give " + one.declared["help"])
-            if one.role == "output" and one.declared["required"] and "updates" not in one.declared and \
-                    named.get(one.python_name) in (None, False):
-                outputs.append((one.name, None))
+        for parameter in parameters:
+            if parameter.needed and named.get(parameter.python_name) is None:
+                refuse(f"{parameter.python_name} is missing", "give " + parameter.declaration["help"])
+            if parameter.role == "output" and parameter.declaration["required"] and "updates" not in parameter.declaration and \
+                    named.get(parameter.python_name) in (None, False):
+                outputs.append((parameter.name, None))
         if progress is True:
             progress = progress_bar
         elif progress is False:
             progress = None
         if progress is not None and not callable(progress):
-            refuse("progress cannot be called", "give True, or a function of a phase and a share")
+            refuse("progress cannot be called", "give True, or a function of a phase and the fraction done")
         try:
-            report, made = _ostraka.run(operation, options, inputs, outputs, progress)
+            report, kept_outputs = _ostraka.run(operation, options, inputs, outputs, progress)
         except WorkError as error:  # use the name of the limit in Python
             problem = error.problem.replace("(--memory)", "(ostraka.set_memory_limit)")
             raise WorkError(problem, error.where or operation, error.remedy) from None
@@ -209,65 +212,67 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             problem = re.sub("^option ([a-z0-9-]+) ", lambda match: f"option {python_name(match[1])} ", error.problem)
             raise UsageError(problem, error.where, error.remedy) from None
         results: dict[str, Any] = {}
-        for one in parameters:
-            if one.role == "output":
-                objects: list[Object] = [shown(native) for native in made.get(one.name, [])]
-                value = objects[0] if len(objects) == 1 else objects or files.get(one.name)
-                results[one.python_name] = value if not isinstance(value, pathlib.Path) or value.exists() else None
+        for parameter in parameters:
+            if parameter.role == "output":
+                objects: list[Object] = [from_native(native) for native in kept_outputs.get(parameter.name, [])]
+                value = objects[0] if len(objects) == 1 else objects or files.get(parameter.name)
+                results[parameter.python_name] = value if not isinstance(value, pathlib.Path) or value.exists() else None
         return Result(Report(report), results)
 
     function.__signature__ = signature_of(parameters)  # type: ignore[attr-defined]
-    function.__doc__ = docstring_of(declared, parameters)
-    function.declaration = declared  # type: ignore[attr-defined]
+    function.__doc__ = docstring_of(declaration, parameters)
+    function.declaration = declaration  # type: ignore[attr-defined]
     return function
 
 
 def signature_of(parameters: list[Parameter]) -> inspect.Signature:
     kinds = inspect.Parameter
-    listed = []
-    for one in parameters:
-        listed.append(kinds(one.python_name, kinds.POSITIONAL_OR_KEYWORD if one.has_place else kinds.KEYWORD_ONLY,
-                            default=kinds.empty if one.needed else one.default))
-    listed.append(kinds("progress", kinds.KEYWORD_ONLY, default=None))
-    return inspect.Signature(listed, return_annotation=Result)
+    signature_parameters = []
+    for parameter in parameters:
+        kind = kinds.POSITIONAL_OR_KEYWORD if parameter.has_place else kinds.KEYWORD_ONLY
+        default = kinds.empty if parameter.needed else parameter.default
+        signature_parameters.append(kinds(parameter.python_name, kind, default=default))
+    signature_parameters.append(kinds("progress", kinds.KEYWORD_ONLY, default=None))
+    return inspect.Signature(signature_parameters, return_annotation=Result)
 
 
-def _about(one: Parameter) -> str:
-    """What kind of value: "number from 0 to 1, share of the box diagonal"."""
-    declared = one.declared
-    if one.role != "option":
-        kind = declared["kind"] + (", one or several" if declared["repeated"] else "")
-        if declared.get("named"):
+def _about(parameter: Parameter) -> str:
+    """Description of the values: "number from 0 to 1 (fraction of the box diagonal)"."""
+    declaration = parameter.declaration
+    if parameter.role != "option":
+        kind = declaration["kind"] + (", one or several" if declaration["repeated"] else "")
+        if declaration.get("named"):
             kind += ", in a dict by their names"
-        if one.role == "output":
-            return kind + (", optional" if not declared["required"] else "")
-        return kind + ("" if one.needed else ", optional")
+        if parameter.role == "output":
+            return kind + (", optional" if not declaration["required"] else "")
+        return kind + ("" if parameter.needed else ", optional")
     kind = {"texts": "list of texts", "numbers": "list of numbers", "integers": "list of whole numbers",
-            "integer": "whole number", "choice": "text"}.get(declared["type"], declared["type"])
-    if "choices" in declared:
-        kind = "one of " + ", ".join(repr(name) for name in declared["choices"])
-    elif "words" in declared:
-        kind = ", ".join(repr(name) for name in declared["words"])
-        if declared.get("others"):
-            kind += " or " + declared["others"]
-    elif "minimum" in declared:
-        kind += f" from {declared['minimum']:g} to {declared['maximum']:g}"
-    if declared.get("unit"):
-        kind += f" ({declared['unit']})"
-    return kind + ("" if one.needed or one.default is None else f", default {one.default!r}")
+            "integer": "whole number", "choice": "text"}.get(declaration["type"], declaration["type"])
+    if "choices" in declaration:
+        kind = "one of " + ", ".join(repr(name) for name in declaration["choices"])
+    elif "words" in declaration:
+        kind = ", ".join(repr(name) for name in declaration["words"])
+        if declaration.get("others"):
+            kind += " or " + declaration["others"]
+    elif "minimum" in declaration:
+        kind += f" from {declaration['minimum']:g} to {declaration['maximum']:g}"
+    if declaration.get("unit"):
+        kind += f" ({declaration['unit']})"
+    return kind + ("" if parameter.needed or parameter.default is None else f", default {parameter.default!r}")
 
 
-def docstring_of(declared: dict[str, Any], parameters: list[Parameter]) -> str:
-    lines = [sentence(declared["help"]), "", "Parameters", "----------"]
+def docstring_of(declaration: dict[str, Any], parameters: list[Parameter]) -> str:
+    lines = [sentence(declaration["help"]), "", "Parameters", "----------"]
 
     def add(name: str, about: str, text: str) -> None:
         lines.append(f"{name} : {about}")
         lines.extend(textwrap.wrap(text, 96, initial_indent="    ", subsequent_indent="    "))
 
-    for one in parameters:
-        add(one.python_name, ("output: " if one.role == "output" else "") + _about(one), one.declared["help"])
-    add("progress", "function or True, optional", "called with the phase under way and its share done; True draws a bar")
-    outputs = [one.python_name for one in parameters if one.role == "output"]
+    for parameter in parameters:
+        about = ("output: " if parameter.role == "output" else "") + _about(parameter)
+        add(parameter.python_name, about, parameter.declaration["help"])
+    add("progress", "function or True, optional", "called with the current phase and the fraction done; True draws a bar")
+    outputs = [parameter.python_name for parameter in parameters if parameter.role == "output"]
     lines += ["", "Returns", "-------", "ostraka.Result"]
     lines.extend(textwrap.wrap("the report" + (", and the outputs: " + ", ".join(outputs) if outputs else ""), 96,
                                initial_indent="    ", subsequent_indent="    "))

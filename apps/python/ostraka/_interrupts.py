@@ -1,15 +1,17 @@
-"""What a thread that waits for an operation asks while it waits."""
+"""Checks for interrupts while a thread waits for an operation."""
 
 import sys
 import threading
 
 
 def main_thread_state() -> int:
-    """Called by the native module, twenty times a second, by the thread that called the operation: by being called it lets
-    handlers of signals run, and what PyThreadState_SetAsyncExc has left for this thread.
+    """State of the main thread, for threads that wait for an operation.
 
-    Python hands Ctrl-C to the main thread alone. Of other threads: 0 if that has nothing to say to them, 1 while it handles a
-    KeyboardInterrupt, 2 if it has ended with one and only waits for its threads.
+    The native module calls it twenty times per second in the thread that called the operation. The call also lets signal
+    handlers run, and raises exceptions set by PyThreadState_SetAsyncExc for this thread.
+
+    Python delivers Ctrl-C to the main thread only. For other threads, returns 1 while the main thread handles a
+    KeyboardInterrupt, 2 if it has ended with one and only waits for its threads, and 0 otherwise.
     """
     main = threading.main_thread()
     if main.ident == threading.get_ident():

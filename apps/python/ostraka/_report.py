@@ -21,7 +21,7 @@ _dtypes = {"boolean": "?", "integer": "i8", "number": "f8"}
 
 
 class Table:
-    """A table of a report: a list of rows (dicts), with columns that can be taken as arrays by name."""
+    """A table of a report: a list of rows (dicts), whose columns are available as arrays by name."""
 
     def __init__(self, name: str, columns: list[dict[str, str]], rows: list[dict[str, Any]]) -> None:
         self.name = name
@@ -34,7 +34,7 @@ class Table:
 
     @property
     def units(self) -> dict[str, str]:
-        """Of the columns that have one; "length" is the unit of length of the objects."""
+        """Units of the columns that have one; "length" is the unit of length of the objects."""
         return {column["key"]: column["unit"] for column in self._columns if column["unit"]}
 
     def __len__(self) -> int:
@@ -44,11 +44,11 @@ class Table:
         return iter(self.rows)
 
     def __getitem__(self, key: int | str) -> Any:
-        """A row by its number, a column (an array) by its name."""
+        """A row by its index, or a column (an array) by its name."""
         return self.rows[key] if not isinstance(key, str) else self.to_numpy()[key]
 
     def to_numpy(self) -> numpy.ndarray:
-        """A structured array, a field for each column. Empty cells are nan among numbers, None in other columns."""
+        """A structured array with a field for each column. Empty cells are nan in columns of numbers, None in others."""
         fields = []
         for column in self._columns:
             cells = [row[column["key"]] for row in self.rows]
@@ -64,13 +64,13 @@ class Table:
         return array
 
     def to_pandas(self) -> Any:
-        """A DataFrame, if pandas is there."""
+        """The table as a DataFrame; requires pandas."""
         import pandas
 
         return pandas.DataFrame(self.rows, columns=self.columns)
 
     def to_csv(self, file: str | os.PathLike[str] | None = None) -> str | None:
-        """The table as CSV: written to a file, or as text if none is named."""
+        """Writes the table as CSV to a file, or returns it as text if no file is given."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
@@ -94,7 +94,7 @@ class Table:
 
 
 def _member(values: Any, key: str) -> Any:
-    """"a.b" is the member b of the member a; None where there is none."""
+    """The nested member with this key ("a.b" is the member b of the member a); None if there is none."""
     for name in key.split("."):
         if not isinstance(values, dict) or name not in values:
             return None
@@ -103,7 +103,7 @@ def _member(values: Any, key: str) -> Any:
 
 
 class _SavedReport:
-    """The texts of a report that was pickled: all that is asked of one."""
+    """The texts of a pickled report, in place of the native report."""
 
     formats = ("table", "json", "csv", "markdown")
 
@@ -124,7 +124,7 @@ def _digest(texts: dict[str, str], layout: bytes, holds: bool) -> str:
 
 
 def restored_report(texts: dict[str, str], layout: bytes, holds: bool, digest: str) -> Report:
-    """What was pickled. Raises InputError where it is damaged."""
+    """Restores a pickled report. Raises InputError if it is damaged."""
     try:
         sound = set(texts) == set(_SavedReport.formats) and isinstance(holds, bool) and _digest(texts, layout, holds) == digest
     except (TypeError, ValueError, AttributeError):
@@ -135,7 +135,7 @@ def restored_report(texts: dict[str, str], layout: bytes, holds: bool, digest: s
 
 
 class Report:
-    """What an operation has to say; printed as the command prints it. It can be pickled and copied."""
+    """The report of an operation; printed as by the command. It can be pickled and copied."""
 
     def __init__(self, native: _ostraka.Report | _SavedReport) -> None:
         self._native = native
@@ -154,11 +154,11 @@ class Report:
 
     @property
     def holds(self) -> bool:
-        """False where the answer is "no": where the command would end with exit code 3."""
+        """False if the answer is "no": the command would end with exit code 3."""
         return self._native.holds
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it, as `--json` prints it."""
+        """The complete report, as printed by `--json`."""
         if self._json is None:
             self._json = json.loads(self._native.text("json"))
         return self._json
@@ -169,12 +169,12 @@ class Report:
 
     @property
     def provenance(self) -> dict[str, Any]:
-        """The operation, its options, and the checksums of what it read."""
+        """The operation, its options, and the checksums of its inputs."""
         return self.to_dict()["provenance"]
 
     @property
     def notes(self) -> list[str]:
-        """What one should know beside the result."""
+        """Remarks on the result."""
         return self.result.get("notes", [])
 
     @property
@@ -187,11 +187,11 @@ class Report:
         return tables
 
     def to_csv(self) -> str:
-        """As `--show csv` prints it."""
+        """The report as printed by `--show csv`."""
         return self._native.text("csv")
 
     def to_markdown(self) -> str:
-        """As `--show markdown` prints it."""
+        """The report as printed by `--show markdown`."""
         return self._native.text("markdown")
 
     def __getitem__(self, key: str) -> Any:
@@ -207,10 +207,10 @@ class Report:
 
 
 class Result:
-    """What an operation gives: its report, and its outputs by name, as attributes or in brackets.
+    """The result of an operation: its report, and its outputs by name, as attributes or items.
 
     An output is an object if it stayed in memory, the path of its file if it was written, a list if there are several, None if
-    there is none. The name of an output that is already taken ends in "_".
+    there is none. "_" is appended to names of outputs that are attributes of the class.
     """
 
     def __init__(self, report: Report, outputs: dict[str, Any]) -> None:
@@ -221,7 +221,7 @@ class Result:
 
     @property
     def holds(self) -> bool:
-        """False where the answer is "no"."""
+        """False if the answer is "no"."""
         return self.report.holds
 
     def __getitem__(self, name: str) -> Any:
@@ -241,7 +241,7 @@ class Result:
 
 
 def attribute_name(output: str) -> str:
-    """Of an output: what a result has for itself ends in "_"."""
+    """Attribute name of an output; "_" is appended to names of the class's own attributes."""
     return output + "_" if hasattr(Result, output) or output in ("report", "outputs") else output
 
 

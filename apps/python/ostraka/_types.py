@@ -1,4 +1,4 @@
-"""What the functions take, for type checkers."""
+"""Types of the parameters of functions, for type checkers."""
 
 import os
 from collections.abc import Mapping, Sequence

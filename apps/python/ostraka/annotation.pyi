@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -67,7 +67,7 @@ def remap(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RemapResult:
-    """Carry annotations or labels along the maps of 'mesh repair'."""
+    """Transfer annotations or labels by the index maps of 'mesh repair'."""
 
 class _SelectResult(Result):
     output: Annotations | Path | None

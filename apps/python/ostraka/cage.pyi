@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -30,7 +30,7 @@ def make(
     detail: Text | Sequence[Text] | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MakeResult:
-    """A closed coarse mesh strictly around a mesh."""
+    """Make a closed coarse mesh strictly around a mesh."""
 
 class _EditResult(Result):
     output: Mesh | Path | None
@@ -54,7 +54,7 @@ def check(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Is a mesh a sound cage of another? (exit code 3: no)."""
+    """Check whether a mesh is a sound cage of another (exit code 3: no)."""
 
 class _WeightsResult(Result):
     output: Array | Path | None
@@ -72,7 +72,7 @@ def weights(
     fade: float | None = 0.15,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _WeightsResult:
-    """Coordinates of a mesh in a cage, with a certificate."""
+    """Compute coordinates of a mesh in a cage, with a certificate."""
 
 class _InfluenceResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None

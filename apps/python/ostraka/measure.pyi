@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -47,7 +47,7 @@ def describe(
     thickness_scale: float | None = 0.01,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _DescribeResult:
-    """Sizes, box, centroid, volume, curvature, thickness, and statistics of maps, of annotations."""
+    """Describe annotations: sizes, box, centroid, volume, curvature, thickness, and statistics of maps."""
 
 class _RefreshResult(Result):
     output: Annotations | Path | None
@@ -98,4 +98,4 @@ def clay(
     wall: float | None = 0.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Bounds of the volume of clay: with the unseen inside solid, and hollow."""
+    """Bound the volume of clay: with the unseen inside solid, and hollow."""

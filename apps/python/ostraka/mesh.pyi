@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -83,7 +83,7 @@ def simplify(
     protect_outlines: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SimplifyResult:
-    """Fewer vertices, with annotations, labels and colours carried along."""
+    """Reduce the number of vertices, with annotations, labels and colours transferred."""
 
 class _RefineResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -103,7 +103,7 @@ def refine(
     scheme: Literal["midpoint", "loop", "longest-edge"] | None = 'midpoint',
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RefineResult:
-    """More vertices, with annotations, labels and colours carried along."""
+    """Increase the number of vertices, with annotations, labels and colours transferred."""
 
 class _RemeshResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -134,7 +134,7 @@ def register(
     samples: int | None = 4000,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RegisterResult:
-    """Bring a mesh onto another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object."""
+    """Register a mesh to another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object."""
 
 class _ExtractResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -153,7 +153,7 @@ def extract(
     labels: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ExtractResult:
-    """Cut annotated parts out of an object, with what is annotated on them."""
+    """Cut annotated parts out of an object, with the annotations on them."""
 
 class _BreakResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None

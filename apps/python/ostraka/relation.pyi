@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -89,7 +89,7 @@ def list(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """The relationships of a graph."""
+    """List the relationships of a graph."""
 
 def check(
     mesh: MeshLike,

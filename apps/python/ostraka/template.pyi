@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -101,7 +101,7 @@ def learn(
     resolution: float | None = 0.02,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _LearnResult:
-    """Learn a class from members of it: ranges of what is measured, mean shape, modes of variation, archetype, thresholds."""
+    """Learn a class from members of it: ranges of measures, mean shape, modes of variation, archetype, thresholds."""
 
 class _ClassifyResult(Result):
     report_: Document | Bytes | Path | None

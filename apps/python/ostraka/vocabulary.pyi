@@ -1,4 +1,4 @@
-# Made from the table of operations: python3 -m ostraka stubs
+# Generated from the table of operations: python3 -m ostraka stubs
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -13,7 +13,7 @@ def check(
     scheme: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Look for defects in a vocabulary; exit code 3 if there are."""
+    """Look for defects in a vocabulary; exit code 3 if there are any."""
 
 def show(
     vocabulary: Input,
@@ -22,7 +22,7 @@ def show(
     under: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Concepts as a tree, with the attributes each may carry."""
+    """Show concepts as a tree, with the attributes that each may have."""
 
 class _ConvertResult(Result):
     output: Document | Bytes | Path | None
@@ -33,4 +33,4 @@ def convert(
     scheme: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ConvertResult:
-    """Vocabularies between our format and SKOS."""
+    """Convert vocabularies between Ostraka's format and SKOS."""

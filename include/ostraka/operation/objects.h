@@ -59,11 +59,11 @@ class Object {
 public:
     Object() = default;
     template <class T>
-    explicit Object(std::shared_ptr<const T> data, std::string called = {}, std::string checksum = {})
-        : name(std::move(called)), sha256(std::move(checksum)), data_(std::move(data)), type_(typeid(T)) {}
+    explicit Object(std::shared_ptr<const T> data, std::string object_name = {}, std::string checksum = {})
+        : name(std::move(object_name)), sha256(std::move(checksum)), data_(std::move(data)), type_(typeid(T)) {}
     template <class T>
-    static Object of(T value, std::string called = {}) {
-        return Object(std::make_shared<const T>(std::move(value)), std::move(called));
+    static Object of(T value, std::string object_name = {}) {
+        return Object(std::make_shared<const T>(std::move(value)), std::move(object_name));
     }
 
     /// The data, or null if it is not of type T.
@@ -88,9 +88,9 @@ public:
     [[nodiscard]] const Checksums& checksums() const;
 
 private:
-    struct Made;
-    std::shared_ptr<Made> made_ = make_made();
-    static std::shared_ptr<Made> make_made();
+    struct ChecksumCache;
+    std::shared_ptr<ChecksumCache> checksum_cache_ = make_checksum_cache();
+    static std::shared_ptr<ChecksumCache> make_checksum_cache();
     std::shared_ptr<const void> data_;
     std::type_index type_ = typeid(void);
 };
@@ -171,7 +171,7 @@ public:
 
 protected:
     /// Declares the slot's own options; an option already declared by another slot under the same name is shared with it.
-    void describe_shared(OptionList& options, const OptionList& own);
+    void describe_shared(OptionList& options, const OptionList& slot_options);
     /// Copies the values of shared options into the slot's own; to be called before those are used.
     void take_shared() const;
 
@@ -238,7 +238,7 @@ class TemplateInput : public Slot {
 public:
     const Template& operator*() const;
     const Template* operator->() const { return &**this; }
-    void describe(OptionList& list) override;
+    void describe(OptionList& operation_options) override;
 
     TemplateOptions options;
 };
@@ -295,16 +295,16 @@ private:
 
 class AnnotationsOutput : public Slot {
 public:
-    /// `mesh_name`: file name of the mesh that the annotations refer to; `own`: provenance to write instead of that of the
+    /// `mesh_name`: file name of the mesh that the annotations refer to; `provenance_override`: written instead of that of the
     /// current call.
     void write(AnnotationSet set, const Mesh& mesh, const std::string& mesh_name,
-               const std::optional<Provenance>& own = {}) const;
+               const std::optional<Provenance>& provenance_override = {}) const;
 };
 
 /// A template. Its file refers to the files of its parts; in memory it holds the template with the parts.
 class TemplateOutput : public Slot {
 public:
-    void write(Template known) const;
+    void write(Template package) const;
 };
 
 class GraphOutput : public Slot {

@@ -140,9 +140,9 @@ public:
 private:
     friend class Call;
     struct CallState;
-    CallState* run_ = nullptr;
-    struct Kept;
-    std::shared_ptr<Kept> kept_;
+    CallState* call_ = nullptr;
+    struct ObjectCache;
+    std::shared_ptr<ObjectCache> object_cache_;
     std::vector<Path> memory_;
     std::vector<ReadRecord::Entry> read_;
 };
@@ -171,11 +171,11 @@ public:
     void set_object(const std::string& slot, Object object);
     /// Sets options and files by name; the value true requests an output in memory.
     void set(const JsonValue& values, const std::string& where = {});
-    /// Requests an output in memory; `called`: the file name by which other outputs refer to it.
-    void want(const std::string& output, const std::string& called = {});
+    /// Requests an output in memory; `object_name`: the file name by which other outputs refer to it.
+    void want(const std::string& output, const std::string& object_name = {});
 
-    /// Performs all checks that `run` does before it reads. `comes`: whether a missing file will exist when the operation runs.
-    void check(const std::function<bool(const Path&)>& comes = {});
+    /// Performs all checks that `run` does before it reads. `will_exist`: whether a missing file will exist by then.
+    void check(const std::function<bool(const Path&)>& will_exist = {});
     /// Checks the arguments, runs the operation, and writes all files or none. May be called once. Required outputs without a
     /// file stay in memory. `before_commit` receives the report before the files get their final names; if it throws, no file
     /// is left behind.
@@ -197,7 +197,7 @@ public:
 private:
     void complete();
     [[nodiscard]] double input_bytes() const;
-    void check_given(const std::function<bool(const Path&)>& comes) const;
+    void check_given(const std::function<bool(const Path&)>& will_exist) const;
 
     const OperationEntry* entry_;
     std::unique_ptr<Operation> operation_;

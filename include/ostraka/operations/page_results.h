@@ -25,8 +25,9 @@ std::vector<PageConstraint> page_constraints(const JsonValue& result, const Anno
 std::vector<std::string> page_conflicts(const JsonValue& result);
 
 /// Tables from a report's result, or from a file of the same form: one per list of records, and one for the single values.
-/// Lists of numbers and deeper structures are omitted. `title`: prefix of the titles; `but`: members to omit.
-std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title, const std::set<std::string>& but = {});
+/// Lists of numbers and deeper structures are omitted. `title`: prefix of the titles; `omitted`: members to omit.
+std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title,
+                                     const std::set<std::string>& omitted = {});
 
 /// Whether the name is that of a mesh file.
 bool is_mesh_name(const std::string& name);
@@ -61,13 +62,13 @@ PageTable csv_table(const Path& file, const std::string& name);
 /// Maps of the vertices from the additional numeric properties of a PLY file; for a completed object also the map of observed,
 /// interpolated and hypothetical surface.
 std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh);
-/// The map on a simplified mesh; `to`: the new index of each vertex, `no_index` if removed.
-PageMap simplified_map(const PageMap& map, const std::vector<Index>& to, std::size_t vertices);
+/// The map on a simplified mesh; `new_index`: of each vertex, `no_index` if removed.
+PageMap simplified_map(const PageMap& map, const std::vector<Index>& new_index, std::size_t vertices);
 /// Whether the face labels state the origin of the surface of a completed object, instead of parts.
 bool is_completed(const std::vector<PageMap>& maps);
 
 /// One number per vertex from one per face: the mean of the finite values of its faces, NaN if there are none.
-std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& of_faces);
+std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& face_values);
 
 /// Whether no vertex belongs to faces of two of these regions, so that the regions can be moved apart.
 bool are_apart(const Mesh& mesh, const AnnotationSet& regions);

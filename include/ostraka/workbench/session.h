@@ -20,7 +20,7 @@ struct SessionObject {
 /// A file made by a step that is not part of an object: a table, a drawing, a map.
 struct SessionFile {
     std::string name, kind, file;
-    std::string of;  ///< name of the object it describes, if any
+    std::string object;  ///< name of the object it describes, if any
 };
 
 /// The state after a step. Files are never modified: each step writes new ones.
@@ -63,8 +63,8 @@ public:
     /// Meshes and templates that can be opened, relative to the root.
     [[nodiscard]] std::vector<std::string> openable() const;
     /// Opens a template, or a mesh with the files of the same name beside it (.ant.json, .graph.json, .cage.ply with .npy).
-    /// Throws Error (input) if `name` is not among `openable`. `look` may reject the object before the session changes.
-    void open(const std::string& name, const std::function<void(const SessionObject&)>& look = {});
+    /// Throws Error (input) if `name` is not among `openable`. `inspect` may reject the object before the session changes.
+    void open(const std::string& name, const std::function<void(const SessionObject&)>& inspect = {});
 
     /// Runs an operation: {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}. An input's
     /// value is {"part": PART, "object": INDEX} (default: the active object), {"file": FILE of the state}, {"document": JSON}
