@@ -58,5 +58,7 @@ function(ostraka_unity target)
     endforeach()
   endforeach()
   # Types of a source file may use its unnamed namespace, whichever file includes it.
-  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()

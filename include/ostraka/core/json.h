@@ -17,6 +17,7 @@ namespace ostraka {
 /// RapidJSON does not check the result of malloc; this allocator throws std::bad_alloc.
 class JsonMemory {
 public:
+    // NOLINTBEGIN(readability-identifier-naming): names that RapidJSON requires
     static const bool kNeedFree = true;
     void* Malloc(std::size_t size) { return checked(std::malloc(size), size); }
     void* Realloc(void* old, std::size_t /*old_size*/, std::size_t size) {
@@ -25,6 +26,7 @@ public:
         return nullptr;
     }
     static void Free(void* memory) { std::free(memory); }
+    // NOLINTEND(readability-identifier-naming)
 
 private:
     static void* checked(void* memory, std::size_t size) {

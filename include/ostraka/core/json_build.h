@@ -13,7 +13,7 @@ namespace ostraka {
 template <class T>
 JsonValue json_value(T&& value, JsonAllocator& allocator) {
     using Type = std::remove_cvref_t<T>;
-    if constexpr (std::same_as<T, JsonValue>) return std::move(value);
+    if constexpr (std::same_as<T, JsonValue>) return std::forward<T>(value);
     else if constexpr (std::derived_from<Type, JsonValue>) return JsonValue(value, allocator);
     else if constexpr (std::same_as<Type, bool> || std::floating_point<Type>) return JsonValue(value);
     else if constexpr (std::signed_integral<Type>) return JsonValue(static_cast<std::int64_t>(value));

@@ -30,6 +30,7 @@ const char* word_for(Enumeration value, const char* const (&words)[count]) {
 template <class Entries, class TextOf>
 std::string joined(const Entries& entries, std::string_view separator, const TextOf& text_of) {
     std::vector<std::string> texts;
+    texts.reserve(std::size(entries));
     for (const auto& entry : entries) texts.push_back(std::invoke(text_of, entry));
     return joined(texts, separator);
 }
