@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/insert_curves.h"
 
 #include <algorithm>
@@ -16,19 +17,7 @@ namespace ostraka {
 
 namespace {
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
-bool is_closed(const std::vector<SurfacePlace>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
-
-/// The vertex of the place's face or edge that is nearest by its weights.
-Index nearest_vertex(const Mesh& mesh, const SurfacePlace& place) {
-    const auto [u, v] = place.weights;
-    if (place.kind == SurfaceNode::Kind::vertex) return place.element[0];
-    if (place.kind == SurfaceNode::Kind::edge) return place.element[u <= 0.5 ? 0 : 1];
-    const auto corner = corners(mesh, Face(place.element[0]));
-    const double w = 1 - u - v;
-    return corner[w >= u && w >= v ? 0 : u >= v ? 1 : 2];
-}
+bool is_closed(const std::vector<SurfacePoint>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
 
 /// The walk without repeats and without back-tracking "a, b, a".
 std::vector<Index> without_spikes(const std::vector<Index>& walk) {
@@ -71,6 +60,13 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation, const st
 
 bool any_free(const AnnotationSet& set) { return std::any_of(set.annotations.begin(), set.annotations.end(), is_free); }
 
+std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path) {
+    std::vector<SurfacePoint> curve;
+    curve.reserve(path.size());
+    for (const Index v : path) curve.push_back(vertex_point(v));
+    return curve;
+}
+
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation) {
     std::vector<SurfaceCurve> curves;
     for (const auto& places : annotation.curves) {
@@ -85,11 +81,7 @@ std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotati
             throw Error(error.kind(), where, error.problem(), error.remedy());
         }
         if (annotation.type != AnnotationType::region || is_closed(places)) continue;
-        const auto on_border = [&](const SurfaceNode& node) {
-            if (node.kind == SurfaceNode::Kind::vertex) return mesh.is_border(Vertex(node.element));
-            return node.kind == SurfaceNode::Kind::edge && mesh.is_border(Edge(node.element));
-        };
-        if (!on_border(curves.back().nodes.front()) || !on_border(curves.back().nodes.back()))
+        if (!is_on_border(mesh, places.front()) || !is_on_border(mesh, places.back()))
             fail_input(where, "is an outline that does not close",
                        "repeat its first place at the end; on an open mesh it may also end "
                        "at the border");
@@ -117,7 +109,7 @@ void settle_elements(const Mesh& mesh, Annotation& annotation) {
     annotation.polylines.clear();
     for (const auto& places : annotation.curves) {
         std::vector<Index> walk;
-        for (const SurfacePlace& place : places) walk.push_back(nearest_vertex(mesh, place));
+        for (const SurfacePoint& place : places) walk.push_back(nearest_vertex(mesh, place));
         if (annotation.type == AnnotationType::point) annotation.points.push_back(walk.front());
         else if (walk = without_spikes(walk); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
     }
@@ -128,7 +120,7 @@ RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation) {
     const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
     const CurveFilling filling = filling_of(mesh, annotation, curves);
     RegionMeasures measures{filling.area(mesh), filling.border};
-    for (const SurfaceCurve& curve : curves) measures.perimeter += curve.length();
+    for (const SurfaceCurve& curve : curves) measures.perimeter += curve.length(mesh);
     return measures;
 }
 
@@ -157,7 +149,7 @@ std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annota
 double length_of(const Mesh& mesh, const Annotation& annotation) {
     double sum = 0;
     if (is_free(annotation)) {
-        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) sum += curve.length();
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) sum += curve.length(mesh);
         return sum;
     }
     for (const auto& polyline : annotation.polylines)
@@ -169,10 +161,7 @@ double length_of(const Mesh& mesh, const Annotation& annotation) {
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation) {
     std::vector<std::vector<Point>> curves;
     if (is_free(annotation)) {
-        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) {
-            auto& points = curves.emplace_back();
-            for (const SurfaceNode& node : curve.nodes) points.push_back(node.point);
-        }
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) curves.push_back(positions(mesh, curve.points));
         return curves;
     }
     const auto add = [&](const std::vector<Index>& path, bool closed) {
@@ -189,18 +178,8 @@ std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation&
 
 std::vector<double> CutMesh::vertex_values(const Mesh& before, const std::vector<double>& values) const {
     std::vector<double> all = values;
-    all.reserve(values.size() + nodes.size());
-    for (const SurfaceNode& node : nodes) {
-        if (node.kind == SurfaceNode::Kind::edge) {
-            const Halfedge h = before.halfedge(Edge(node.element), 0);
-            all.push_back((1 - node.parameter) * values[before.source(h)] + node.parameter * values[before.target(h)]);
-        } else {
-            const auto corner = corners(before, Face(node.element));
-            double sum = 0;
-            for (std::size_t k = 0; k < 3; ++k) sum += node.barycentric[k] * values[corner[k]];
-            all.push_back(sum);
-        }
-    }
+    all.reserve(values.size() + points.size());
+    for (const SurfacePoint& p : points) all.push_back(interpolate(before, p, [&](Vertex v) { return values[v]; }));
     return all;
 }
 
@@ -249,7 +228,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
     CutMesh cut;
     cut.mesh = std::move(inserted.mesh);
     cut.face_origin = std::move(inserted.face_origin);
-    cut.nodes = std::move(inserted.new_nodes);
+    cut.points = std::move(inserted.new_points);
     cut.old_vertices = mesh.number_of_vertices();
     cut.more_paths.assign(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first.back()), inserted.paths.end());
     cut.annotations = set;
@@ -304,28 +283,22 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
 namespace {
 
 /// Drops repeated places and places that lie between their neighbours on a straight piece in one face or along one edge.
-std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<SurfacePlace> places) {
-    using Kind = SurfaceNode::Kind;
+std::vector<SurfacePoint> without_needless(const Mesh& mesh, std::vector<SurfacePoint> places) {
     const bool closed = is_closed(places);
-    const auto needless = [&](const SurfacePlace& before, const SurfacePlace& place, const SurfacePlace& after) {
-        if (place.kind == Kind::vertex) return false;
-        const SurfaceNode a = node_at(mesh, before), b = node_at(mesh, place), c = node_at(mesh, after);
-        if (place.kind == Kind::edge) {  // needed unless both neighbours lie on the same edge
-            const Halfedge h = mesh.halfedge(Edge(b.element), 0);
-            for (const SurfaceNode* other : {&a, &c})
-                if (!(other->kind == Kind::edge && other->element == b.element) &&
-                    !(other->kind == Kind::vertex &&
-                      (Vertex(other->element) == mesh.source(h) || Vertex(other->element) == mesh.target(h))))
-                    return false;
-        } else if (common_face(mesh, a, c) == no_index) {
+    const auto needless = [&](const SurfacePoint& before, const SurfacePoint& place, const SurfacePoint& after) {
+        if (place.is_vertex()) return false;
+        if (place.is_on_edge()) {  // needed unless both neighbours lie on the same edge
+            if (shared_edge(mesh, before, place) == no_index || shared_edge(mesh, place, after) == no_index) return false;
+        } else if (shared_face(mesh, before, after) == no_index) {
             return false;
         }
-        const Vector whole = c.point - a.point, part = b.point - a.point;
+        const Point start = position(mesh, before);
+        const Vector whole = position(mesh, after) - start, part = position(mesh, place) - start;
         const double length = whole.squared_length();
         return length > 0 && CGAL::cross_product(whole, part).squared_length() <= 1e-20 * length * length && part * whole > 0 &&
                part * whole < length;
     };
-    std::vector<SurfacePlace> kept;
+    std::vector<SurfacePoint> kept;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!kept.empty() && kept.back() == places[i]) continue;
         if (!kept.empty() && i + 1 < places.size() && needless(kept.back(), places[i], places[i + 1])) continue;
@@ -366,27 +339,22 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     bool free = false;
     const auto place = [&](Index v) {
         if (v >= cut.old_vertices) {
-            const SurfaceNode& node = cut.nodes[v - cut.old_vertices];
-            if (node.kind != SurfaceNode::Kind::face) return place_of(mesh, node);
+            const SurfacePoint& p = cut.points[v - cut.old_vertices];
             // Snaps an intersection of curves close to the boundary of a face onto it: the face could not be cut again at the
             // original position.
-            return place_of(mesh, surface_node(mesh, node.element, node.barycentric));
+            return stored_point(mesh, p.is_in_face() ? surface_point(mesh, p.element[0], p.weights) : p);
         }
-        SurfacePlace vertex;
-        vertex.element[0] = v;
-        return vertex;
+        return vertex_point(v);
     };
-    const auto joined = [&](const SurfacePlace& a, const SurfacePlace& b) {
-        using Kind = SurfaceNode::Kind;
-        return a.kind == Kind::vertex && b.kind == Kind::vertex &&
-               find_halfedge(mesh, Vertex(a.element[0]), Vertex(b.element[0])).is_valid();
+    const auto joined = [&](const SurfacePoint& a, const SurfacePoint& b) {
+        return a.is_vertex() && b.is_vertex() && find_halfedge(mesh, a.vertex(), b.vertex()).is_valid();
     };
     const auto add = [&](const std::vector<Index>& path) {
-        std::vector<SurfacePlace> places;
+        std::vector<SurfacePoint> places;
         for (const Index v : path) places.push_back(place(v));
         places = without_needless(mesh, std::move(places));
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (places[i].kind != SurfaceNode::Kind::vertex || (i > 0 && !joined(places[i - 1], places[i]))) free = true;
+            if (!places[i].is_vertex() || (i > 0 && !joined(places[i - 1], places[i]))) free = true;
         annotation.curves.push_back(std::move(places));
     };
     if (annotation.type == AnnotationType::point) {

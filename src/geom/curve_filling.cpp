@@ -3,6 +3,8 @@
 #include "face_cutter.h"
 
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
+#include "ostraka/geom/surface_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,11 +46,11 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
     std::vector<Stretch> list;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const std::vector<Index>& faces = curves[c].faces;
-        const std::vector<SurfaceNode>& nodes = curves[c].nodes;
+        const std::vector<SurfacePoint>& points = curves[c].points;
         const std::size_t n = faces.size(), begin = list.size();
         bool runs_on = false, first_runs = false, last_runs = false;
         for (std::size_t i = 0; i < n; ++i) {
-            if (const Index edge = common_edge(mesh, nodes[i], nodes[i + 1]); edge != no_index) {
+            if (const Index edge = shared_edge(mesh, points[i], points[i + 1]); edge != no_index) {
                 for (const unsigned k : {0U, 1U})
                     if (const Halfedge h = mesh.halfedge(Edge(edge), k); !mesh.is_border(h))
                         list.push_back({static_cast<Index>(mesh.face(h)), c, i, 1});
@@ -61,8 +63,7 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
             if (i == 0) first_runs = true;
         }
         // A closed curve that starts in the middle of a stretch.
-        const bool closed = n > 0 && nodes.front().kind == nodes.back().kind && nodes.front().element == nodes.back().element &&
-                            nodes.front().point == nodes.back().point;
+        const bool closed = n > 0 && same_point(mesh, points.front(), points.back());
         if (closed && first_runs && last_runs && list.size() > begin + 1 && list.back().face == list[begin].face) {
             list.back().count += list[begin].count;
             list.erase(list.begin() + static_cast<std::ptrdiff_t>(begin));
@@ -92,28 +93,27 @@ public:
                                  mesh_.next(mesh_.next(mesh_.halfedge(Face(stretch.face)))), mesh_.halfedge(Face(stretch.face))};
         const SurfaceCurve& curve = curves_[stretch.curve];
         const std::size_t n = curve.faces.size();
-        chain_.clear();
-        for (std::size_t i = 0; i <= stretch.count; ++i) {
+        const auto chain = [&](std::size_t i) -> const SurfacePoint& {
             const std::size_t at = stretch.first + i;
-            chain_.push_back(&curve.nodes[at <= n ? at : at - n]);
-        }
-        const double from = around(rim, *chain_.front()), to = around(rim, *chain_.back());
+            return curve.points[at <= n ? at : at - n];
+        };
+        const double from = around(rim, chain(0)), to = around(rim, chain(stretch.count));
         if (from < 0 || to < 0 || from == to) return false;
-        for (std::size_t i = 1; i + 1 < chain_.size(); ++i)
-            if (chain_[i]->kind != SurfaceNode::Kind::face) return false;  // the stretch touches the boundary in between
+        for (std::size_t i = 1; i < stretch.count; ++i)
+            if (!chain(i).is_in_face()) return false;  // the stretch touches the boundary in between
         const Vector normal = area_vector(mesh_, Face(stretch.face));
         const double whole = std::sqrt(normal.squared_length());
         if (!(whole > 0)) return false;
-        if (chain_.size() > 3 && crosses_itself(normal / whole)) return false;
         polygon_.clear();
-        for (const SurfaceNode* node : chain_) polygon_.push_back(node->point);
+        for (std::size_t i = 0; i <= stretch.count; ++i) polygon_.push_back(position(mesh_, chain(i)));
+        if (polygon_.size() > 3 && crosses_itself(polygon_, normal / whole)) return false;
         // Follows the boundary counter-clockwise from the exit to the entry: this closes the polygon to the left of the curve.
         const double turn = from > to ? from - to : from + 3 - to;
         double last = to;
         const auto walk = [&](double next, const Point& place) {
             const auto edge = static_cast<std::size_t>(std::floor(last)) % 3;
             if (mesh_.is_border(mesh_.opposite(rim[edge])))
-                verdict.border += std::sqrt(CGAL::squared_distance(polygon_.back(), place));
+                verdict.border += distance(polygon_.back(), place);
             last = next;
         };
         const int first_corner = static_cast<int>(std::floor(to)) + 1;
@@ -122,7 +122,7 @@ public:
             walk(k, corner);
             polygon_.push_back(corner);
         }
-        walk(to + turn, chain_.front()->point);
+        walk(to + turn, polygon_.front());
         Vector sum(0, 0, 0);
         for (std::size_t i = 1; i + 1 < polygon_.size(); ++i)
             sum += CGAL::cross_product(polygon_[i] - polygon_[0], polygon_[i + 1] - polygon_[0]);
@@ -149,7 +149,7 @@ public:
             SurfaceCurve& piece = pieces.emplace_back();
             for (std::size_t i = 0; i <= stretch.count; ++i) {
                 const std::size_t at = stretch.first + i;
-                piece.nodes.push_back(curve.nodes[at <= n ? at : at - n]);
+                piece.points.push_back(curve.points[at <= n ? at : at - n]);
             }
             piece.faces.assign(stretch.count, face);
         }
@@ -165,25 +165,29 @@ public:
     }
 
 private:
-    /// Position of a node on the boundary of the face: corner number plus fraction along the edge; negative in the interior.
-    double around(const Halfedge (&rim)[3], const SurfaceNode& node) const {
+    /// Where a point lies on the boundary of the face: corner number plus fraction along the edge; negative in the interior.
+    double around(const Halfedge (&rim)[3], const SurfacePoint& p) const {
+        if (p.is_in_face()) return -1;
+        const Edge edge = p.is_on_edge() ? edge_of(mesh_, p) : Mesh::null_edge();
         for (int k = 0; k < 3; ++k) {
-            if (node.kind == SurfaceNode::Kind::vertex && node.element == static_cast<Index>(mesh_.source(rim[k]))) return k;
-            if (node.kind == SurfaceNode::Kind::edge && node.element == static_cast<Index>(mesh_.edge(rim[k])))
-                return k + (mesh_.halfedge(mesh_.edge(rim[k]), 0) == rim[k] ? node.parameter : 1 - node.parameter);
+            if (p.is_vertex() && p.vertex() == mesh_.source(rim[k])) return k;
+            if (p.is_on_edge() && edge == mesh_.edge(rim[k])) {
+                const double fraction = fraction_along(mesh_, edge, p);
+                return k + (mesh_.halfedge(edge, 0) == rim[k] ? fraction : 1 - fraction);
+            }
         }
         return -1;
     }
 
     static bool within(double place, int edge) { return place > edge && place < edge + 1; }
 
-    bool crosses_itself(const Vector& normal) const {
+    static bool crosses_itself(const std::vector<Point>& chain, const Vector& normal) {
         const auto side = [&](const Point& a, const Point& b, const Point& c) {
             return CGAL::cross_product(b - a, c - a) * normal;
         };
-        for (std::size_t i = 0; i + 1 < chain_.size(); ++i)
-            for (std::size_t j = i + 2; j + 1 < chain_.size(); ++j) {
-                const Point &a = chain_[i]->point, &b = chain_[i + 1]->point, &c = chain_[j]->point, &d = chain_[j + 1]->point;
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+            for (std::size_t j = i + 2; j + 1 < chain.size(); ++j) {
+                const Point &a = chain[i], &b = chain[i + 1], &c = chain[j], &d = chain[j + 1];
                 if (side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0) return true;
             }
         return false;
@@ -262,7 +266,6 @@ private:
 
     const Mesh& mesh_;
     const std::vector<SurfaceCurve>& curves_;
-    std::vector<const SurfaceNode*> chain_;
     std::vector<Point> polygon_;
 };
 

@@ -35,8 +35,8 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
             result.face_origin.push_back(f);
         }
     }
-    result.new_nodes = cutter.new_nodes();
-    for (const SurfaceNode& node : result.new_nodes) soup.points.push_back({node.point.x(), node.point.y(), node.point.z()});
+    result.new_points = cutter.new_points();
+    for (const Point& p : cutter.new_positions()) soup.points.push_back({p.x(), p.y(), p.z()});
     result.mesh = build_mesh(soup);
     for (const auto& [edge, list] : cutter.on_edge())
         for (const auto& [parameter, v] : list) result.on_edge[edge].push_back(v);

@@ -287,16 +287,9 @@ private:
             fail(here, "takes a part from a " + to_string(annotation.type) + " that is free", "use the action 'replace'");
         const auto as_curves = [](const Annotation& one) {
             if (is_free(one)) return one.curves;
-            std::vector<std::vector<SurfacePlace>> curves;
-            const auto add = [&](const std::vector<Index>& path) {
-                auto& curve = curves.emplace_back();
-                for (const Index v : path) {
-                    curve.emplace_back();
-                    curve.back().element[0] = v;
-                }
-            };
-            for (const auto& line : one.polylines) add(line);
-            for (const Index v : one.points) add({v});
+            std::vector<std::vector<SurfacePoint>> curves;
+            for (const auto& line : one.polylines) curves.push_back(vertex_curve(line));
+            for (const Index v : one.points) curves.push_back(vertex_curve({v}));
             return curves;
         };
         auto curves = as_curves(annotation);

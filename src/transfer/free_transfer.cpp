@@ -5,7 +5,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 #include "path_tracer.h"
 #include "scores.h"
 
@@ -17,19 +17,19 @@ namespace ostraka {
 namespace {
 
 /// The counts and flags of a projection as a score.
-TransferScore score_of(const Laid& laid) {
+TransferScore score_of(const ProjectedAnnotation& projected) {
     TransferScore score;
-    score.id = laid.annotation.id;
-    score.tag = laid.annotation.tag;
-    score.source_type = score.target_type = laid.annotation.type;
-    score.vertices = laid.places;
-    score.by_ray = laid.by_ray;
-    score.by_closest_point = laid.by_closest_point;
-    score.without_place = laid.without_place;
-    score.detours = laid.detours;
-    score.crossings_resolved = laid.untangled;
-    score.note = laid.note;
-    if (laid.lost) score.outcome = TransferOutcome::lost;
+    score.id = projected.annotation.id;
+    score.tag = projected.annotation.tag;
+    score.source_type = score.target_type = projected.annotation.type;
+    score.vertices = projected.places;
+    score.by_ray = projected.by_ray;
+    score.by_closest_point = projected.by_closest_point;
+    score.without_place = projected.without_place;
+    score.detours = projected.detours;
+    score.crossings_resolved = projected.untangled;
+    score.note = projected.note;
+    if (projected.lost) score.outcome = TransferOutcome::lost;
     return score;
 }
 
@@ -55,7 +55,7 @@ std::optional<OverlapQuestion> measured(const Mesh& source, const Annotation& fr
 }
 
 /// Merges both results in the order of the set.
-void join_in_order(const AnnotationSet& set, const std::vector<bool>& free, std::vector<Annotation> laid,
+void join_in_order(const AnnotationSet& set, const std::vector<bool>& free, std::vector<Annotation> projected,
                    std::vector<TransferScore> scores, TransferResult& result) {
     std::vector<Annotation> plain = std::move(result.annotations.annotations);
     std::vector<TransferScore> plain_scores = std::move(result.scores);
@@ -65,7 +65,7 @@ void join_in_order(const AnnotationSet& set, const std::vector<bool>& free, std:
     for (std::size_t i = 0; i < set.annotations.size(); ++i)
         result.scores.push_back(free[i] ? std::move(scores[next_free++]) : std::move(plain_scores[next_plain++]));
     for (const Annotation& annotation : set.annotations)
-        for (std::vector<Annotation>* list : {&plain, &laid})
+        for (std::vector<Annotation>* list : {&plain, &projected})
             for (Annotation& one : *list)
                 if (one.id == annotation.id) result.annotations.annotations.push_back(std::move(one));
 }
@@ -88,20 +88,20 @@ void transfer_free(const Mesh& source, const AnnotationSet& set, const std::vect
     PathTracer tracer(source, target, options);
     tracer.match(std::move(pins));
     result.times.correspondence += clock.lap();
-    std::vector<Laid> laid = lay_curves(source, given, target, options.correspondence);
+    std::vector<ProjectedAnnotation> projected = project_curves(source, given, target, options.correspondence);
     result.times.paths += clock.lap();
     AttributeCarrier attributes(tracer, false);
     AnnotationSet carried;
     carried.unit = set.unit;
     std::vector<TransferScore> scores;
     for (std::size_t i = 0; i < given.size(); ++i) {
-        scores.push_back(score_of(laid[i]));
-        attributes.carry(*given[i], laid[i].annotation);
+        scores.push_back(score_of(projected[i]));
+        attributes.carry(*given[i], projected[i].annotation);
     }
     std::vector<std::optional<OverlapQuestion>> questions(given.size());
     parallel_for(
         given.size(),
-        [&](std::size_t i) { questions[i] = measured(source, *given[i], mesh, laid[i].annotation, options.overlap, scores[i]); },
+        [&](std::size_t i) { questions[i] = measured(source, *given[i], mesh, projected[i].annotation, options.overlap, scores[i]); },
         1);
     std::vector<OverlapQuestion> asked;
     for (auto& question : questions)
@@ -110,7 +110,7 @@ void transfer_free(const Mesh& source, const AnnotationSet& set, const std::vect
         const SurfaceSearch back(source);
         score_overlaps({source, back}, {mesh, target}, asked, options.correspondence);
     }
-    for (Laid& one : laid)
+    for (ProjectedAnnotation& one : projected)
         if (!one.lost) carried.annotations.push_back(std::move(one.annotation));
     refresh_measures(mesh, carried);
     attributes.keep_old_values(carried);

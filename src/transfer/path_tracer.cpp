@@ -1,5 +1,7 @@
 #include "path_tracer.h"
 
+#include "ostraka/geom/distance.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -202,34 +204,32 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
             continue;
         }
         if (backwards) std::swap(i, j);
-        const SurfaceNode from = surface_node(target_, places[i].place.face, places[i].place.barycentric);
-        const SurfaceNode to = surface_node(target_, places[j].place.face, places[j].place.barycentric);
+        const SurfacePoint from = surface_point(target_, places[i].place.face, places[i].place.barycentric);
+        const SurfacePoint to = surface_point(target_, places[j].place.face, places[j].place.barycentric);
         const Vector up = search_.normal(places[i].place.face) + search_.normal(places[j].place.face);
-        const double straight = std::sqrt(CGAL::squared_distance(from.point, to.point));
+        const double straight = distance(position(target_, from), position(target_, to));
         std::optional<SurfaceCurve> curve =
             trace_line(target_, from, to, up, 2 * straight + 1e-9 * longest_edge(places[i].place.face));
         if (!curve) {
             // The straight trace fails (at a fold, for example): edges are used instead, from face to corner, corner to corner,
             // corner to face.
             curve.emplace();
-            curve->nodes.push_back(from);
-            const auto to_node = [&](const SurfaceNode& node, Index face) {
-                if (curve->nodes.back().kind == node.kind && curve->nodes.back().element == node.element &&
-                    curve->nodes.back().point == node.point)
-                    return;
-                curve->nodes.push_back(node);
+            curve->points.push_back(from);
+            const auto lead_to = [&](const SurfacePoint& p, Index face) {
+                if (same_point(target_, curve->points.back(), p)) return;
+                curve->points.push_back(p);
                 curve->faces.push_back(face);
             };
             std::vector<Index> corner_path =
                 connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], straight), score, nullptr);
             if (corner_path.empty()) continue;
-            to_node(surface_node(target_, Vertex(corner_path.front())), places[i].place.face);
+            lead_to(vertex_point(corner_path.front()), places[i].place.face);
             for (std::size_t m = 1; m < corner_path.size(); ++m) {
                 const Halfedge h = find_halfedge(target_, Vertex(corner_path[m - 1]), Vertex(corner_path[m]));
-                to_node(surface_node(target_, Vertex(corner_path[m])),
+                lead_to(vertex_point(corner_path[m]),
                         target_.face(target_.is_border(h) ? target_.opposite(h) : h));
             }
-            to_node(to, places[j].place.face);
+            lead_to(to, places[j].place.face);
         }
         if (!places[i].relocated && !places[j].relocated) curve_cache_[key] = curves_.size();
         steps.push_back({curves_.size(), backwards});

@@ -232,9 +232,9 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
     std::vector<bool> crossed(mesh.number_of_faces(), false), wall(mesh.number_of_edges(), false);
     for (const SurfaceCurve& curve : tracer.curves())
         for (std::size_t i = 0; i < curve.faces.size(); ++i) {
-            const SurfaceNode &a = curve.nodes[i], &b = curve.nodes[i + 1];
-            if (a.kind == SurfaceNode::Kind::vertex && b.kind == SurfaceNode::Kind::vertex) {
-                const Halfedge h = find_halfedge(mesh, Vertex(a.element), Vertex(b.element));
+            const SurfacePoint &a = curve.points[i], &b = curve.points[i + 1];
+            if (a.is_vertex() && b.is_vertex()) {
+                const Halfedge h = find_halfedge(mesh, a.vertex(), b.vertex());
                 if (h != Mesh::null_halfedge()) wall[mesh.edge(h)] = true;
             } else {
                 crossed[curve.faces[i]] = true;

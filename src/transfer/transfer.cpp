@@ -173,7 +173,7 @@ private:
                 if (place.vertex == no_index || point_curve.count(v) > 0) continue;
                 point_curve[v] = curves.size();
                 SurfaceCurve curve;
-                curve.nodes.push_back(surface_node(target_, place.place.face, place.place.barycentric));
+                curve.points.push_back(surface_point(target_, place.place.face, place.place.barycentric));
                 curves.push_back(std::move(curve));
             }
         result_.refined = insert_curves(target_, curves);

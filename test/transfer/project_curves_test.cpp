@@ -1,5 +1,5 @@
 // Free annotations on other meshes.
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
@@ -198,7 +198,7 @@ TEST(LayCurves, SameToTheBitForAnyNumberOfThreads) {
     const AnnotationSet set = slabs(coarse, Vector(0, 0.6, 0.8), 3);
     const SurfaceSearch search(fine);
     const int before = threads();
-    std::vector<std::vector<std::vector<SurfacePlace>>> curves;
+    std::vector<std::vector<std::vector<SurfacePoint>>> curves;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
         const TransferResult there = transfer(coarse, set, search);
@@ -237,15 +237,15 @@ Annotation disc_on(const Mesh& mesh, double x, double y, double radius) {
     const auto node = [&](int k) {
         const double angle = 2 * CGAL_PI * k / 60;
         const SurfaceHit hit = search.closest(Point(x + radius * std::cos(angle), y + radius * std::sin(angle), 0));
-        return surface_node(mesh, hit.face, hit.barycentric);
+        return surface_point(mesh, hit.face, hit.barycentric);
     };
     Annotation disc;
     disc.tag = "disc";
-    auto& places = disc.curves.emplace_back(1, place_of(mesh, node(0)));
+    auto& places = disc.curves.emplace_back(1, stored_point(mesh, node(0)));
     for (int k = 0; k < 60; ++k) {
         const auto line = trace_line(mesh, node(k), node((k + 1) % 60), Vector(0, 0, 1), 10);
         if (line)
-            for (std::size_t i = 1; i < line->nodes.size(); ++i) places.push_back(place_of(mesh, line->nodes[i]));
+            for (std::size_t i = 1; i < line->points.size(); ++i) places.push_back(stored_point(mesh, line->points[i]));
     }
     settle_elements(mesh, disc);
     return disc;
