@@ -1,4 +1,5 @@
 #include "ostraka/shape_classes/member_fit.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
@@ -222,7 +223,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
     for (const Edge edge : mesh.edges()) {
         if (mesh.is_border(edge)) continue;
         const double weight = (rest[mesh.vertex(edge, 0)] - rest[mesh.vertex(edge, 1)]).norm();
-        const double turn = std::remainder(angle_at(mesh, edge, now) - angle_at(mesh, edge, rest), 2 * std::acos(-1.0));
+        const double turn = std::remainder(angle_at(mesh, edge, now) - angle_at(mesh, edge, rest), 2 * pi);
         length += weight;
         turned += weight * turn * turn;
     }
