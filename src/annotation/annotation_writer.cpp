@@ -103,8 +103,7 @@ JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAl
         add_member(object, "curves",
                    json_list(annotation.curves, allocator,
                              [&](const std::vector<SurfacePoint>& curve) {
-                                 return json_list(curve, allocator,
-                                                  [&](const SurfacePoint& p) { return json_of(p, allocator); });
+                                 return json_list(curve, allocator, [&](const SurfacePoint& p) { return json_of(p, allocator); });
                              }),
                    allocator);
     if (annotation.type == AnnotationType::region) {

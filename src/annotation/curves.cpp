@@ -1,7 +1,5 @@
 #include "ostraka/annotation/curves.h"
 
-#include "annotation_places.h"
-
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
@@ -60,10 +58,11 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation, const st
 
 bool any_free(const AnnotationSet& set) { return std::any_of(set.annotations.begin(), set.annotations.end(), is_free); }
 
-std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path) {
+std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path, bool closed) {
     std::vector<SurfacePoint> curve;
-    curve.reserve(path.size());
+    curve.reserve(path.size() + 1);
     for (const Index v : path) curve.push_back(vertex_point(v));
+    if (closed) curve.push_back(vertex_point(path.front()));
     return curve;
 }
 
@@ -313,27 +312,6 @@ std::vector<SurfacePoint> without_needless(const Mesh& mesh, std::vector<Surface
 
 }  // namespace
 
-std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<std::vector<Index>> paths;
-    for (const Outline& outline : extract_outlines(mesh, faces)) {
-        const std::size_t n = outline.size();
-        std::vector<bool> border(n);
-        for (std::size_t i = 0; i < n; ++i)
-            border[i] = mesh.is_border(mesh.opposite(find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
-        if (std::none_of(border.begin(), border.end(), [](bool b) { return b; })) {
-            paths.push_back(outline);
-            paths.back().push_back(outline.front());
-            continue;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            if (border[i] || !border[(i + n - 1) % n]) continue;
-            std::vector<Index>& run = paths.emplace_back(1, outline[i]);
-            for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
-        }
-    }
-    return paths;
-}
-
 void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     annotation.curves.clear();
     bool free = false;
@@ -362,7 +340,10 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     } else if (annotation.type == AnnotationType::line) {
         for (const auto& line : annotation.polylines) add(line);
     } else {
-        for (const auto& path : outline_paths(cut.mesh, annotation.faces)) add(path);
+        for (OutlinePath& path : outline_paths(cut.mesh, annotation.faces)) {
+            if (path.closed) path.vertices.push_back(path.vertices.front());
+            add(path.vertices);
+        }
         std::vector<Index> old;
         for (const Index f : annotation.faces) old.push_back(cut.face_origin[f]);
         old.erase(std::unique(old.begin(), old.end()), old.end());

@@ -1,15 +1,13 @@
 #include "ostraka/annotation/fair_outlines.h"
 
-#include "annotation_places.h"
-
 #include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
-#include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/polyline_distance.h"
+#include "ostraka/geom/surface_search.h"
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -121,18 +119,16 @@ private:
     std::vector<Places> curves_of(const Annotation& annotation) const {
         if (is_free(annotation)) return annotation.curves;
         std::vector<Places> curves;
-        const auto add = [&](const std::vector<Index>& path) { curves.push_back(vertex_curve(path)); };
-        for (const auto& line : annotation.polylines) add(line);
+        for (const auto& line : annotation.polylines) curves.push_back(vertex_curve(line));
         if (annotation.type == AnnotationType::region)
-            for (const auto& path : outline_paths(mesh_, annotation.faces)) add(path);
+            for (const OutlinePath& path : outline_paths(mesh_, annotation.faces))
+                curves.push_back(vertex_curve(path.vertices, path.closed));
         return curves;
     }
 
     static bool is_region(const Annotation& annotation) { return annotation.type == AnnotationType::region; }
 
-    std::vector<Point> drawn(const Strand& strand) const {
-        return positions(mesh_, strand.after);
-    }
+    std::vector<Point> drawn(const Strand& strand) const { return positions(mesh_, strand.after); }
 
     /// Junctions are found separately for outlines and for lines: a line that crosses an outline does not fix it there.
     void find_strands(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves) {
@@ -253,8 +249,7 @@ private:
                 break;
             }
             const SurfaceHit hit = search_.closest(strand.fair[i]);
-            if (!strand.closed && (i == 0 || i + 1 == n))
-                drawn.push_back(i == 0 ? strand.before.front() : strand.before.back());
+            if (!strand.closed && (i == 0 || i + 1 == n)) drawn.push_back(i == 0 ? strand.before.front() : strand.before.back());
             else drawn.push_back(surface_point(mesh_, hit.face, hit.barycentric));
             const Vector along = strand.fair[(i + 1) % n] - strand.fair[i == 0 ? (strand.closed ? n - 2 : 0) : i - 1];
             const Vector left = CGAL::cross_product(normal_at(drawn.back()), along);

@@ -112,8 +112,7 @@ public:
         double last = to;
         const auto walk = [&](double next, const Point& place) {
             const auto edge = static_cast<std::size_t>(std::floor(last)) % 3;
-            if (mesh_.is_border(mesh_.opposite(rim[edge])))
-                verdict.border += distance(polygon_.back(), place);
+            if (mesh_.is_border(mesh_.opposite(rim[edge]))) verdict.border += distance(polygon_.back(), place);
             last = next;
         };
         const int first_corner = static_cast<int>(std::floor(to)) + 1;

@@ -60,8 +60,7 @@ std::vector<Index> FaceCutter::path(std::size_t curve) const {
             forward = from < to;
             if (const auto found = on_edge_.find(edge); found != on_edge_.end())
                 for (const auto& [fraction, v] : found->second)
-                    if (fraction > std::min(from, to) && fraction < std::max(from, to) && v != a && v != b)
-                        between.push_back(v);
+                    if (fraction > std::min(from, to) && fraction < std::max(from, to) && v != a && v != b) between.push_back(v);
         } else if (const auto found = crossed_.find(std::minmax(a, b)); found != crossed_.end()) {
             between = found->second;
         }
@@ -216,8 +215,7 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         std::sort(fresh.begin(), fresh.end(), [](auto v, auto w) { return v->point() < w->point(); });
         for (const auto v : fresh) {
             const Point place = origin + scale * (v->point().x() * x + v->point().y() * y);
-            v->info() =
-                add_point(face_point(face, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place)));
+            v->info() = add_point(face_point(face, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place)));
             handle[v->info()] = v;
         }
     }

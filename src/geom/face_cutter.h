@@ -51,7 +51,8 @@ private:
     std::vector<SurfacePoint> points_;
     std::vector<Point> positions_;
     std::vector<std::vector<Index>> node_vertex_;
-    std::map<Index, std::vector<std::pair<double, Index>>> on_edge_;  ///< vertices on an edge, by fraction along its first halfedge
+    std::map<Index, std::vector<std::pair<double, Index>>>
+        on_edge_;  ///< vertices on an edge, by fraction along its first halfedge
     std::map<std::pair<Index, double>, Index> edge_vertex_;
     std::map<std::tuple<Index, double, double>, Index> face_vertex_;
     std::map<Index, Cut> cuts_;

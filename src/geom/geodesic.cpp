@@ -41,8 +41,8 @@ std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfacePoin
 }
 
 /// The face of the patch and the point's weights in it, in CGAL's order, which begins with the last corner.
-std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch,
-                                                              const SurfacePoint& p, Face face) {
+std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfacePoint& p,
+                                                              Face face) {
     const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
     const std::array<double, 3> weights = in_face(mesh, p, face);
     return {Face(static_cast<Index>(place)), PathTraits::Barycentric_coordinates{{weights[2], weights[0], weights[1]}}};
@@ -148,7 +148,7 @@ namespace {
 struct Route {
     const Mesh& mesh;
     const SurfacePoint &from, &to;
-    std::vector<Face> start, end;  ///< the faces that contain the places
+    std::vector<Face> start, end;   ///< the faces that contain the places
     double along_edges = infinite;  ///< length of the shortest path along edges
 
     /// The faces that a curve of that length can meet: it lies in the ellipsoid with both places as foci.

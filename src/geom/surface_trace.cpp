@@ -56,7 +56,8 @@ std::optional<Exit> farthest_exit(const TracePlane& plane, const SurfaceCurve& c
     const SurfacePoint& from = curve.points.back();
     const Point start = position(mesh, from);
     const auto leads_back = [&](const SurfacePoint& p) {
-        return same_point(mesh, p, from) || (curve.points.size() > 1 && same_point(mesh, p, curve.points[curve.points.size() - 2]));
+        return same_point(mesh, p, from) ||
+               (curve.points.size() > 1 && same_point(mesh, p, curve.points[curve.points.size() - 2]));
     };
     const auto holds_start = [&](Halfedge h) {
         const Index source = mesh.source(h), target = mesh.target(h);

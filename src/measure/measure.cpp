@@ -5,9 +5,9 @@
 #include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
-#include "ostraka/geom/distance.h"
 #include "ostraka/measure/descriptors.h"
 
 #include <algorithm>

@@ -121,8 +121,7 @@ private:
                 const double a = at(v), b = at(w);
                 if ((a > 0) == (b > 0)) continue;
                 const double t = a / (a - b);
-                const SurfacePoint end =
-                    t < at_vertex || t > 1 - at_vertex ? vertex_point(t < 0.5 ? v : w) : edge_point(v, w, t);
+                const SurfacePoint end = t < at_vertex || t > 1 - at_vertex ? vertex_point(t < 0.5 ? v : w) : edge_point(v, w, t);
                 const auto pixel = camera_.project(position(mesh_, end));
                 if (!pixel) return;
                 const double x = q[0] - p[0], y = q[1] - p[1];

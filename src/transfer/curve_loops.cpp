@@ -69,7 +69,8 @@ private:
                     const Point met_at = position(mesh_, met);
                     if (!is_small(i, met_at, length)) return false;
                     cut_back(i);
-                    if (const SurfacePoint stored = stored_point(mesh_, met); stored != places_.back()) push(stored, met_at, face);
+                    if (const SurfacePoint stored = stored_point(mesh_, met); stored != places_.back())
+                        push(stored, met_at, face);
                     return true;
                 }
             length += distance(points_[i], points_[i + 1]);
@@ -96,7 +97,7 @@ private:
     const Mesh& mesh_;
     double edge_;
     std::vector<Point> points_;  ///< coordinates of the places
-    std::vector<Index> faces_;  ///< face of the segment that leads to each place
+    std::vector<Index> faces_;   ///< face of the segment that leads to each place
 };
 
 Places unlooped(const Mesh& mesh, const Places& places, double edge) {

@@ -53,9 +53,7 @@ void thin_out(const Mesh& mesh, double tolerance, std::vector<ProjectedAnnotatio
                 if (curve[i - 1].is_in_face()) neighbours[curve[i - 1]].insert(curve[i]);
             }
         }
-    const auto may_go = [&](const SurfacePoint& place) {
-        return place.is_in_face() && neighbours.at(place).size() == 2;
-    };
+    const auto may_go = [&](const SurfacePoint& place) { return place.is_in_face() && neighbours.at(place).size() == 2; };
     for (ProjectedAnnotation& one : projected)
         for (Places& curve : one.annotation.curves) {
             Places kept;

@@ -226,8 +226,7 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
             lead_to(vertex_point(corner_path.front()), places[i].place.face);
             for (std::size_t m = 1; m < corner_path.size(); ++m) {
                 const Halfedge h = find_halfedge(target_, Vertex(corner_path[m - 1]), Vertex(corner_path[m]));
-                lead_to(vertex_point(corner_path[m]),
-                        target_.face(target_.is_border(h) ? target_.opposite(h) : h));
+                lead_to(vertex_point(corner_path[m]), target_.face(target_.is_border(h) ? target_.opposite(h) : h));
             }
             lead_to(to, places[j].place.face);
         }

@@ -53,7 +53,7 @@ PlaceMapping::PlaceMapping(const Mesh& source, const SurfaceSearch& target, cons
       target_(target.mesh()),
       edge_(target.typical_edge()),
       far_(options.max_distance * target.diagonal()),
-      min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)) {
+      min_cosine_(options.min_cosine()) {
     if (edge_ > (1 + 1e-9) * typical_edge(surface_area(source), source.number_of_faces())) on_source_.emplace(source_);
 }
 

@@ -15,7 +15,6 @@
 #include "ostraka/geom/shortest_path.h"
 #include "place_mapping.h"
 #include "region_settling.h"
-#include "region_transfer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +60,8 @@ public:
         for (std::size_t i = 0; i < annotations.size(); ++i) {
             begin(*annotations[i], projected[i]);
             for (std::size_t c = 0; c < drawn[i].size(); ++c) {
-                Places on_target =
-                    drawn[i][c].size() == 1 ? project_point(drawn[i][c].front(), projected[i]) : put_together(uses[i][c], projected[i]);
+                Places on_target = drawn[i][c].size() == 1 ? project_point(drawn[i][c].front(), projected[i])
+                                                           : put_together(uses[i][c], projected[i]);
                 const bool region = annotations[i]->type == AnnotationType::region;
                 const bool closes = drawn[i][c].front() == drawn[i][c].back();
                 if (region && closes && (on_target.size() < 4 || on_target.front() != on_target.back())) continue;
@@ -87,14 +86,11 @@ private:
             return annotation.curves;
         }
         std::vector<Places> curves;
-        const auto add = [&](const std::vector<Index>& path, bool closed) {
-            Places& places = curves.emplace_back(vertex_curve(path));
-            if (closed) places.push_back(places.front());
-        };
-        for (const Index v : annotation.points) add({v}, false);
-        for (const auto& line : annotation.polylines) add(line, false);
+        for (const Index v : annotation.points) curves.push_back(vertex_curve({v}));
+        for (const auto& line : annotation.polylines) curves.push_back(vertex_curve(line));
         if (annotation.type == AnnotationType::region)
-            for (const SourcePath& path : region_paths(source_, annotation.faces)) add(path.vertices, path.closed);
+            for (const OutlinePath& path : outline_paths(source_, annotation.faces))
+                curves.push_back(vertex_curve(path.vertices, path.closed));
         return curves;
     }
 
@@ -289,8 +285,7 @@ private:
         for (std::size_t k = 1; k <= steps; ++k) {
             if (!places[at_step(k)]->mutual) {
                 const std::size_t m = next_mutual[k];
-                if (m <= steps && follows(m, last) &&
-                    distance(places[at_step(m)]->end, places[at_step(last)]->end) <= 2 * edge_)
+                if (m <= steps && follows(m, last) && distance(places[at_step(m)]->end, places[at_step(last)]->end) <= 2 * edge_)
                     k = m;
             }
             if (!follows(k, last)) continue;
@@ -411,9 +406,9 @@ private:
         const std::size_t after = projected.annotation.curves.size();
         if (from.all || projected.lost || after == before || after == 0 || !projected.note.empty()) return;
         projected.note = counted(before, from.type == AnnotationType::line    ? "line"
-                                    : from.type == AnnotationType::point ? "point"
-                                                                         : "outline") +
-                    " became " + std::to_string(after);
+                                         : from.type == AnnotationType::point ? "point"
+                                                                              : "outline") +
+                         " became " + std::to_string(after);
     }
 
     const Mesh& source_;
@@ -431,14 +426,14 @@ private:
 
 }  // namespace
 
-std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations, const SurfaceSearch& target,
-                             const CorrespondenceOptions& options) {
+std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
+                                                const SurfaceSearch& target, const CorrespondenceOptions& options) {
     check_options(options, "correspondence");
     return CurveProjector(source, target, options).run(annotations);
 }
 
 std::vector<std::string> project_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
-                                              AnnotationSet& to, const CorrespondenceOptions& options) {
+                                                  AnnotationSet& to, const CorrespondenceOptions& options) {
     std::vector<std::string> notes;
     std::vector<const Annotation*> free;
     for (const Annotation& annotation : from.annotations)

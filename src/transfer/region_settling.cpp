@@ -20,7 +20,7 @@ RegionSettling::RegionSettling(const Mesh& source, const SurfaceSearch& target, 
       options_(options),
       edge_(target.typical_edge()),
       far_(options.max_distance * target.diagonal()),
-      min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)) {}
+      min_cosine_(options.min_cosine()) {}
 
 bool RegionSettling::is_plausible(double area, double expected) const {
     return std::abs(area - expected) <= 0.5 * expected + 0.1 * edge_ * edge_;
@@ -79,7 +79,8 @@ std::vector<Index> RegionSettling::whole_components(const Annotation& from) cons
 }
 
 /// For intersecting outlines: computes the region by winding numbers on the target cut along them, and extracts a new outline.
-void RegionSettling::untangle(const Annotation& from, double expected, std::size_t outlines, ProjectedAnnotation& projected) const {
+void RegionSettling::untangle(const Annotation& from, double expected, std::size_t outlines,
+                              ProjectedAnnotation& projected) const {
     Annotation& to = projected.annotation;
     projected.untangled = true;
     const std::vector<Index> components = to.faces;

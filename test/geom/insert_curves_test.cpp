@@ -1,5 +1,5 @@
-#include "ostraka/geom/distance.h"
 #include "ostraka/geom/insert_curves.h"
+#include "ostraka/geom/distance.h"
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
@@ -13,7 +13,6 @@ using namespace ostraka;
 using namespace ostraka::test;
 
 namespace {
-
 
 Mesh flat_patch(Index n) {
     TriangleSoup soup = patch(n, n);
@@ -53,7 +52,9 @@ TEST(InsertCurves, CurvesBecomeEdgesAndTheSurfaceStays) {
         for (std::size_t c = 0; c < curves.size(); ++c) {
             ASSERT_EQ(inserted.node_vertex[c].size(), curves[c].points.size());
             for (std::size_t i = 0; i < curves[c].points.size(); ++i)
-                EXPECT_NEAR(distance(inserted.mesh.point(Vertex(inserted.node_vertex[c][i])), position(mesh, curves[c].points[i])), 0, 1e-6);
+                EXPECT_NEAR(
+                    distance(inserted.mesh.point(Vertex(inserted.node_vertex[c][i])), position(mesh, curves[c].points[i])), 0,
+                    1e-6);
         }
         // A single curve has nothing to cross: each piece is an edge.
         const InsertedCurves alone = insert_curves(mesh, {curves.front()});

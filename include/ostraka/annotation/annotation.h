@@ -14,8 +14,8 @@ namespace ostraka {
 
 /// A measure and the pins (picked vertices) that define it (Appendix B.1).
 struct Measure {
-    std::string tool;                 ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;  ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
+    std::string tool;                     ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;            ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
     std::vector<SurfacePoint> locations;  ///< empty, or the exact place of the pin for each of `points`, in a face
     std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
     std::optional<double> value;                     ///< in `unit`; the mean over the repeated pickings

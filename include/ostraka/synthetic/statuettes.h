@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ostraka/core/options.h"
+#include "ostraka/geom/surface_point.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/synthetic/synthetic_object.h"
 
