@@ -17,17 +17,6 @@ namespace {
 
 bool is_closed(const std::vector<SurfacePoint>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
 
-/// The walk without repeats and without back-tracking "a, b, a".
-std::vector<Index> without_spikes(const std::vector<Index>& walk) {
-    std::vector<Index> path;
-    for (const Index v : walk) {
-        if (!path.empty() && path.back() == v) continue;
-        if (path.size() > 1 && path[path.size() - 2] == v) path.pop_back();
-        else path.push_back(v);
-    }
-    return path;
-}
-
 /// One face of each component that the region lists and no curve traverses.
 std::vector<Index> seeds_of(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves,
                             const CurveFilling& filling) {
@@ -110,7 +99,7 @@ void settle_elements(const Mesh& mesh, Annotation& annotation) {
         std::vector<Index> walk;
         for (const SurfacePoint& place : places) walk.push_back(nearest_vertex(mesh, place));
         if (annotation.type == AnnotationType::point) annotation.points.push_back(walk.front());
-        else if (walk = without_spikes(walk); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
+        else if (walk = prune_spikes(walk, false); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
     }
 }
 

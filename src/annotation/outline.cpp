@@ -97,6 +97,25 @@ std::vector<OutlinePath> outline_paths(const Mesh& mesh, const std::vector<Index
     return paths;
 }
 
+std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed) {
+    std::vector<Index> path;
+    for (const Index v : walk) {
+        if (!path.empty() && path.back() == v) continue;
+        if (path.size() >= 2 && path[path.size() - 2] == v) path.pop_back();
+        else path.push_back(v);
+    }
+    if (!closed) return path;
+    std::size_t first = 0, last = path.size();
+    for (;;) {
+        if (last - first < 3) return {};
+        if (path[first] == path[last - 1]) --last;
+        else if (path[first] == path[last - 2]) last -= 1;
+        else if (path[first + 1] == path[last - 1]) ++first;
+        else break;
+    }
+    return {path.begin() + static_cast<std::ptrdiff_t>(first), path.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
 namespace {
 /// Net number of traversals of each edge in the direction of its first halfedge. (An Edge made from a halfedge remembers that
 /// halfedge, so the first one must be requested by number.)

@@ -1,6 +1,6 @@
 #include "ostraka/geom/curve_filling.h"
 
-#include "face_cutter.h"
+#include "face_verdict.h"
 
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/distance.h"
@@ -72,16 +72,6 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
     std::stable_sort(list.begin(), list.end(), [](const Stretch& a, const Stretch& b) { return a.face < b.face; });
     return list;
 }
-
-/// Classifies a face traversed by curves: its fraction inside and, for each of its edges (from corner k to k + 1) that no curve
-/// crosses, the side on which the adjacent face lies.
-struct FaceVerdict {
-    double share = 0;
-    std::array<int, 3> beyond{-1, -1, -1};  ///< 1 inside, 0 outside, -1 unknown
-    double border = 0;
-    std::size_t conflicts = 0;
-    bool known = true;
-};
 
 class Filler {
 public:
@@ -160,7 +150,7 @@ public:
             for (std::size_t i = 0; i + 1 < path.size(); ++i)
                 if (path[i] != path[i + 1]) net[std::minmax(path[i], path[i + 1])] += path[i] < path[i + 1] ? 1 : -1;
         }
-        return judge(face, cutter, triangles, net, parts);
+        return judge_face(mesh_, face, cutter, triangles, net, parts);
     }
 
 private:
@@ -192,83 +182,82 @@ private:
         return false;
     }
 
-    FaceVerdict judge(Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
-                      const std::map<std::pair<Index, Index>, int>& net,
-                      std::vector<std::pair<std::array<Point, 3>, bool>>* parts) const {
-        FaceVerdict verdict;
-        enum { unknown, left, right };
-        std::vector<int> side(triangles.size(), unknown);
-        std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k) owner[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
-        const auto weight = [&](Index a, Index b) {
-            const auto found = net.find(std::minmax(a, b));
-            return found == net.end() ? 0 : a < b ? found->second : -found->second;
-        };
-        std::vector<std::size_t> stack;
-        const auto claim = [&](std::size_t t, int as) {
-            if (side[t] == unknown) {
-                side[t] = as;
-                stack.push_back(t);
-            } else if (side[t] != as) {
-                ++verdict.conflicts;
-            }
-        };
-        for (const auto& [edge, t] : owner)
-            if (const int w = weight(edge.first, edge.second); w != 0) claim(t, w > 0 ? left : right);
-        verdict.known = !stack.empty();
-        while (!stack.empty()) {
-            const std::size_t t = stack.back();
-            stack.pop_back();
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-                if (const auto other = owner.find({b, a}); other != owner.end() && weight(a, b) == 0)
-                    claim(other->second, side[t]);
-            }
-        }
-        if (!verdict.known) return verdict;
-        double sum = 0, inside = 0;
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const Point &a = cutter.point(triangles[t][0]), &b = cutter.point(triangles[t][1]),
-                        &c = cutter.point(triangles[t][2]);
-            const double area = std::sqrt(CGAL::cross_product(b - a, c - a).squared_length());
-            sum += area;
-            if (side[t] == left) inside += area;
-            if (parts != nullptr) parts->emplace_back(std::array<Point, 3>{a, b, c}, side[t] == left);
-        }
-        verdict.share = sum > 0 ? inside / sum : side.front() == left ? 1 : 0;
-        const auto old_corners = corners(mesh_, Face(face));
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vertex a = old_corners[k], b = old_corners[(k + 1) % 3];
-            const Halfedge h = find_halfedge(mesh_, a, b);
-            if (mesh_.is_border(mesh_.opposite(h))) {
-                // The part of the edge that borders on triangles inside.
-                const Edge e = mesh_.edge(h);
-                std::vector<Index> rim{a};
-                if (const auto on = cutter.on_edge().find(e); on != cutter.on_edge().end()) {
-                    for (const auto& [parameter, v] : on->second) rim.push_back(v);
-                    if (mesh_.halfedge(e, 0) != h) std::reverse(rim.begin() + 1, rim.end());
-                }
-                rim.push_back(b);
-                for (std::size_t i = 0; i + 1 < rim.size(); ++i)
-                    if (const auto found = owner.find({rim[i], rim[i + 1]}); found != owner.end() && side[found->second] == left)
-                        verdict.border += std::sqrt(CGAL::squared_distance(cutter.point(rim[i]), cutter.point(rim[i + 1])));
-                continue;
-            }
-            const auto found = owner.find({a, b});
-            if (found == owner.end()) continue;
-            const bool turned = weight(a, b) != 0;  // a curve follows the edge: the adjacent face lies on the other side
-            verdict.beyond[k] = (side[found->second] == left) != turned ? 1 : 0;
-        }
-        return verdict;
-    }
-
     const Mesh& mesh_;
     const std::vector<SurfaceCurve>& curves_;
     std::vector<Point> polygon_;
 };
 
 }  // namespace
+
+FaceVerdict judge_face(const Mesh& mesh, Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
+                       const std::map<std::pair<Index, Index>, int>& net,
+                       std::vector<std::pair<std::array<Point, 3>, bool>>* parts) {
+    FaceVerdict verdict;
+    enum { unknown, left, right };
+    std::vector<int> side(triangles.size(), unknown);
+    std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) owner[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
+    const auto weight = [&](Index a, Index b) {
+        const auto found = net.find(std::minmax(a, b));
+        return found == net.end() ? 0 : a < b ? found->second : -found->second;
+    };
+    std::vector<std::size_t> stack;
+    const auto claim = [&](std::size_t t, int as) {
+        if (side[t] == unknown) {
+            side[t] = as;
+            stack.push_back(t);
+        } else if (side[t] != as) {
+            ++verdict.conflicts;
+        }
+    };
+    for (const auto& [edge, t] : owner)
+        if (const int w = weight(edge.first, edge.second); w != 0) claim(t, w > 0 ? left : right);
+    verdict.known = !stack.empty();
+    while (!stack.empty()) {
+        const std::size_t t = stack.back();
+        stack.pop_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+            if (const auto other = owner.find({b, a}); other != owner.end() && weight(a, b) == 0) claim(other->second, side[t]);
+        }
+    }
+    if (!verdict.known) return verdict;
+    double sum = 0, inside = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const Point &a = cutter.point(triangles[t][0]), &b = cutter.point(triangles[t][1]), &c = cutter.point(triangles[t][2]);
+        const double area = std::sqrt(CGAL::cross_product(b - a, c - a).squared_length());
+        sum += area;
+        if (side[t] == left) inside += area;
+        if (parts != nullptr) parts->emplace_back(std::array<Point, 3>{a, b, c}, side[t] == left);
+    }
+    verdict.area = sum / 2;
+    verdict.share = sum > 0 ? inside / sum : side.front() == left ? 1 : 0;
+    const auto old_corners = corners(mesh, Face(face));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex a = old_corners[k], b = old_corners[(k + 1) % 3];
+        const Halfedge h = find_halfedge(mesh, a, b);
+        if (mesh.is_border(mesh.opposite(h))) {
+            // The part of the edge that borders on triangles inside.
+            const Edge e = mesh.edge(h);
+            std::vector<Index> rim{a};
+            if (const auto on = cutter.on_edge().find(e); on != cutter.on_edge().end()) {
+                for (const auto& [parameter, v] : on->second) rim.push_back(v);
+                if (mesh.halfedge(e, 0) != h) std::reverse(rim.begin() + 1, rim.end());
+            }
+            rim.push_back(b);
+            for (std::size_t i = 0; i + 1 < rim.size(); ++i)
+                if (const auto found = owner.find({rim[i], rim[i + 1]}); found != owner.end() && side[found->second] == left)
+                    verdict.border += std::sqrt(CGAL::squared_distance(cutter.point(rim[i]), cutter.point(rim[i + 1])));
+            continue;
+        }
+        const auto found = owner.find({a, b});
+        if (found == owner.end()) continue;
+        const bool turned = weight(a, b) != 0;  // a curve follows the edge: the adjacent face lies on the other side
+        verdict.beyond[k] = (side[found->second] == left) != turned ? 1 : 0;
+    }
+    return verdict;
+}
 
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds) {
     check_cancelled();

@@ -1,6 +1,7 @@
 #include "seam.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/submesh.h"

@@ -237,23 +237,4 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
     return steps;
 }
 
-std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed) {
-    std::vector<Index> path;
-    for (const Index v : walk) {
-        if (!path.empty() && path.back() == v) continue;
-        if (path.size() >= 2 && path[path.size() - 2] == v) path.pop_back();
-        else path.push_back(v);
-    }
-    if (!closed) return path;
-    std::size_t first = 0, last = path.size();
-    for (;;) {
-        if (last - first < 3) return {};
-        if (path[first] == path[last - 1]) --last;
-        else if (path[first] == path[last - 2]) last -= 1;
-        else if (path[first + 1] == path[last - 1]) ++first;
-        else break;
-    }
-    return {path.begin() + static_cast<std::ptrdiff_t>(first), path.begin() + static_cast<std::ptrdiff_t>(last)};
-}
-
 }  // namespace ostraka
