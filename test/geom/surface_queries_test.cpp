@@ -210,7 +210,7 @@ TEST(TraceLine, IsStraightOnAPlaneAndStaysInTheNamedFaces) {
         const double straight = distance(position(mesh, from), position(mesh, to));
         const auto curve = trace_line(mesh, from, to, Vector(0, 0, 1), 2 * straight + 1);
         ASSERT_TRUE(curve) << i;
-        EXPECT_NEAR(curve->length(), straight, 1e-4) << i;
+        EXPECT_NEAR(curve->length(mesh), straight, 1e-4) << i;
         ASSERT_EQ(curve->faces.size() + 1, curve->points.size());
         for (std::size_t k = 0; k < curve->faces.size(); ++k)
             for (const std::size_t end : {k, k + 1}) {

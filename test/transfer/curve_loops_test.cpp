@@ -3,6 +3,8 @@
 
 #include "meshes.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/surface_trace.h"
 
 #include <gtest/gtest.h>
 
