@@ -1,7 +1,7 @@
+#include "ostraka/geom/surface_point.h"
 #include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/distance.h"
-#include "ostraka/geom/surface_point.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <gtest/gtest.h>
