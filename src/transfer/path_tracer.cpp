@@ -51,8 +51,7 @@ std::vector<Correspondence> PathTracer::settle(const SourcePath& vertex_path, Tr
     std::vector<Correspondence> result(n);
     for (std::size_t i = 0; i < n; ++i) result[i] = places_.at(vertex_path.vertices[i]);
     const auto source_length = [&](std::size_t i, std::size_t j) {
-        return std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[i])),
-                                                source_.point(Vertex(vertex_path.vertices[j]))));
+        return distance(source_.point(Vertex(vertex_path.vertices[i])), source_.point(Vertex(vertex_path.vertices[j])));
     };
     const auto joined = [&](const Correspondence& a, const Correspondence& b, double length) {
         return a.vertex == b.vertex || !path(a.vertex, b.vertex, limit(a, b, length)).empty();
@@ -156,8 +155,8 @@ TracedPath PathTracer::trace_edges(const SourcePath& vertex_path, TransferScore&
         if (places[i].vertex == places[j].vertex) continue;
         double length = 0;
         for (std::size_t m = i; m != j; m = (m + 1) % places.size())
-            length += std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[m])),
-                                                       source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()]))));
+            length += distance(source_.point(Vertex(vertex_path.vertices[m])),
+                               source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()])));
         const std::vector<Index> found = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score,
                                                  used.empty() ? nullptr : &used);
         if (found.empty()) continue;  // two components: a gap is left

@@ -56,7 +56,7 @@ public:
             for (Places& curve : curves) curve = divided(curve);
         map_all(drawn);
         const auto uses = find_strands(annotations, drawn);
-        for (ProjectedStrand& strand : strands_) lay(strand);
+        for (ProjectedStrand& strand : strands_) project(strand);
         for (std::size_t i = 0; i < annotations.size(); ++i) {
             begin(*annotations[i], projected[i]);
             for (std::size_t c = 0; c < drawn[i].size(); ++c) {
@@ -161,7 +161,7 @@ private:
     }
 
     /// Computes the places of a strand on the target, including those where the traces between them cross edges.
-    void lay(ProjectedStrand& strand) {
+    void project(ProjectedStrand& strand) {
         check_cancelled();
         const Places& from = strand.from.places;
         const std::vector<std::size_t> good = trusted(strand);
