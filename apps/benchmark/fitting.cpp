@@ -63,7 +63,7 @@ const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark 
     BreakOptions options;
     options.share = share;
     options.noise = 0.001;
-    BrokenPiece piece = break_off(statuette.mesh, top->place, options);
+    BrokenPiece piece = break_off(statuette.mesh, position(whole.mesh, top->place), options);
     Fragment& fragment = entry->second;
     fragment.name = landmark;
     for (Annotation& annotation : landmarks_of(statuette).annotations) {

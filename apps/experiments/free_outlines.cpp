@@ -6,6 +6,7 @@
 #include "ostraka/core/file.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
@@ -27,15 +28,14 @@ namespace ostraka::experiments {
 
 namespace {
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
 /// Other curves end at the border of an open mesh and are not projected.
-bool is_closed(const SurfaceCurve& curve) { return curve.nodes.front().point == curve.nodes.back().point; }
+bool is_closed(const std::vector<Point>& curve) { return curve.front() == curve.back(); }
 
 double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
     double sum = 0;
     for (const SurfaceCurve& curve : curves_on(mesh, annotation))
-        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) sum += distance(curve.nodes[i].point, curve.nodes[i + 1].point);
+        for (std::size_t i = 0; i + 1 < curve.points.size(); ++i)
+            sum += distance(position(mesh, curve.points[i]), position(mesh, curve.points[i + 1]));
     return sum;
 }
 
@@ -61,10 +61,11 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
     Laid result;
     const double step = 0.05 * to.typical_edge(), reach = 0.02 * to.diagonal();
     for (const SurfaceCurve& curve : curves_on(from.mesh(), source)) {
+        const std::vector<Point> points = positions(from.mesh(), curve.points);
         std::vector<Point> places;
         std::vector<Index> faces;
-        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) {
-            const Point &a = curve.nodes[i].point, &b = curve.nodes[i + 1].point;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            const Point &a = points[i], &b = points[i + 1];
             const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
             for (int k = 0; k < parts; ++k)
                 places.push_back(a + (static_cast<double>(k) / parts) * (b - a)), faces.push_back(curve.faces[i]);
@@ -75,7 +76,7 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
             on[i] = hit ? hit->point : to.closest(places[i]).point;
         });
         for (std::size_t i = 0; i + 1 < on.size(); ++i) result.perimeter += distance(on[i], on[i + 1]);
-        if (is_closed(curve)) result.perimeter += distance(on.back(), on.front());
+        if (is_closed(points)) result.perimeter += distance(on.back(), on.front());
     }
     const Mesh& mesh = to.mesh();
     const Known before(from.mesh(), source), after(mesh, moved);
@@ -138,17 +139,18 @@ LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, co
     const Mesh& mesh = from.mesh();
     std::vector<std::pair<Point, Point>> segments;
     LaidByRays result;
-    for (const SurfaceCurve& curve : curves_on(to.mesh(), forward ? written : drawn))
-        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) {
-            segments.emplace_back(curve.nodes[i].point, curve.nodes[i + 1].point);
-            result.of_written += distance(curve.nodes[i].point, curve.nodes[i + 1].point);
+    for (const std::vector<Point>& points : drawn_curves(to.mesh(), forward ? written : drawn))
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            segments.emplace_back(points[i], points[i + 1]);
+            result.of_written += distance(points[i], points[i + 1]);
         }
     const double step = 0.05 * to.typical_edge(), far = 0.05 * to.diagonal();
     double sum = 0;
     for (const SurfaceCurve& curve : curves_on(mesh, forward ? drawn : written)) {
+        const std::vector<Point> points = positions(mesh, curve.points);
         std::vector<std::pair<Point, Vector>> places;
-        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) {
-            const Point &a = curve.nodes[i].point, &b = curve.nodes[i + 1].point;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            const Point &a = points[i], &b = points[i + 1];
             const auto [u, v, w] = corners(mesh, Face(curve.faces[i]));
             const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
             for (int k = 0; k < parts; ++k) {
@@ -184,7 +186,7 @@ LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, co
             last = on[i];
             if (!first) first = on[i];
         }
-        if (last && is_closed(curve)) result.perimeter += distance(*last, *first);
+        if (last && is_closed(points)) result.perimeter += distance(*last, *first);
     }
     result.mean = sum / target.typical_edge() / static_cast<double>(std::max<std::size_t>(1, result.places - result.without_ray));
     return result;

@@ -28,7 +28,7 @@ constexpr bool is_plain<std::array<T, Count>> = is_plain<T>;
 constexpr AnnotationType last_of(AnnotationType /*any*/) { return AnnotationType::region; }
 constexpr AttributeType last_of(AttributeType /*any*/) { return AttributeType::descriptor; }
 constexpr Information::Kind last_of(Information::Kind /*any*/) { return Information::Kind::file; }
-constexpr SurfaceNode::Kind last_of(SurfaceNode::Kind /*any*/) { return SurfaceNode::Kind::face; }
+constexpr SurfacePoint::Kind last_of(SurfacePoint::Kind /*any*/) { return SurfacePoint::Kind::face; }
 
 /// Appends fields to bytes.
 class Writer {
@@ -149,11 +149,7 @@ private:
 template <class T, class Of>
 concept Is = std::same_as<std::remove_const_t<T>, Of>;
 
-template <class Archive, Is<Location> T>
-void fields(Archive& archive, T& x) {
-    archive(x.face, x.barycentric);
-}
-template <class Archive, Is<SurfacePlace> T>
+template <class Archive, Is<SurfacePoint> T>
 void fields(Archive& archive, T& x) {
     archive(x.kind, x.element, x.weights);
 }

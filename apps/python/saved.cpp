@@ -39,7 +39,7 @@ void fields(Archive& archive, T& x) {
 
 namespace {
 
-constexpr std::string_view magic = "ostraka object 1\n";  ///< includes the version of the format
+constexpr std::string_view magic = "ostraka object 2\n";  ///< includes the version of the format
 constexpr std::size_t digest_size = 64;
 
 /// Type of a saved object. The order is part of the format.

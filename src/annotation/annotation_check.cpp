@@ -66,8 +66,9 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
              "give one location for each point, or none");
     for (std::size_t i = 0; i < measure.locations.size(); ++i) {
         const std::string here = at + "/locations/" + to_string(i);
-        const auto& [face, weights] = measure.locations[i];
-        places::check_face(mesh, face, where, here + "/face");
+        const SurfacePoint& location = measure.locations[i];
+        const auto& weights = location.weights;
+        places::check_face(mesh, location.element[0], where, here + "/face");
         if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
             fail(where, here + "/barycentric", "the weights do not sum to one", "give three weights whose sum is 1");
     }

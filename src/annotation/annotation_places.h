@@ -18,10 +18,6 @@ void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, co
 void check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled);
 }  // namespace places
 
-/// The outlines of faces as vertex paths: closed paths repeat their first vertex; edges on the border of the mesh are dropped,
-/// which splits the outline into open paths.
-std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces);
-
 /// Converts a prototype document (types Area, Line, Point; key color; flat attributes) to the thesis's format; adds to `notes`
 /// what was guessed or dropped. Throws Error (input).
 Json convert_prototype(const JsonValue& document, const std::string& where, std::vector<std::string>& notes);

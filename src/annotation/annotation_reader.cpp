@@ -46,7 +46,7 @@ Measure measure_of(const JsonValue& object) {
     measure.tool = text_in(object, "tool");
     measure.points = indices_of(list_in(object, "points"));
     for (const auto& location : list_in(object, "locations"))
-        measure.locations.push_back({location["face"].GetUint(), triple_of(location["barycentric"])});
+        measure.locations.push_back(face_point(location["face"].GetUint(), triple_of(location["barycentric"])));
     if (const JsonValue* direction = find_member(object, "direction")) measure.direction = triple_of(*direction);
     measure.exact = text_in(object, "geodesic") == "exact";
     measure.repeats = vertex_paths_of(object, "repeats");
@@ -188,12 +188,12 @@ std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all,
 }
 
 /// A place in a file: a vertex, [vertex, vertex, fraction along the edge], or a face with barycentric coordinates.
-SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const std::string& where, const std::string& at) {
-    SurfacePlace place;
+SurfacePoint surface_point_of(const JsonValue& value, const Mesh& mesh, const std::string& where, const std::string& at) {
     if (value.IsUint()) {
-        place.element[0] = value.GetUint();
-        places::check_vertex(mesh, place.element[0], where, at);
-    } else if (value.IsArray()) {
+        places::check_vertex(mesh, value.GetUint(), where, at);
+        return vertex_point(value.GetUint());
+    }
+    if (value.IsArray()) {
         if (value.Size() != 3 || !value[0].IsUint() || !value[1].IsUint())
             fail(where, at, "is no place on an edge", "give [vertex, vertex, share of the way between them]");
         const Index a = value[0].GetUint(), b = value[1].GetUint();
@@ -203,22 +203,15 @@ SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const st
         const double share = value[2].GetDouble();
         if (!(share > 0 && share < 1))
             fail(where, at + "/2", "the share of the way is not between 0 and 1", "at an end of the edge, give the vertex");
-        place.kind = SurfaceNode::Kind::edge;
-        place.element = {std::min(a, b), std::max(a, b)};
-        place.weights[0] = a < b ? share : 1 - share;
-    } else {
-        const Index face = value["face"].GetUint();
-        places::check_face(mesh, face, where, at + "/face");
-        const std::array<double, 3> weights = triple_of(value["barycentric"]);
-        if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
-            fail(where, at + "/barycentric", "the weights do not sum to one", "give three weights whose sum is 1");
-        constexpr double rim = 1e-12;
-        if (std::min({weights[0], weights[1], weights[2]}) < rim) return place_of(mesh, surface_node(mesh, face, weights, rim));
-        place.kind = SurfaceNode::Kind::face;
-        place.element[0] = face;
-        place.weights = {weights[1], weights[2]};
+        return ordered_edge_point(a, b, share);
     }
-    return place;
+    const Index face = value["face"].GetUint();
+    places::check_face(mesh, face, where, at + "/face");
+    const std::array<double, 3> weights = triple_of(value["barycentric"]);
+    if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
+        fail(where, at + "/barycentric", "the weights do not sum to one", "give three weights whose sum is 1");
+    constexpr double rim = 1e-12;
+    return stored_point(mesh, surface_point(mesh, face, weights, rim));
 }
 
 /// Whether there are curves; if so, the elements of the annotation are computed from them.
@@ -228,7 +221,7 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
         const std::string here = at + "/curves/" + to_string(annotation.curves.size());
         auto& curve = annotation.curves.emplace_back();
         for (const auto& value : list.GetArray())
-            curve.push_back(surface_place_of(value, mesh, where, here + '/' + to_string(curve.size())));
+            curve.push_back(surface_point_of(value, mesh, where, here + '/' + to_string(curve.size())));
     }
     if (!is_free(annotation)) return false;
     if (annotation.all) fail(where, at + "/curves", "the whole mesh has no outlines", "drop \"curves\" or \"all\"");

@@ -17,8 +17,8 @@ JsonValue numbers_of(const Numbers& numbers, JsonAllocator& allocator) {
 
 JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
     JsonValue object = json_object(allocator, "tool", measure.tool, "points", measure.points);
-    JsonValue locations = json_list(measure.locations, allocator, [&](const Location& location) {
-        return json_object(allocator, "face", location.face, "barycentric", numbers_of(location.barycentric, allocator));
+    JsonValue locations = json_list(measure.locations, allocator, [&](const SurfacePoint& location) {
+        return json_object(allocator, "face", location.element[0], "barycentric", numbers_of(location.weights, allocator));
     });
     add_given(object, allocator, "locations", std::move(locations));
     if (measure.direction) add_member(object, "direction", numbers_of(*measure.direction, allocator), allocator);
@@ -86,20 +86,12 @@ RegionParts parts_of(const Annotation& annotation, const Mesh& mesh) {
     return parts;
 }
 
-JsonValue json_of(const SurfacePlace& place, JsonAllocator& allocator) {
-    const auto [u, v] = place.weights;
-    switch (place.kind) {
-        case SurfaceNode::Kind::vertex:
-            return JsonValue(place.element[0]);
-        case SurfaceNode::Kind::edge: {
-            JsonValue list(rapidjson::kArrayType);
-            list.PushBack(place.element[0], allocator).PushBack(place.element[1], allocator).PushBack(json_number(u), allocator);
-            return list;
-        }
-        default:
-            return json_object(allocator, "face", place.element[0], "barycentric",
-                               numbers_of(std::array<double, 3>{1 - u - v, u, v}, allocator));
-    }
+JsonValue json_of(const SurfacePoint& p, JsonAllocator& allocator) {
+    if (p.is_vertex()) return JsonValue(p.element[0]);
+    if (p.is_in_face()) return json_object(allocator, "face", p.element[0], "barycentric", numbers_of(p.weights, allocator));
+    JsonValue list(rapidjson::kArrayType);
+    list.PushBack(p.element[0], allocator).PushBack(p.element[1], allocator).PushBack(json_number(p.weights[1]), allocator);
+    return list;
 }
 
 JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAllocator& allocator) {
@@ -110,9 +102,8 @@ JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAl
     if (is_free(annotation))
         add_member(object, "curves",
                    json_list(annotation.curves, allocator,
-                             [&](const std::vector<SurfacePlace>& curve) {
-                                 return json_list(curve, allocator,
-                                                  [&](const SurfacePlace& one) { return json_of(one, allocator); });
+                             [&](const std::vector<SurfacePoint>& curve) {
+                                 return json_list(curve, allocator, [&](const SurfacePoint& p) { return json_of(p, allocator); });
                              }),
                    allocator);
     if (annotation.type == AnnotationType::region) {

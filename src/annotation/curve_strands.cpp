@@ -8,12 +8,12 @@ namespace ostraka {
 
 namespace {
 
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
-std::set<SurfacePlace> find_junctions(const Mesh& mesh, const std::vector<std::vector<Places>>& curves,
+std::set<SurfacePoint> find_junctions(const Mesh& mesh, const std::vector<std::vector<Places>>& curves,
                                       const std::vector<bool>& chosen) {
-    std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
-    std::set<SurfacePlace> junctions;
+    std::map<SurfacePoint, std::set<SurfacePoint>> neighbours;
+    std::set<SurfacePoint> junctions;
     for (std::size_t a = 0; a < curves.size(); ++a) {
         if (!chosen[a]) continue;
         for (const Places& curve : curves[a]) {
@@ -25,7 +25,7 @@ std::set<SurfacePlace> find_junctions(const Mesh& mesh, const std::vector<std::v
         }
     }
     for (const auto& [place, others] : neighbours) {
-        const bool border = place.kind == SurfaceNode::Kind::vertex && mesh.is_border(Vertex(place.element[0]));
+        const bool border = place.is_vertex() && mesh.is_border(place.vertex());
         if (others.size() != 2 || border) junctions.insert(place);
     }
     return junctions;
@@ -33,10 +33,10 @@ std::set<SurfacePlace> find_junctions(const Mesh& mesh, const std::vector<std::v
 
 /// Rotates a closed curve to start at its first junction; without junctions, at its smallest place, so that the start does not
 /// depend on the annotation.
-Places turned_to_junction(const Places& curve, const std::set<SurfacePlace>& junctions) {
+Places turned_to_junction(const Places& curve, const std::set<SurfacePoint>& junctions) {
     if (curve.front() != curve.back()) return curve;
     Places turned(curve.begin(), curve.end() - 1);
-    auto start = std::find_if(turned.begin(), turned.end(), [&](const SurfacePlace& p) { return junctions.contains(p); });
+    auto start = std::find_if(turned.begin(), turned.end(), [&](const SurfacePoint& p) { return junctions.contains(p); });
     if (start == turned.end()) start = std::min_element(turned.begin(), turned.end());
     std::rotate(turned.begin(), start, turned.end());
     turned.push_back(turned.front());
@@ -47,7 +47,7 @@ Places turned_to_junction(const Places& curve, const std::set<SurfacePlace>& jun
 
 std::vector<std::vector<std::vector<StrandUse>>> take_apart(const Mesh& mesh, const std::vector<std::vector<Places>>& curves,
                                                             const std::vector<bool>& chosen, std::vector<CurveStrand>& strands) {
-    const std::set<SurfacePlace> junctions = find_junctions(mesh, curves, chosen);
+    const std::set<SurfacePoint> junctions = find_junctions(mesh, curves, chosen);
     std::map<Places, std::size_t> known;
     const auto use_of = [&](Places piece) {
         Places back(piece.rbegin(), piece.rend());

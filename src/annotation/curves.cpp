@@ -1,10 +1,9 @@
 #include "ostraka/annotation/curves.h"
 
-#include "annotation_places.h"
-
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/insert_curves.h"
 
 #include <algorithm>
@@ -16,30 +15,7 @@ namespace ostraka {
 
 namespace {
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
-bool is_closed(const std::vector<SurfacePlace>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
-
-/// The vertex of the place's face or edge that is nearest by its weights.
-Index nearest_vertex(const Mesh& mesh, const SurfacePlace& place) {
-    const auto [u, v] = place.weights;
-    if (place.kind == SurfaceNode::Kind::vertex) return place.element[0];
-    if (place.kind == SurfaceNode::Kind::edge) return place.element[u <= 0.5 ? 0 : 1];
-    const auto corner = corners(mesh, Face(place.element[0]));
-    const double w = 1 - u - v;
-    return corner[w >= u && w >= v ? 0 : u >= v ? 1 : 2];
-}
-
-/// The walk without repeats and without back-tracking "a, b, a".
-std::vector<Index> without_spikes(const std::vector<Index>& walk) {
-    std::vector<Index> path;
-    for (const Index v : walk) {
-        if (!path.empty() && path.back() == v) continue;
-        if (path.size() > 1 && path[path.size() - 2] == v) path.pop_back();
-        else path.push_back(v);
-    }
-    return path;
-}
+bool is_closed(const std::vector<SurfacePoint>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
 
 /// One face of each component that the region lists and no curve traverses.
 std::vector<Index> seeds_of(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves,
@@ -71,6 +47,14 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation, const st
 
 bool any_free(const AnnotationSet& set) { return std::any_of(set.annotations.begin(), set.annotations.end(), is_free); }
 
+std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path, bool closed) {
+    std::vector<SurfacePoint> curve;
+    curve.reserve(path.size() + 1);
+    for (const Index v : path) curve.push_back(vertex_point(v));
+    if (closed) curve.push_back(vertex_point(path.front()));
+    return curve;
+}
+
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation) {
     std::vector<SurfaceCurve> curves;
     for (const auto& places : annotation.curves) {
@@ -85,11 +69,7 @@ std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotati
             throw Error(error.kind(), where, error.problem(), error.remedy());
         }
         if (annotation.type != AnnotationType::region || is_closed(places)) continue;
-        const auto on_border = [&](const SurfaceNode& node) {
-            if (node.kind == SurfaceNode::Kind::vertex) return mesh.is_border(Vertex(node.element));
-            return node.kind == SurfaceNode::Kind::edge && mesh.is_border(Edge(node.element));
-        };
-        if (!on_border(curves.back().nodes.front()) || !on_border(curves.back().nodes.back()))
+        if (!is_on_border(mesh, places.front()) || !is_on_border(mesh, places.back()))
             fail_input(where, "is an outline that does not close",
                        "repeat its first place at the end; on an open mesh it may also end "
                        "at the border");
@@ -117,9 +97,9 @@ void settle_elements(const Mesh& mesh, Annotation& annotation) {
     annotation.polylines.clear();
     for (const auto& places : annotation.curves) {
         std::vector<Index> walk;
-        for (const SurfacePlace& place : places) walk.push_back(nearest_vertex(mesh, place));
+        for (const SurfacePoint& place : places) walk.push_back(nearest_vertex(mesh, place));
         if (annotation.type == AnnotationType::point) annotation.points.push_back(walk.front());
-        else if (walk = without_spikes(walk); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
+        else if (walk = prune_spikes(walk, false); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
     }
 }
 
@@ -128,7 +108,7 @@ RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation) {
     const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
     const CurveFilling filling = filling_of(mesh, annotation, curves);
     RegionMeasures measures{filling.area(mesh), filling.border};
-    for (const SurfaceCurve& curve : curves) measures.perimeter += curve.length();
+    for (const SurfaceCurve& curve : curves) measures.perimeter += curve.length(mesh);
     return measures;
 }
 
@@ -157,7 +137,7 @@ std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annota
 double length_of(const Mesh& mesh, const Annotation& annotation) {
     double sum = 0;
     if (is_free(annotation)) {
-        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) sum += curve.length();
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) sum += curve.length(mesh);
         return sum;
     }
     for (const auto& polyline : annotation.polylines)
@@ -169,10 +149,7 @@ double length_of(const Mesh& mesh, const Annotation& annotation) {
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation) {
     std::vector<std::vector<Point>> curves;
     if (is_free(annotation)) {
-        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) {
-            auto& points = curves.emplace_back();
-            for (const SurfaceNode& node : curve.nodes) points.push_back(node.point);
-        }
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) curves.push_back(positions(mesh, curve.points));
         return curves;
     }
     const auto add = [&](const std::vector<Index>& path, bool closed) {
@@ -189,18 +166,8 @@ std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation&
 
 std::vector<double> CutMesh::vertex_values(const Mesh& before, const std::vector<double>& values) const {
     std::vector<double> all = values;
-    all.reserve(values.size() + nodes.size());
-    for (const SurfaceNode& node : nodes) {
-        if (node.kind == SurfaceNode::Kind::edge) {
-            const Halfedge h = before.halfedge(Edge(node.element), 0);
-            all.push_back((1 - node.parameter) * values[before.source(h)] + node.parameter * values[before.target(h)]);
-        } else {
-            const auto corner = corners(before, Face(node.element));
-            double sum = 0;
-            for (std::size_t k = 0; k < 3; ++k) sum += node.barycentric[k] * values[corner[k]];
-            all.push_back(sum);
-        }
-    }
+    all.reserve(values.size() + points.size());
+    for (const SurfacePoint& p : points) all.push_back(interpolate(before, p, [&](Vertex v) { return values[v]; }));
     return all;
 }
 
@@ -249,7 +216,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
     CutMesh cut;
     cut.mesh = std::move(inserted.mesh);
     cut.face_origin = std::move(inserted.face_origin);
-    cut.nodes = std::move(inserted.new_nodes);
+    cut.points = std::move(inserted.new_points);
     cut.old_vertices = mesh.number_of_vertices();
     cut.more_paths.assign(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first.back()), inserted.paths.end());
     cut.annotations = set;
@@ -304,28 +271,22 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
 namespace {
 
 /// Drops repeated places and places that lie between their neighbours on a straight piece in one face or along one edge.
-std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<SurfacePlace> places) {
-    using Kind = SurfaceNode::Kind;
+std::vector<SurfacePoint> without_needless(const Mesh& mesh, std::vector<SurfacePoint> places) {
     const bool closed = is_closed(places);
-    const auto needless = [&](const SurfacePlace& before, const SurfacePlace& place, const SurfacePlace& after) {
-        if (place.kind == Kind::vertex) return false;
-        const SurfaceNode a = node_at(mesh, before), b = node_at(mesh, place), c = node_at(mesh, after);
-        if (place.kind == Kind::edge) {  // needed unless both neighbours lie on the same edge
-            const Halfedge h = mesh.halfedge(Edge(b.element), 0);
-            for (const SurfaceNode* other : {&a, &c})
-                if (!(other->kind == Kind::edge && other->element == b.element) &&
-                    !(other->kind == Kind::vertex &&
-                      (Vertex(other->element) == mesh.source(h) || Vertex(other->element) == mesh.target(h))))
-                    return false;
-        } else if (common_face(mesh, a, c) == no_index) {
+    const auto needless = [&](const SurfacePoint& before, const SurfacePoint& place, const SurfacePoint& after) {
+        if (place.is_vertex()) return false;
+        if (place.is_on_edge()) {  // needed unless both neighbours lie on the same edge
+            if (shared_edge(mesh, before, place) == no_index || shared_edge(mesh, place, after) == no_index) return false;
+        } else if (shared_face(mesh, before, after) == no_index) {
             return false;
         }
-        const Vector whole = c.point - a.point, part = b.point - a.point;
+        const Point start = position(mesh, before);
+        const Vector whole = position(mesh, after) - start, part = position(mesh, place) - start;
         const double length = whole.squared_length();
         return length > 0 && CGAL::cross_product(whole, part).squared_length() <= 1e-20 * length * length && part * whole > 0 &&
                part * whole < length;
     };
-    std::vector<SurfacePlace> kept;
+    std::vector<SurfacePoint> kept;
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (!kept.empty() && kept.back() == places[i]) continue;
         if (!kept.empty() && i + 1 < places.size() && needless(kept.back(), places[i], places[i + 1])) continue;
@@ -340,53 +301,27 @@ std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<Surface
 
 }  // namespace
 
-std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<std::vector<Index>> paths;
-    for (const Outline& outline : extract_outlines(mesh, faces)) {
-        const std::size_t n = outline.size();
-        std::vector<bool> border(n);
-        for (std::size_t i = 0; i < n; ++i)
-            border[i] = mesh.is_border(mesh.opposite(find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
-        if (std::none_of(border.begin(), border.end(), [](bool b) { return b; })) {
-            paths.push_back(outline);
-            paths.back().push_back(outline.front());
-            continue;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            if (border[i] || !border[(i + n - 1) % n]) continue;
-            std::vector<Index>& run = paths.emplace_back(1, outline[i]);
-            for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
-        }
-    }
-    return paths;
-}
-
 void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     annotation.curves.clear();
     bool free = false;
     const auto place = [&](Index v) {
         if (v >= cut.old_vertices) {
-            const SurfaceNode& node = cut.nodes[v - cut.old_vertices];
-            if (node.kind != SurfaceNode::Kind::face) return place_of(mesh, node);
+            const SurfacePoint& p = cut.points[v - cut.old_vertices];
             // Snaps an intersection of curves close to the boundary of a face onto it: the face could not be cut again at the
             // original position.
-            return place_of(mesh, surface_node(mesh, node.element, node.barycentric));
+            return stored_point(mesh, p.is_in_face() ? surface_point(mesh, p.element[0], p.weights) : p);
         }
-        SurfacePlace vertex;
-        vertex.element[0] = v;
-        return vertex;
+        return vertex_point(v);
     };
-    const auto joined = [&](const SurfacePlace& a, const SurfacePlace& b) {
-        using Kind = SurfaceNode::Kind;
-        return a.kind == Kind::vertex && b.kind == Kind::vertex &&
-               find_halfedge(mesh, Vertex(a.element[0]), Vertex(b.element[0])).is_valid();
+    const auto joined = [&](const SurfacePoint& a, const SurfacePoint& b) {
+        return a.is_vertex() && b.is_vertex() && find_halfedge(mesh, a.vertex(), b.vertex()).is_valid();
     };
     const auto add = [&](const std::vector<Index>& path) {
-        std::vector<SurfacePlace> places;
+        std::vector<SurfacePoint> places;
         for (const Index v : path) places.push_back(place(v));
         places = without_needless(mesh, std::move(places));
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (places[i].kind != SurfaceNode::Kind::vertex || (i > 0 && !joined(places[i - 1], places[i]))) free = true;
+            if (!places[i].is_vertex() || (i > 0 && !joined(places[i - 1], places[i]))) free = true;
         annotation.curves.push_back(std::move(places));
     };
     if (annotation.type == AnnotationType::point) {
@@ -394,7 +329,10 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     } else if (annotation.type == AnnotationType::line) {
         for (const auto& line : annotation.polylines) add(line);
     } else {
-        for (const auto& path : outline_paths(cut.mesh, annotation.faces)) add(path);
+        for (OutlinePath& path : outline_paths(cut.mesh, annotation.faces)) {
+            if (path.closed) path.vertices.push_back(path.vertices.front());
+            add(path.vertices);
+        }
         std::vector<Index> old;
         for (const Index f : annotation.faces) old.push_back(cut.face_origin[f]);
         old.erase(std::unique(old.begin(), old.end()), old.end());

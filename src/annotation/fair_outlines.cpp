@@ -1,13 +1,13 @@
 #include "ostraka/annotation/fair_outlines.h"
 
-#include "annotation_places.h"
-
 #include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/polyline_distance.h"
+#include "ostraka/geom/surface_search.h"
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -20,15 +20,13 @@ namespace ostraka {
 
 namespace {
 
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
 Segments segments(const std::vector<Point>& points) {
     Segments list;
     for (std::size_t i = 1; i < points.size(); ++i) list.emplace_back(points[i - 1], points[i]);
     return list;
 }
-
-double gap(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
 /// A stretch of curve between fixed places, or a loop.
 struct Strand {
@@ -121,26 +119,16 @@ private:
     std::vector<Places> curves_of(const Annotation& annotation) const {
         if (is_free(annotation)) return annotation.curves;
         std::vector<Places> curves;
-        const auto add = [&](const std::vector<Index>& path) {
-            Places& curve = curves.emplace_back();
-            for (const Index v : path) {
-                curve.emplace_back();
-                curve.back().element[0] = v;
-            }
-        };
-        for (const auto& line : annotation.polylines) add(line);
+        for (const auto& line : annotation.polylines) curves.push_back(vertex_curve(line));
         if (annotation.type == AnnotationType::region)
-            for (const auto& path : outline_paths(mesh_, annotation.faces)) add(path);
+            for (const OutlinePath& path : outline_paths(mesh_, annotation.faces))
+                curves.push_back(vertex_curve(path.vertices, path.closed));
         return curves;
     }
 
     static bool is_region(const Annotation& annotation) { return annotation.type == AnnotationType::region; }
 
-    std::vector<Point> drawn(const Strand& strand) const {
-        std::vector<Point> points;
-        for (const SurfacePlace& place : strand.after) points.push_back(node_at(mesh_, place).point);
-        return points;
-    }
+    std::vector<Point> drawn(const Strand& strand) const { return positions(mesh_, strand.after); }
 
     /// Junctions are found separately for outlines and for lines: a line that crosses an outline does not fix it there.
     void find_strands(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves) {
@@ -155,7 +143,7 @@ private:
         }
         for (CurveStrand& one : found) {
             Strand& strand = strands_.emplace_back();
-            for (const SurfacePlace& place : one.places) strand.points.push_back(node_at(mesh_, place).point);
+            strand.points = positions(mesh_, one.places);
             strand.after = one.places;
             strand.before = std::move(one.places);
             strand.closed = one.closed;
@@ -170,7 +158,7 @@ private:
         for (std::size_t i = 0; i + 1 < points.size(); ++i) middles.push_back(CGAL::midpoint(points[i], points[i + 1]));
         middles.push_back(strand.closed ? middles.front() : points.back());
         std::vector<double> along{0};
-        for (std::size_t i = 1; i < middles.size(); ++i) along.push_back(along.back() + gap(middles[i - 1], middles[i]));
+        for (std::size_t i = 1; i < middles.size(); ++i) along.push_back(along.back() + distance(middles[i - 1], middles[i]));
         std::vector<Point> result;
         std::size_t at = 0;
         for (std::size_t k = 0; k <= count; ++k) {
@@ -186,7 +174,7 @@ private:
     void fair(Strand& strand) const {
         strand.length = 0;
         strand.fair.clear();
-        for (std::size_t i = 1; i < strand.points.size(); ++i) strand.length += gap(strand.points[i - 1], strand.points[i]);
+        for (std::size_t i = 1; i < strand.points.size(); ++i) strand.length += distance(strand.points[i - 1], strand.points[i]);
         if (strand.points.size() < (strand.closed ? 7U : 4U) || !(strand.length > 0)) return;
         const double own_edge = strand.length / static_cast<double>(strand.points.size() - 1);
         strand.limit = options_.distance > 0 ? options_.distance : std::max(own_edge, mean_edge_);
@@ -251,44 +239,43 @@ private:
     /// Projects the faired curve of a strand onto the surface; a strand that cannot be projected is reset.
     void draw(Strand& strand) const {
         if (strand.fair.empty()) return leave(strand);
-        std::vector<SurfaceNode> nodes;
+        Places drawn;
         strand.aside.clear();
         const std::size_t n = strand.fair.size();
         for (std::size_t i = 0; i < n; ++i) {
             if (strand.closed && i + 1 == n) {
-                nodes.push_back(nodes.front());
+                drawn.push_back(drawn.front());
                 strand.aside.push_back(strand.aside.front());
                 break;
             }
             const SurfaceHit hit = search_.closest(strand.fair[i]);
-            if (!strand.closed && (i == 0 || i + 1 == n))
-                nodes.push_back(node_at(mesh_, i == 0 ? strand.before.front() : strand.before.back()));
-            else nodes.push_back(surface_node(mesh_, hit.face, hit.barycentric));
+            if (!strand.closed && (i == 0 || i + 1 == n)) drawn.push_back(i == 0 ? strand.before.front() : strand.before.back());
+            else drawn.push_back(surface_point(mesh_, hit.face, hit.barycentric));
             const Vector along = strand.fair[(i + 1) % n] - strand.fair[i == 0 ? (strand.closed ? n - 2 : 0) : i - 1];
-            const Vector left = CGAL::cross_product(normal_at(nodes.back()), along);
+            const Vector left = CGAL::cross_product(normal_at(drawn.back()), along);
             const double size = std::sqrt(left.squared_length());
             strand.aside.push_back(size > 0 ? left / size : Vector(0, 0, 0));
         }
-        Places places{place_of(mesh_, nodes.front())};
-        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-            const double apart = gap(nodes[i].point, nodes[i + 1].point);
-            const Vector up = normal_at(nodes[i]) + normal_at(nodes[i + 1]);
-            auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
-            if (!line) line = geodesic_curve(mesh_, nodes[i], nodes[i + 1]);  // a step across a fold
-            if (line && line->length() > 4 * apart + 1e-9 * search_.diagonal()) line.reset();
+        Places places{stored_point(mesh_, drawn.front())};
+        for (std::size_t i = 0; i + 1 < drawn.size(); ++i) {
+            const double apart = distance(position(mesh_, drawn[i]), position(mesh_, drawn[i + 1]));
+            const Vector up = normal_at(drawn[i]) + normal_at(drawn[i + 1]);
+            auto line = trace_line(mesh_, drawn[i], drawn[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
+            if (!line) line = geodesic_curve(mesh_, drawn[i], drawn[i + 1]);  // a step across a fold
+            if (line && line->length(mesh_) > 4 * apart + 1e-9 * search_.diagonal()) line.reset();
             if (!line) return leave(strand);
-            for (std::size_t k = 1; k < line->nodes.size(); ++k)
-                if (const SurfacePlace place = place_of(mesh_, line->nodes[k]); place != places.back()) places.push_back(place);
+            for (std::size_t k = 1; k < line->points.size(); ++k)
+                if (const SurfacePoint p = stored_point(mesh_, line->points[k]); p != places.back()) places.push_back(p);
         }
         if (places.size() < (strand.closed ? 4U : 2U)) return leave(strand);
         strand.after = std::move(places);
     }
 
-    /// The mean of the normals of the faces of the node: for a point on an edge, the choice of one face would depend on
+    /// The sum of the normals of the faces of the point: for a point on an edge, the choice of one face would depend on
     /// rounding.
-    Vector normal_at(const SurfaceNode& node) const {
+    Vector normal_at(const SurfacePoint& p) const {
         Vector sum(0, 0, 0);
-        for (const Face face : faces_of(mesh_, node)) sum = sum + search_.normal(face);
+        for (const Face face : faces_of(mesh_, p)) sum = sum + search_.normal(face);
         return sum;
     }
 
@@ -374,7 +361,7 @@ private:
 
     double length_now(const Strand& strand) const {
         double sum = 0;
-        for (std::size_t i = 1; i < strand.fair.size(); ++i) sum += gap(strand.fair[i - 1], strand.fair[i]);
+        for (std::size_t i = 1; i < strand.fair.size(); ++i) sum += distance(strand.fair[i - 1], strand.fair[i]);
         return sum;
     }
 

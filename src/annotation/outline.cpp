@@ -76,6 +76,46 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
     return outlines_of(mesh, selected, list);
 }
 
+std::vector<OutlinePath> outline_paths(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<OutlinePath> paths;
+    for (Outline& outline : extract_outlines(mesh, faces)) {
+        const std::size_t n = outline.size();
+        std::vector<bool> border(n);
+        for (std::size_t i = 0; i < n; ++i)
+            border[i] = mesh.is_border(mesh.opposite(find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
+        if (std::find(border.begin(), border.end(), true) == border.end()) {
+            paths.push_back({std::move(outline), true});
+            continue;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (border[i] || !border[(i + n - 1) % n]) continue;
+            std::vector<Index>& path = paths.emplace_back().vertices;
+            path.push_back(outline[i]);
+            for (std::size_t k = i; !border[k % n]; ++k) path.push_back(outline[(k + 1) % n]);
+        }
+    }
+    return paths;
+}
+
+std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed) {
+    std::vector<Index> path;
+    for (const Index v : walk) {
+        if (!path.empty() && path.back() == v) continue;
+        if (path.size() >= 2 && path[path.size() - 2] == v) path.pop_back();
+        else path.push_back(v);
+    }
+    if (!closed) return path;
+    std::size_t first = 0, last = path.size();
+    for (;;) {
+        if (last - first < 3) return {};
+        if (path[first] == path[last - 1]) --last;
+        else if (path[first] == path[last - 2]) last -= 1;
+        else if (path[first + 1] == path[last - 1]) ++first;
+        else break;
+    }
+    return {path.begin() + static_cast<std::ptrdiff_t>(first), path.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
 namespace {
 /// Net number of traversals of each edge in the direction of its first halfedge. (An Edge made from a halfedge remembers that
 /// halfedge, so the first one must be requested by number.)

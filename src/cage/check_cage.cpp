@@ -1,5 +1,6 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/nested.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -27,14 +28,7 @@ std::size_t count_components(const Mesh& mesh) {
     for (const Face first : mesh.faces()) {
         if (visited[first]) continue;
         ++count;
-        std::vector<Face> stack{first};
-        visited[first] = true;
-        while (!stack.empty()) {
-            const Face f = stack.back();
-            stack.pop_back();
-            for (const Face g : mesh.faces_around_face(mesh.halfedge(f)))
-                if (g != Mesh::null_face() && !visited[g]) visited[g] = true, stack.push_back(g);
-        }
+        flood_faces(mesh, first, visited);
     }
     return count;
 }

@@ -23,7 +23,7 @@ void add_measure(const Statuette& statuette, Annotation& object, const std::stri
                          [&](const StatuetteLandmark& statuette_landmark) { return statuette_landmark.name == landmark_name; });
         if (landmark == statuette.landmarks.end()) return;
         measure.points.push_back(landmark->vertex);
-        measure.locations.push_back({landmark->face, landmark->barycentric});
+        measure.locations.push_back(landmark->place);
     }
     measure.exact = tool == "tape";
     measure.value = evaluate(statuette.mesh, object, measure);

@@ -1,5 +1,7 @@
 #include "ostraka/core/dense.h"
 
+#include "ostraka/core/angles.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -64,7 +66,7 @@ SvdX::SvdX(const Eigen::MatrixXd& matrix, bool full_v) {
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const Eigen::Vector3d a = from.normalized(), b = to.normalized();
     const double cosine = a.dot(b);
-    if (cosine < -1 + 1e-12) return Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, a.unitOrthogonal()));
+    if (cosine < -1 + 1e-12) return Eigen::Quaterniond(Eigen::AngleAxisd(pi, a.unitOrthogonal()));
     const double s = std::sqrt((1 + cosine) * 2);
     Eigen::Quaterniond rotation;
     rotation.vec() = a.cross(b) * (1 / s);

@@ -1,8 +1,10 @@
 #include "ostraka/geom/curve_filling.h"
 
-#include "face_cutter.h"
+#include "face_verdict.h"
 
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
+#include "ostraka/geom/surface_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,11 +46,11 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
     std::vector<Stretch> list;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const std::vector<Index>& faces = curves[c].faces;
-        const std::vector<SurfaceNode>& nodes = curves[c].nodes;
+        const std::vector<SurfacePoint>& points = curves[c].points;
         const std::size_t n = faces.size(), begin = list.size();
         bool runs_on = false, first_runs = false, last_runs = false;
         for (std::size_t i = 0; i < n; ++i) {
-            if (const Index edge = common_edge(mesh, nodes[i], nodes[i + 1]); edge != no_index) {
+            if (const Index edge = shared_edge(mesh, points[i], points[i + 1]); edge != no_index) {
                 for (const unsigned k : {0U, 1U})
                     if (const Halfedge h = mesh.halfedge(Edge(edge), k); !mesh.is_border(h))
                         list.push_back({static_cast<Index>(mesh.face(h)), c, i, 1});
@@ -61,8 +63,7 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
             if (i == 0) first_runs = true;
         }
         // A closed curve that starts in the middle of a stretch.
-        const bool closed = n > 0 && nodes.front().kind == nodes.back().kind && nodes.front().element == nodes.back().element &&
-                            nodes.front().point == nodes.back().point;
+        const bool closed = n > 0 && same_point(mesh, points.front(), points.back());
         if (closed && first_runs && last_runs && list.size() > begin + 1 && list.back().face == list[begin].face) {
             list.back().count += list[begin].count;
             list.erase(list.begin() + static_cast<std::ptrdiff_t>(begin));
@@ -71,16 +72,6 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
     std::stable_sort(list.begin(), list.end(), [](const Stretch& a, const Stretch& b) { return a.face < b.face; });
     return list;
 }
-
-/// Classifies a face traversed by curves: its fraction inside and, for each of its edges (from corner k to k + 1) that no curve
-/// crosses, the side on which the adjacent face lies.
-struct FaceVerdict {
-    double share = 0;
-    std::array<int, 3> beyond{-1, -1, -1};  ///< 1 inside, 0 outside, -1 unknown
-    double border = 0;
-    std::size_t conflicts = 0;
-    bool known = true;
-};
 
 class Filler {
 public:
@@ -92,28 +83,26 @@ public:
                                  mesh_.next(mesh_.next(mesh_.halfedge(Face(stretch.face)))), mesh_.halfedge(Face(stretch.face))};
         const SurfaceCurve& curve = curves_[stretch.curve];
         const std::size_t n = curve.faces.size();
-        chain_.clear();
-        for (std::size_t i = 0; i <= stretch.count; ++i) {
+        const auto chain = [&](std::size_t i) -> const SurfacePoint& {
             const std::size_t at = stretch.first + i;
-            chain_.push_back(&curve.nodes[at <= n ? at : at - n]);
-        }
-        const double from = around(rim, *chain_.front()), to = around(rim, *chain_.back());
+            return curve.points[at <= n ? at : at - n];
+        };
+        const double from = around(rim, chain(0)), to = around(rim, chain(stretch.count));
         if (from < 0 || to < 0 || from == to) return false;
-        for (std::size_t i = 1; i + 1 < chain_.size(); ++i)
-            if (chain_[i]->kind != SurfaceNode::Kind::face) return false;  // the stretch touches the boundary in between
+        for (std::size_t i = 1; i < stretch.count; ++i)
+            if (!chain(i).is_in_face()) return false;  // the stretch touches the boundary in between
         const Vector normal = area_vector(mesh_, Face(stretch.face));
         const double whole = std::sqrt(normal.squared_length());
         if (!(whole > 0)) return false;
-        if (chain_.size() > 3 && crosses_itself(normal / whole)) return false;
         polygon_.clear();
-        for (const SurfaceNode* node : chain_) polygon_.push_back(node->point);
+        for (std::size_t i = 0; i <= stretch.count; ++i) polygon_.push_back(position(mesh_, chain(i)));
+        if (polygon_.size() > 3 && crosses_itself(polygon_, normal / whole)) return false;
         // Follows the boundary counter-clockwise from the exit to the entry: this closes the polygon to the left of the curve.
         const double turn = from > to ? from - to : from + 3 - to;
         double last = to;
         const auto walk = [&](double next, const Point& place) {
             const auto edge = static_cast<std::size_t>(std::floor(last)) % 3;
-            if (mesh_.is_border(mesh_.opposite(rim[edge])))
-                verdict.border += std::sqrt(CGAL::squared_distance(polygon_.back(), place));
+            if (mesh_.is_border(mesh_.opposite(rim[edge]))) verdict.border += distance(polygon_.back(), place);
             last = next;
         };
         const int first_corner = static_cast<int>(std::floor(to)) + 1;
@@ -122,7 +111,7 @@ public:
             walk(k, corner);
             polygon_.push_back(corner);
         }
-        walk(to + turn, chain_.front()->point);
+        walk(to + turn, polygon_.front());
         Vector sum(0, 0, 0);
         for (std::size_t i = 1; i + 1 < polygon_.size(); ++i)
             sum += CGAL::cross_product(polygon_[i] - polygon_[0], polygon_[i + 1] - polygon_[0]);
@@ -149,7 +138,7 @@ public:
             SurfaceCurve& piece = pieces.emplace_back();
             for (std::size_t i = 0; i <= stretch.count; ++i) {
                 const std::size_t at = stretch.first + i;
-                piece.nodes.push_back(curve.nodes[at <= n ? at : at - n]);
+                piece.points.push_back(curve.points[at <= n ? at : at - n]);
             }
             piece.faces.assign(stretch.count, face);
         }
@@ -161,112 +150,114 @@ public:
             for (std::size_t i = 0; i + 1 < path.size(); ++i)
                 if (path[i] != path[i + 1]) net[std::minmax(path[i], path[i + 1])] += path[i] < path[i + 1] ? 1 : -1;
         }
-        return judge(face, cutter, triangles, net, parts);
+        return judge_face(mesh_, face, cutter, triangles, net, parts);
     }
 
 private:
-    /// Position of a node on the boundary of the face: corner number plus fraction along the edge; negative in the interior.
-    double around(const Halfedge (&rim)[3], const SurfaceNode& node) const {
+    /// Where a point lies on the boundary of the face: corner number plus fraction along the edge; negative in the interior.
+    double around(const Halfedge (&rim)[3], const SurfacePoint& p) const {
+        if (p.is_in_face()) return -1;
+        const Edge edge = p.is_on_edge() ? edge_of(mesh_, p) : Mesh::null_edge();
         for (int k = 0; k < 3; ++k) {
-            if (node.kind == SurfaceNode::Kind::vertex && node.element == static_cast<Index>(mesh_.source(rim[k]))) return k;
-            if (node.kind == SurfaceNode::Kind::edge && node.element == static_cast<Index>(mesh_.edge(rim[k])))
-                return k + (mesh_.halfedge(mesh_.edge(rim[k]), 0) == rim[k] ? node.parameter : 1 - node.parameter);
+            if (p.is_vertex() && p.vertex() == mesh_.source(rim[k])) return k;
+            if (p.is_on_edge() && edge == mesh_.edge(rim[k])) {
+                const double fraction = fraction_along(mesh_, edge, p);
+                return k + (mesh_.halfedge(edge, 0) == rim[k] ? fraction : 1 - fraction);
+            }
         }
         return -1;
     }
 
     static bool within(double place, int edge) { return place > edge && place < edge + 1; }
 
-    bool crosses_itself(const Vector& normal) const {
+    static bool crosses_itself(const std::vector<Point>& chain, const Vector& normal) {
         const auto side = [&](const Point& a, const Point& b, const Point& c) {
             return CGAL::cross_product(b - a, c - a) * normal;
         };
-        for (std::size_t i = 0; i + 1 < chain_.size(); ++i)
-            for (std::size_t j = i + 2; j + 1 < chain_.size(); ++j) {
-                const Point &a = chain_[i]->point, &b = chain_[i + 1]->point, &c = chain_[j]->point, &d = chain_[j + 1]->point;
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+            for (std::size_t j = i + 2; j + 1 < chain.size(); ++j) {
+                const Point &a = chain[i], &b = chain[i + 1], &c = chain[j], &d = chain[j + 1];
                 if (side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0) return true;
             }
         return false;
     }
 
-    FaceVerdict judge(Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
-                      const std::map<std::pair<Index, Index>, int>& net,
-                      std::vector<std::pair<std::array<Point, 3>, bool>>* parts) const {
-        FaceVerdict verdict;
-        enum { unknown, left, right };
-        std::vector<int> side(triangles.size(), unknown);
-        std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k) owner[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
-        const auto weight = [&](Index a, Index b) {
-            const auto found = net.find(std::minmax(a, b));
-            return found == net.end() ? 0 : a < b ? found->second : -found->second;
-        };
-        std::vector<std::size_t> stack;
-        const auto claim = [&](std::size_t t, int as) {
-            if (side[t] == unknown) {
-                side[t] = as;
-                stack.push_back(t);
-            } else if (side[t] != as) {
-                ++verdict.conflicts;
-            }
-        };
-        for (const auto& [edge, t] : owner)
-            if (const int w = weight(edge.first, edge.second); w != 0) claim(t, w > 0 ? left : right);
-        verdict.known = !stack.empty();
-        while (!stack.empty()) {
-            const std::size_t t = stack.back();
-            stack.pop_back();
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-                if (const auto other = owner.find({b, a}); other != owner.end() && weight(a, b) == 0)
-                    claim(other->second, side[t]);
-            }
-        }
-        if (!verdict.known) return verdict;
-        double sum = 0, inside = 0;
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const Point &a = cutter.point(triangles[t][0]), &b = cutter.point(triangles[t][1]),
-                        &c = cutter.point(triangles[t][2]);
-            const double area = std::sqrt(CGAL::cross_product(b - a, c - a).squared_length());
-            sum += area;
-            if (side[t] == left) inside += area;
-            if (parts != nullptr) parts->emplace_back(std::array<Point, 3>{a, b, c}, side[t] == left);
-        }
-        verdict.share = sum > 0 ? inside / sum : side.front() == left ? 1 : 0;
-        const auto old_corners = corners(mesh_, Face(face));
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vertex a = old_corners[k], b = old_corners[(k + 1) % 3];
-            const Halfedge h = find_halfedge(mesh_, a, b);
-            if (mesh_.is_border(mesh_.opposite(h))) {
-                // The part of the edge that borders on triangles inside.
-                const Edge e = mesh_.edge(h);
-                std::vector<Index> rim{a};
-                if (const auto on = cutter.on_edge().find(e); on != cutter.on_edge().end()) {
-                    for (const auto& [parameter, v] : on->second) rim.push_back(v);
-                    if (mesh_.halfedge(e, 0) != h) std::reverse(rim.begin() + 1, rim.end());
-                }
-                rim.push_back(b);
-                for (std::size_t i = 0; i + 1 < rim.size(); ++i)
-                    if (const auto found = owner.find({rim[i], rim[i + 1]}); found != owner.end() && side[found->second] == left)
-                        verdict.border += std::sqrt(CGAL::squared_distance(cutter.point(rim[i]), cutter.point(rim[i + 1])));
-                continue;
-            }
-            const auto found = owner.find({a, b});
-            if (found == owner.end()) continue;
-            const bool turned = weight(a, b) != 0;  // a curve follows the edge: the adjacent face lies on the other side
-            verdict.beyond[k] = (side[found->second] == left) != turned ? 1 : 0;
-        }
-        return verdict;
-    }
-
     const Mesh& mesh_;
     const std::vector<SurfaceCurve>& curves_;
-    std::vector<const SurfaceNode*> chain_;
     std::vector<Point> polygon_;
 };
 
 }  // namespace
+
+FaceVerdict judge_face(const Mesh& mesh, Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
+                       const std::map<std::pair<Index, Index>, int>& net,
+                       std::vector<std::pair<std::array<Point, 3>, bool>>* parts) {
+    FaceVerdict verdict;
+    enum { unknown, left, right };
+    std::vector<int> side(triangles.size(), unknown);
+    std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) owner[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
+    const auto weight = [&](Index a, Index b) {
+        const auto found = net.find(std::minmax(a, b));
+        return found == net.end() ? 0 : a < b ? found->second : -found->second;
+    };
+    std::vector<std::size_t> stack;
+    const auto claim = [&](std::size_t t, int as) {
+        if (side[t] == unknown) {
+            side[t] = as;
+            stack.push_back(t);
+        } else if (side[t] != as) {
+            ++verdict.conflicts;
+        }
+    };
+    for (const auto& [edge, t] : owner)
+        if (const int w = weight(edge.first, edge.second); w != 0) claim(t, w > 0 ? left : right);
+    verdict.known = !stack.empty();
+    while (!stack.empty()) {
+        const std::size_t t = stack.back();
+        stack.pop_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+            if (const auto other = owner.find({b, a}); other != owner.end() && weight(a, b) == 0) claim(other->second, side[t]);
+        }
+    }
+    if (!verdict.known) return verdict;
+    double sum = 0, inside = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const Point &a = cutter.point(triangles[t][0]), &b = cutter.point(triangles[t][1]), &c = cutter.point(triangles[t][2]);
+        const double area = std::sqrt(CGAL::cross_product(b - a, c - a).squared_length());
+        sum += area;
+        if (side[t] == left) inside += area;
+        if (parts != nullptr) parts->emplace_back(std::array<Point, 3>{a, b, c}, side[t] == left);
+    }
+    verdict.area = sum / 2;
+    verdict.share = sum > 0 ? inside / sum : side.front() == left ? 1 : 0;
+    const auto old_corners = corners(mesh, Face(face));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex a = old_corners[k], b = old_corners[(k + 1) % 3];
+        const Halfedge h = find_halfedge(mesh, a, b);
+        if (mesh.is_border(mesh.opposite(h))) {
+            // The part of the edge that borders on triangles inside.
+            const Edge e = mesh.edge(h);
+            std::vector<Index> rim{a};
+            if (const auto on = cutter.on_edge().find(e); on != cutter.on_edge().end()) {
+                for (const auto& [parameter, v] : on->second) rim.push_back(v);
+                if (mesh.halfedge(e, 0) != h) std::reverse(rim.begin() + 1, rim.end());
+            }
+            rim.push_back(b);
+            for (std::size_t i = 0; i + 1 < rim.size(); ++i)
+                if (const auto found = owner.find({rim[i], rim[i + 1]}); found != owner.end() && side[found->second] == left)
+                    verdict.border += std::sqrt(CGAL::squared_distance(cutter.point(rim[i]), cutter.point(rim[i + 1])));
+            continue;
+        }
+        const auto found = owner.find({a, b});
+        if (found == owner.end()) continue;
+        const bool turned = weight(a, b) != 0;  // a curve follows the edge: the adjacent face lies on the other side
+        verdict.beyond[k] = (side[found->second] == left) != turned ? 1 : 0;
+    }
+    return verdict;
+}
 
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds) {
     check_cancelled();

@@ -1,13 +1,15 @@
 #include "face_cutter.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/surface_search.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <set>
-#include <tuple>
 
 namespace ostraka {
 
@@ -19,11 +21,15 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structu
 }  // namespace
 
 FaceCutter::FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) : mesh_(mesh), curves_(curves) {
-    place_nodes(curves);
+    for (const SurfaceCurve& curve : curves) {
+        std::vector<Index>& vertices = node_vertex_.emplace_back();
+        for (const SurfacePoint& p : curve.points) vertices.push_back(vertex_at(p));
+    }
+    for (auto& [edge, list] : on_edge_) std::sort(list.begin(), list.end());
     for (std::size_t c = 0; c < curves.size(); ++c)
         for (std::size_t i = 0; i < curves[c].faces.size(); ++i) {
             const Index a = node_vertex_[c][i], b = node_vertex_[c][i + 1];
-            if (a == b || common_edge(mesh_, curves[c].nodes[i], curves[c].nodes[i + 1]) != no_index) continue;
+            if (a == b || shared_edge(mesh_, curves[c].points[i], curves[c].points[i + 1]) != no_index) continue;
             cuts_[curves[c].faces[i]].segments.emplace_back(std::min(a, b), std::max(a, b));
         }
     // A face with a new vertex on an edge must be subdivided even if no curve traverses it.
@@ -38,25 +44,23 @@ FaceCutter::FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves
 
 std::vector<Index> FaceCutter::path(std::size_t curve) const {
     const SurfaceCurve& drawn = curves_[curve];
-    if (drawn.nodes.empty()) return {};
+    if (drawn.points.empty()) return {};
     std::vector<Index> vertices{node_vertex_[curve].front()};
     for (std::size_t i = 0; i < drawn.faces.size(); ++i) {
         const Index a = node_vertex_[curve][i], b = node_vertex_[curve][i + 1];
         if (a == b) continue;
         std::vector<Index> between;
         bool forward = a < b;
-        if (const Index edge = common_edge(mesh_, drawn.nodes[i], drawn.nodes[i + 1]); edge != no_index) {
-            const auto along = [&](const SurfaceNode& node) {
-                return node.kind == SurfaceNode::Kind::edge                                  ? node.parameter
-                       : Vertex(node.element) == mesh_.source(mesh_.halfedge(Edge(edge), 0)) ? 0.0
-                                                                                             : 1.0;
+        if (const Index edge = shared_edge(mesh_, drawn.points[i], drawn.points[i + 1]); edge != no_index) {
+            const auto along = [&](const SurfacePoint& p) {
+                if (p.is_on_edge()) return fraction_along(mesh_, Edge(edge), p);
+                return p.vertex() == mesh_.source(mesh_.halfedge(Edge(edge), 0)) ? 0.0 : 1.0;
             };
-            const double from = along(drawn.nodes[i]), to = along(drawn.nodes[i + 1]);
+            const double from = along(drawn.points[i]), to = along(drawn.points[i + 1]);
             forward = from < to;
             if (const auto found = on_edge_.find(edge); found != on_edge_.end())
-                for (const auto& [parameter, v] : found->second)
-                    if (parameter > std::min(from, to) && parameter < std::max(from, to) && v != a && v != b)
-                        between.push_back(v);
+                for (const auto& [fraction, v] : found->second)
+                    if (fraction > std::min(from, to) && fraction < std::max(from, to) && v != a && v != b) between.push_back(v);
         } else if (const auto found = crossed_.find(std::minmax(a, b)); found != crossed_.end()) {
             between = found->second;
         }
@@ -73,49 +77,35 @@ std::vector<Index> FaceCutter::faces() const {
     return list;
 }
 
-Index FaceCutter::add_node(const SurfaceNode& node) {
-    nodes_.push_back(node);
-    return static_cast<Index>(mesh_.number_of_vertices() + nodes_.size() - 1);
+Index FaceCutter::add_point(const SurfacePoint& p) {
+    points_.push_back(p);
+    positions_.push_back(position(mesh_, p));
+    return static_cast<Index>(mesh_.number_of_vertices() + points_.size() - 1);
 }
 
-void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
-    std::map<std::tuple<Index, double>, Index> edge_vertex;
-    std::map<std::tuple<Index, double, double>, Index> face_vertex;
-    constexpr double same = 1e-7;  // nodes closer than this fraction of the edge are merged
-    const auto missing = [](const char* what, Index i) {
-        fail_input("curve", std::string("names ") + what + " " + std::to_string(i) + ", which does not exist");
-    };
-    for (const SurfaceCurve& curve : curves) {
-        auto& vertices = node_vertex_.emplace_back();
-        for (const SurfaceNode& node : curve.nodes) {
-            Index v = node.element;
-            if (node.kind == SurfaceNode::Kind::vertex) {
-                if (v >= mesh_.number_of_vertices()) missing("vertex", v);
-            } else if (node.kind == SurfaceNode::Kind::edge) {
-                if (node.element >= mesh_.number_of_edges()) missing("edge", node.element);
-                const auto near = edge_vertex.lower_bound({node.element, node.parameter - same});
-                if (near != edge_vertex.end() && std::get<0>(near->first) == node.element &&
-                    std::get<1>(near->first) <= node.parameter + same) {
-                    v = near->second;
-                } else {
-                    v = add_node(node);
-                    edge_vertex.emplace(std::make_tuple(node.element, node.parameter), v);
-                    on_edge_[node.element].emplace_back(node.parameter, v);
-                }
-            } else {
-                if (node.element >= mesh_.number_of_faces()) missing("face", node.element);
-                const auto [entry, fresh] =
-                    face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
-                if (fresh) {
-                    entry->second = add_node(node);
-                    cuts_[node.element].inner.push_back(entry->second);
-                }
-                v = entry->second;
-            }
-            vertices.push_back(v);
-        }
+/// The vertex at a point of a curve: an old one, or a new one for the first of several equal points.
+Index FaceCutter::vertex_at(const SurfacePoint& p) {
+    constexpr double same = 1e-7;  // points closer than this fraction of the edge are merged
+    if (!has_element(mesh_, p)) fail_input("curve", fmt::format("names {}, which does not exist", element_name(p)));
+    if (p.is_vertex()) return p.element[0];
+    if (p.is_on_edge()) {
+        const Edge edge = edge_of(mesh_, p);
+        const double fraction = fraction_along(mesh_, edge, p);
+        const auto near = edge_vertex_.lower_bound({edge, fraction - same});
+        if (near != edge_vertex_.end() && Edge(near->first.first) == edge && near->first.second <= fraction + same)
+            return near->second;
+        const Index v = add_point(p);
+        edge_vertex_.emplace(std::pair(edge, fraction), v);
+        on_edge_[edge].emplace_back(fraction, v);
+        return v;
     }
-    for (auto& [edge, list] : on_edge_) std::sort(list.begin(), list.end());
+    const Index face = p.element[0];
+    const auto [entry, fresh] = face_vertex_.try_emplace({face, p.weights[1], p.weights[2]});
+    if (fresh) {
+        entry->second = add_point(p);
+        cuts_[face].inner.push_back(entry->second);
+    }
+    return entry->second;
 }
 
 /// The boundary of a face with the vertices on its edges, counter-clockwise.
@@ -141,12 +131,13 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     const Cut cut = found == cuts_.end() ? Cut{} : found->second;
     std::vector<std::array<Index, 3>> triangles;
     if (area_vector(mesh_, Face(face)).squared_length() > 0) {
-        const std::size_t nodes_before = nodes_.size();
+        const std::size_t points_before = points_.size();
         // First with the curves; if rounding makes the boundary invalid, with the boundary only: the curves then follow edges
         // nearby.
         for (const bool with_curves : {true, false}) {
             if (triangulate(face, cut, vertex_path, with_curves, triangles)) return triangles;
-            nodes_.resize(nodes_before);
+            points_.resize(points_before);
+            positions_.resize(points_before);
             triangles.clear();
         }
     }
@@ -223,13 +214,8 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
             if (old.count(v) == 0) fresh.push_back(v);
         std::sort(fresh.begin(), fresh.end(), [](auto v, auto w) { return v->point() < w->point(); });
         for (const auto v : fresh) {
-            SurfaceNode node;
-            node.kind = SurfaceNode::Kind::face;
-            node.element = face;
             const Point place = origin + scale * (v->point().x() * x + v->point().y() * y);
-            node.barycentric = nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place);
-            node.point = point_at(mesh_, face, node.barycentric);
-            v->info() = add_node(node);
+            v->info() = add_point(face_point(face, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place)));
             handle[v->info()] = v;
         }
     }

@@ -4,8 +4,12 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/run_apart.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_search.h"
 #include "surface_patch.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,42 +23,28 @@ using detail::ExactSearch;
 using PathTraits = detail::WatchedTraits;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
-/// The faces that contain a node; checks that the node belongs to the mesh.
-std::vector<Face> faces_at(const Mesh& mesh, const SurfaceNode& node) {
-    const auto [what, count] = node.kind == SurfaceNode::Kind::face   ? std::pair("face", mesh.number_of_faces())
-                               : node.kind == SurfaceNode::Kind::edge ? std::pair("edge", mesh.number_of_edges())
-                                                                      : std::pair("vertex", mesh.number_of_vertices());
-    if (node.element >= count)
-        fail_usage(std::string("a place on ") + what + ' ' + std::to_string(node.element) + " of " + std::to_string(count),
-                   "was it taken on another mesh?");
-    return faces_of(mesh, node);
+/// The faces that contain a point; checks that the point belongs to the mesh.
+std::vector<Face> faces_at(const Mesh& mesh, const SurfacePoint& p) {
+    if (!has_element(mesh, p))
+        fail_usage(fmt::format("a place on {}, which the mesh does not have", element_name(p)), "was it taken on another mesh?");
+    return faces_of(mesh, p);
 }
 
 /// The start vertices of edge paths, with the straight distance to each.
-std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode& node, const std::vector<Face>& faces) {
-    if (node.kind == SurfaceNode::Kind::vertex) return {{Vertex(node.element), 0.0}};
+std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfacePoint& p, const std::vector<Face>& faces) {
+    if (p.is_vertex()) return {{p.vertex(), 0.0}};
+    const Point place = position(mesh, p);
     std::vector<std::pair<Vertex, double>> list;
     for (const Face face : faces)
-        for (const Vertex v : corners(mesh, face)) list.emplace_back(v, distance(node.point, mesh.point(v)));
+        for (const Vertex v : corners(mesh, face)) list.emplace_back(v, distance(place, mesh.point(v)));
     return list;
 }
 
-/// The face of the patch and the node's barycentric coordinates in it, in CGAL's order, which begins with the last corner.
-std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch,
-                                                              const SurfaceNode& node, Face face) {
+/// The face of the patch and the point's weights in it, in CGAL's order, which begins with the last corner.
+std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch, const SurfacePoint& p,
+                                                              Face face) {
     const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
-    std::array<double, 3> weights{0, 0, 0};
-    const auto corner = corners(mesh, face);
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (node.kind == SurfaceNode::Kind::face) weights[k] = node.barycentric[k];
-        if (node.kind == SurfaceNode::Kind::vertex) weights[k] = corner[k] == Vertex(node.element) ? 1 : 0;
-        if (node.kind == SurfaceNode::Kind::edge) {
-            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
-            weights[k] = corner[k] == mesh.source(h) ? 1 - node.parameter : corner[k] == mesh.target(h) ? node.parameter : 0;
-        }
-    }
+    const std::array<double, 3> weights = in_face(mesh, p, face);
     return {Face(static_cast<Index>(place)), PathTraits::Barycentric_coordinates{{weights[2], weights[0], weights[1]}}};
 }
 
@@ -114,7 +104,7 @@ std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index
             fail_usage("vertex " + std::to_string(source) + " is not one of the " + std::to_string(mesh.number_of_vertices()),
                        "was it picked on another mesh?");
         result[source] = 0;
-        const std::vector<Face> around = faces_at(mesh, surface_node(mesh, Vertex(source)));
+        const std::vector<Face> around = faces_at(mesh, vertex_point(source));
         start.insert(start.end(), around.begin(), around.end());
         places.push_back(mesh.point(Vertex(source)));
         gates.emplace_back(Vertex(source), 0.0);
@@ -152,22 +142,46 @@ std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index
     return result;
 }
 
-double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to) {
+namespace {
+
+/// Two places on a mesh that do not lie in a common face.
+struct Route {
+    const Mesh& mesh;
+    const SurfacePoint &from, &to;
+    std::vector<Face> start, end;   ///< the faces that contain the places
+    double along_edges = infinite;  ///< length of the shortest path along edges
+
+    /// The faces that a curve of that length can meet: it lies in the ellipsoid with both places as foci.
+    [[nodiscard]] SurfacePatch patch() const {
+        const Point first = position(mesh, from), last = position(mesh, to);
+        const auto met = [&](Face face) {  // also keeps a face whose distances are NaN
+            return !(distance_to_face(mesh, face, first) + distance_to_face(mesh, face, last) > longest());
+        };
+        return cut_out(mesh, grow_faces(mesh, start, met), first);
+    }
+    [[nodiscard]] double longest() const { return along_edges * (1 + 1e-9); }
+};
+
+/// Nothing if no path along edges joins the places.
+std::optional<Route> route_between(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to) {
+    Route route{mesh, from, to, faces_at(mesh, from), faces_at(mesh, to)};
+    if (route.start.empty() || route.end.empty()) return std::nullopt;
+    const std::vector<double> lengths = edge_distances(mesh, gates(mesh, from, route.start), infinite);
+    for (const auto& [v, way] : gates(mesh, to, route.end)) route.along_edges = std::min(route.along_edges, lengths[v] + way);
+    if (!std::isfinite(route.along_edges)) return std::nullopt;
+    return route;
+}
+
+}  // namespace
+
+double geodesic_distance(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to) {
     const std::vector<Face> start = faces_at(mesh, from), end = faces_at(mesh, to);
-    for (const Face a : start)
-        if (std::find(end.begin(), end.end(), a) != end.end()) return distance(from.point, to.point);
-    if (from.kind == to.kind && from.element == to.element && from.kind == SurfaceNode::Kind::vertex) return 0;
-    if (start.empty() || end.empty()) return infinite;
-    const std::vector<double> lengths = edge_distances(mesh, gates(mesh, from, start), infinite);
-    double shortest = infinite;
-    for (const auto& [v, way] : gates(mesh, to, end)) shortest = std::min(shortest, lengths[v] + way);
-    if (!std::isfinite(shortest)) return infinite;
-    // A curve of that length lies in the ellipsoid with both places as foci.
-    const double sum = shortest * (1 + 1e-9);
-    const auto met = [&](Face face) {  // also keeps a face whose distances are NaN
-        return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
-    };
-    SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
+    if (std::find_first_of(start.begin(), start.end(), end.begin(), end.end()) != start.end())
+        return distance(position(mesh, from), position(mesh, to));
+    if (from.is_vertex() && from == to) return 0;
+    const std::optional<Route> route = route_between(mesh, from, to);
+    if (!route) return infinite;
+    SurfacePatch whole = route->patch();
     const auto source = place_in(mesh, whole, from, start.front()), target = place_in(mesh, whole, to, end.front());
     const auto [patch, length] = searched(std::move(whole), [source, target](const SurfacePatch& own) {
         ExactSearch search(own.mesh);
@@ -175,7 +189,7 @@ double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const Surfac
         return static_cast<double>(search.shortest_distance_to_source_points(target.first, target.second).first);
     });
     const double exact = patch.scale * length;
-    return exact >= 0 ? std::min(exact, shortest) : shortest;
+    return exact >= 0 ? std::min(exact, route->along_edges) : route->along_edges;
 }
 
 namespace {
@@ -199,45 +213,66 @@ struct PathSteps {
 struct PathPlaces {
     const Mesh& mesh;
     const SurfacePatch& patch;
-    std::vector<SurfaceNode> nodes;
+    std::vector<SurfacePoint> points;
 
-    void add(SurfaceNode node) { nodes.push_back(std::move(node)); }
-    void operator()(Mesh::Vertex_index v) { add(surface_node(mesh, Vertex(patch.vertices[v]))); }
+    void operator()(Mesh::Vertex_index v) { points.push_back(vertex_point(patch.vertices[v])); }
     void operator()(Mesh::Halfedge_index h, Kernel::FT along) {
         const Index a = patch.vertices[patch.mesh.source(h)], b = patch.vertices[patch.mesh.target(h)];
-        SurfacePlace place;
         constexpr double snap = 1e-9;
-        if (along < snap || along > 1 - snap) {
-            place.element[0] = along < 0.5 ? a : b;
-        } else {
-            place.kind = SurfaceNode::Kind::edge;
-            place.element = {std::min(a, b), std::max(a, b)};
-            place.weights[0] = a < b ? along : 1 - along;
-        }
-        add(node_at(mesh, place));
+        if (along < snap || along > 1 - snap) points.push_back(vertex_point(along < 0.5 ? a : b));
+        else points.push_back(ordered_edge_point(a, b, along));
     }
 };
 
+/// The curve from `from` through the points to `to`; nothing if consecutive ones have no common face.
+std::optional<SurfaceCurve> joined(const Mesh& mesh, const SurfacePoint& from, const std::vector<SurfacePoint>& between,
+                                   const SurfacePoint& to) {
+    SurfaceCurve curve;
+    curve.points = {from};
+    const auto add = [&](const SurfacePoint& p) {
+        if (same_point(mesh, p, curve.points.back())) return true;
+        const Index face = shared_face(mesh, curve.points.back(), p);
+        if (face == no_index) return false;
+        curve.points.push_back(p);
+        curve.faces.push_back(face);
+        return true;
+    };
+    if (!std::all_of(between.begin(), between.end(), add) || !add(to)) return std::nullopt;
+    return curve;
+}
+
+/// The shortest edge path from a corner of the first place's face to a corner of the last place's face, with both places.
+std::optional<SurfaceCurve> curve_along_edges(const Route& route) {
+    const Mesh& mesh = route.mesh;
+    const auto nearest = [&](const SurfacePoint& p, const std::vector<Face>& faces) {
+        if (p.is_vertex()) return p.vertex();
+        const Point place = position(mesh, p);
+        const auto corner = corners(mesh, faces.front());
+        return *std::min_element(corner.begin(), corner.end(), [&](Vertex a, Vertex b) {
+            return CGAL::squared_distance(mesh.point(a), place) < CGAL::squared_distance(mesh.point(b), place);
+        });
+    };
+    std::vector<SurfacePoint> points{route.from};
+    for (const Index v : PathSearch(mesh).find(nearest(route.from, route.start), nearest(route.to, route.end), {}))
+        if (const SurfacePoint p = vertex_point(v); p != route.from && p != route.to) points.push_back(p);
+    points.push_back(route.to);
+    SurfaceCurve curve;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        curve.faces.push_back(shared_face(mesh, points[i - 1], points[i]));
+        if (curve.faces.back() == no_index) return std::nullopt;
+    }
+    curve.points = std::move(points);
+    return curve;
+}
+
 }  // namespace
 
-std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to) {
+std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to) {
     const std::vector<Face> start = faces_at(mesh, from), end = faces_at(mesh, to);
-    SurfaceCurve curve;
-    curve.nodes = {from, to};
-    if (const Index face = common_face(mesh, from, to); face != no_index) {
-        curve.faces = {face};
-        return curve;
-    }
-    if (start.empty() || end.empty()) return std::nullopt;
-    const std::vector<double> lengths = edge_distances(mesh, gates(mesh, from, start), infinite);
-    double shortest = infinite;
-    for (const auto& [v, way] : gates(mesh, to, end)) shortest = std::min(shortest, lengths[v] + way);
-    if (!std::isfinite(shortest)) return std::nullopt;
-    const double sum = shortest * (1 + 1e-9);
-    const auto met = [&](Face face) {
-        return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
-    };
-    SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
+    if (const Index face = shared_face(mesh, from, to); face != no_index) return SurfaceCurve{{from, to}, {face}};
+    const std::optional<Route> route = route_between(mesh, from, to);
+    if (!route) return std::nullopt;
+    SurfacePatch whole = route->patch();
     // Searched from the end, so that the sequence begins at the start.
     const auto source = place_in(mesh, whole, to, end.front()), target = place_in(mesh, whole, from, start.front());
     const auto [patch, path] = searched(std::move(whole), [source, target](const SurfacePatch& own) {
@@ -253,47 +288,9 @@ std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& 
         else places(step.halfedge, step.along);
     }
     const double exact = patch.scale * path.length;
-    if (exact >= 0 && exact <= sum) {
-        std::vector<SurfaceNode> nodes{from};
-        const auto add = [&](const SurfaceNode& node) {
-            const SurfaceNode& last = nodes.back();
-            if (node.kind == last.kind && node.element == last.element &&
-                (node.kind == SurfaceNode::Kind::vertex || node.point == last.point))
-                return true;
-            if (common_face(mesh, last, node) == no_index) return false;
-            nodes.push_back(node);
-            return true;
-        };
-        bool joined = true;
-        for (const SurfaceNode& node : places.nodes) joined = joined && add(node);
-        joined = joined && add(to);
-        if (joined) {
-            curve.nodes = std::move(nodes);
-            for (std::size_t i = 1; i < curve.nodes.size(); ++i)
-                curve.faces.push_back(common_face(mesh, curve.nodes[i - 1], curve.nodes[i]));
-            return curve;
-        }
-    }
-    // Edge path from a corner of the first place's face to a corner of the last place's face.
-    const auto nearest = [&](const SurfaceNode& node, const std::vector<Face>& faces) {
-        if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
-        const auto corner = corners(mesh, faces.front());
-        return *std::min_element(corner.begin(), corner.end(), [&](Vertex a, Vertex b) {
-            return CGAL::squared_distance(mesh.point(a), node.point) < CGAL::squared_distance(mesh.point(b), node.point);
-        });
-    };
-    PathSearch paths(mesh);
-    curve.nodes = {from};
-    for (const Index v : paths.find(nearest(from, start), nearest(to, end), {}))
-        if (!(from.kind == SurfaceNode::Kind::vertex && v == from.element) &&
-            !(to.kind == SurfaceNode::Kind::vertex && v == to.element))
-            curve.nodes.push_back(surface_node(mesh, Vertex(v)));
-    curve.nodes.push_back(to);
-    for (std::size_t i = 1; i < curve.nodes.size(); ++i) {
-        curve.faces.push_back(common_face(mesh, curve.nodes[i - 1], curve.nodes[i]));
-        if (curve.faces.back() == no_index) return std::nullopt;
-    }
-    return curve;
+    if (exact >= 0 && exact <= route->longest())
+        if (auto curve = joined(mesh, from, places.points, to)) return curve;
+    return curve_along_edges(*route);
 }
 
 }  // namespace ostraka

@@ -1,14 +1,11 @@
 #include "ostraka/geom/insert_curves.h"
 
-#include "face_cutter.h"
-#include "ostraka/core/progress.h"
+#include "face_verdict.h"
 #include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 
 namespace ostraka {
 
@@ -35,8 +32,8 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
             result.face_origin.push_back(f);
         }
     }
-    result.new_nodes = cutter.new_nodes();
-    for (const SurfaceNode& node : result.new_nodes) soup.points.push_back({node.point.x(), node.point.y(), node.point.z()});
+    result.new_points = cutter.new_points();
+    for (const Point& p : cutter.new_positions()) soup.points.push_back({p.x(), p.y(), p.z()});
     result.mesh = build_mesh(soup);
     for (const auto& [edge, list] : cutter.on_edge())
         for (const auto& [parameter, v] : list) result.on_edge[edge].push_back(v);
@@ -56,63 +53,6 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
     return result;
 }
 
-namespace {
-
-/// Fraction of the area of a face to the left of the directed pieces; negative if no piece is a boundary in it. `whole_edges`
-/// receives, for each old edge without a curve, whether the adjacent face lies to the left (1) or to the right (0).
-double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
-                  const std::map<std::pair<Index, Index>, int>& net, const std::array<Vertex, 3>& old_corners,
-                  std::vector<std::tuple<Index, Index, double>>& whole_edges) {
-    enum { unknown, left, right };
-    std::vector<int> side(triangles.size(), unknown);
-    std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-        for (int k = 0; k < 3; ++k) owner[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
-    const auto weight = [&](Index a, Index b) {
-        const auto found = net.find(std::minmax(a, b));
-        return found == net.end() ? 0 : a < b ? found->second : -found->second;
-    };
-    std::vector<std::size_t> stack;
-    for (const auto& [edge, t] : owner) {
-        const int w = weight(edge.first, edge.second);
-        if (w == 0 || side[t] != unknown) continue;
-        side[t] = w > 0 ? left : right;
-        stack.push_back(t);
-    }
-    if (stack.empty()) return -1;
-    CancelCheck check;
-    while (!stack.empty()) {
-        check();
-        const std::size_t t = stack.back();
-        stack.pop_back();
-        for (int k = 0; k < 3; ++k) {
-            const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-            const auto other = owner.find({b, a});
-            if (other == owner.end() || side[other->second] != unknown || weight(a, b) != 0) continue;
-            side[other->second] = side[t];
-            stack.push_back(other->second);
-        }
-    }
-    for (int k = 0; k < 3; ++k) {
-        const Index a = old_corners[k], b = old_corners[(k + 1) % 3];
-        const auto found = owner.find({a, b});
-        if (found == owner.end() || side[found->second] == unknown) continue;
-        const bool turned = weight(a, b) != 0;  // the outline follows the edge: the adjacent face lies on the other side
-        whole_edges.emplace_back(a, b, (side[found->second] == left) != turned ? 1.0 : 0.0);
-    }
-    double sum = 0, inside = 0;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        const auto& [a, b, c] = triangles[t];
-        const double area =
-            std::sqrt(CGAL::cross_product(cutter.point(b) - cutter.point(a), cutter.point(c) - cutter.point(a)).squared_length());
-        sum += area;
-        if (side[t] == left) inside += area;
-    }
-    return sum > 0 ? inside / sum : -1;
-}
-
-}  // namespace
-
 std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings) {
     FaceCutter cutter(mesh, curves);
     // Pieces per face as directed pairs of vertices; a piece and its reverse cancel.
@@ -123,10 +63,12 @@ std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::v
             if (a != b) pieces[curves[c].faces[i]][std::minmax(a, b)] += a < b ? 1 : -1;
         }
     std::map<Index, double> share_of;
-    std::vector<std::tuple<Index, Index, double>> whole_edges;
+    std::map<Index, FaceVerdict> verdicts;
     for (const auto& [face, net] : pieces) {
-        const double share = left_share(cutter, cutter.cut(face), net, corners(mesh, Face(face)), whole_edges);
-        if (share >= 0) share_of[face] = share;
+        const FaceVerdict verdict = judge_face(mesh, face, cutter, cutter.cut(face), net);
+        if (!verdict.known) continue;
+        verdicts.emplace(face, verdict);
+        if (verdict.area > 0) share_of[face] = verdict.share;
     }
     // Rings of faces without curves: each face lies on the side of the face from which it was reached.
     std::vector<std::pair<Index, double>> ring;
@@ -135,7 +77,11 @@ std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::v
         const Index g = mesh.face(mesh.opposite(h));
         if (pieces.count(g) == 0 && share_of.emplace(g, share).second) ring.emplace_back(g, share);
     };
-    for (const auto& [a, b, share] : whole_edges) reach(find_halfedge(mesh, Vertex(a), Vertex(b)), share);
+    for (const auto& [face, verdict] : verdicts) {
+        Halfedge h = mesh.next(mesh.halfedge(Face(face)));  // from corner 0 to corner 1
+        for (std::size_t k = 0; k < 3; ++k, h = mesh.next(h))
+            if (verdict.beyond[k] >= 0) reach(h, verdict.beyond[k]);
+    }
     for (int k = 1; k < rings; ++k) {
         std::vector<std::pair<Index, double>> last;
         std::swap(last, ring);

@@ -15,10 +15,14 @@ struct SurfaceSearch::Tree {
     double typical_edge = 0;
 };
 
+double typical_edge(double area, std::size_t faces) {
+    return std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, faces)) * 4 / std::sqrt(3.0));
+}
+
 SurfaceSearch::SurfaceSearch(const Mesh& mesh) : tree_(std::make_unique<Tree>(Tree{FaceTree(mesh)})) {
     const FaceTree& faces = tree_->faces;
     if (faces.size() == 0) fail_input("mesh", "has no face with an area", "check its scale or repair it");
-    tree_->typical_edge = std::sqrt(faces.area() / static_cast<double>(faces.size()) * 4 / std::sqrt(3.0));
+    tree_->typical_edge = ostraka::typical_edge(faces.area(), faces.size());
 }
 
 SurfaceSearch::~SurfaceSearch() = default;

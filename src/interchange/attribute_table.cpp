@@ -25,10 +25,10 @@ const std::vector<std::string>& column_names() {
 }
 
 /// Face index and all three weights, so that they are restored exactly.
-std::string cell_text(const std::vector<Location>& locations) {
+std::string cell_text(const std::vector<SurfacePoint>& locations) {
     std::string text;
-    for (const Location& location : locations)
-        text += fmt::format("{}{} {}", text.empty() ? "" : " ", location.face, joined_numbers(location.barycentric));
+    for (const SurfacePoint& location : locations)
+        text += fmt::format("{}{} {}", text.empty() ? "" : " ", location.element[0], joined_numbers(location.weights));
     return text;
 }
 
@@ -197,7 +197,7 @@ private:
         if (locations.size() % 4 != 0) fail("locations", "is not a face and three weights per point", "correct the cell");
         for (std::size_t i = 0; i < locations.size(); i += 4)
             measure.locations.push_back(
-                {index("locations", locations[i]), {locations[i + 1], locations[i + 2], locations[i + 3]}});
+                face_point(index("locations", locations[i]), {locations[i + 1], locations[i + 2], locations[i + 3]}));
         const auto value = numbers("value");
         if (value.size() > 1) fail("value", "more than one number", "a measure has one value");
         if (!value.empty()) measure.value = value.front();

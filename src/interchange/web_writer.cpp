@@ -176,7 +176,7 @@ private:
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
-            const auto pin = [&](const Location& location) { return place(at(location)); };
+            const auto pin = [&](const SurfacePoint& location) { return place(position(mesh_, location)); };
             add_members(pins, a(), std::to_string(attribute.id),
                         measure.locations.empty() ? vertex_list(measure.points) : json_list(measure.locations, a(), pin));
             const auto picking = [&](const std::vector<Index>& picked) { return vertex_list(picked); };
@@ -184,14 +184,6 @@ private:
         }
         add_given(result, a(), "pins", std::move(pins), "repeats", std::move(repeats));
         return result;
-    }
-
-    [[nodiscard]] Point at(const Location& location) const {
-        const auto [p, q, r] = corners(mesh_, Face(location.face));
-        const auto& w = location.barycentric;
-        const Vector sum = w[0] * (mesh_.point(p) - CGAL::ORIGIN) + w[1] * (mesh_.point(q) - CGAL::ORIGIN) +
-                           w[2] * (mesh_.point(r) - CGAL::ORIGIN);
-        return CGAL::ORIGIN + sum;
     }
 
     const Mesh& mesh_;

@@ -1,4 +1,5 @@
 // Fills holes with triangles between their border vertices.
+#include "ostraka/core/angles.h"
 #include "ostraka/core/parallel.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
@@ -206,7 +207,7 @@ double width(const TriangleSoup& soup, const Hole& hole) {
         const Vector a = point(soup, origin(soup, h)) - base - middle, b = point(soup, target(soup, h)) - base - middle;
         area += std::sqrt(CGAL::cross_product(a, b).squared_length()) / 2;
     }
-    return 2 * std::sqrt(area / CGAL_PI);
+    return 2 * std::sqrt(area / pi);
 }
 
 }  // namespace

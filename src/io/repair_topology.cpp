@@ -1,4 +1,5 @@
 // Orientation, and splitting of non-manifold edges and vertices.
+#include "ostraka/core/angles.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
 
@@ -119,7 +120,7 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
         if (i == 0) zero = direction, side = CGAL::cross_product(axis, direction);
         double angle = std::atan2(direction * side, direction * zero);
         if (i > 0 && apex(soup, halfedges[i]) == apex(soup, halfedges[0])) angle = 0;
-        if (angle < 0) angle += 2 * CGAL_PI;
+        if (angle < 0) angle += 2 * pi;
         leaves.push_back({angle, origin(soup, halfedges[i]) == high, halfedges[i]});
     }
     // At equal angles (a wall between two solids), the end of a solid comes before the beginning of the next.

@@ -1,6 +1,7 @@
 #include "ostraka/measure/examine.h"
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
@@ -22,24 +23,13 @@ std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
     std::vector<bool> visited(selected.size(), false);
     std::size_t patches = 0;
-    std::vector<Index> front;
+    const auto stays = [&](Halfedge h) { return !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))]; };
+    CancelCheck check;
     for (const Index first : faces) {
+        check();
         if (visited[first]) continue;
         ++patches;
-        visited[first] = true;
-        front.assign(1, first);
-        CancelCheck check;
-        while (!front.empty()) {
-            check();
-            const Face face(front.back());
-            front.pop_back();
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !selected[next] || visited[next]) continue;
-                visited[next] = true;
-                front.push_back(next);
-            }
-        }
+        flood_faces(mesh, Face(first), visited, stays);
     }
     return patches;
 }

@@ -5,9 +5,9 @@
 #include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
-#include "ostraka/geom/surface_trace.h"
 #include "ostraka/measure/descriptors.h"
 
 #include <fmt/core.h>
@@ -21,13 +21,11 @@ namespace ostraka {
 
 namespace {
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
 /// A pin: its position, and the vertices from which edge paths start with the distance to each.
 struct Pin {
     Point point{0, 0, 0};
     Index face = no_index;  ///< of a pin inside a face
-    SurfaceNode node;
+    SurfacePoint place;
     std::vector<std::pair<Vertex, double>> gates;
 };
 
@@ -84,7 +82,7 @@ private:
         for (std::size_t i = 0; i + 1 < pins.size(); ++i) {
             if (measure.tool == "ruler") sum += distance(pins[i].point, pins[i + 1].point);
             else if (!measure.exact) sum += along_surface(pins[i], pins[i + 1], where);
-            else sum += joined(geodesic_distance(mesh_, pins[i].node, pins[i + 1].node), where);
+            else sum += joined(geodesic_distance(mesh_, pins[i].place, pins[i + 1].place), where);
         }
         return sum;
     }
@@ -93,7 +91,7 @@ private:
     [[nodiscard]] double variance(const Pin& pin) const {
         double area = 0;
         if (pin.face != no_index) area = face_area(mesh_, Face(pin.face));
-        else if (const Vertex v(pin.node.element); !mesh_.is_isolated(v))
+        else if (const Vertex v = pin.place.vertex(); !mesh_.is_isolated(v))
             for (const Face face : mesh_.faces_around_target(mesh_.halfedge(v)))
                 if (face != Mesh::null_face()) area += face_area(mesh_, face) / 3;
         return area / (4 * pi);
@@ -132,10 +130,11 @@ private:
                            "use the mesh on which the measure was taken");
             result.point = mesh_.point(Vertex(vertex));
             result.gates.emplace_back(Vertex(vertex), 0.0);
-            result.node = surface_node(mesh_, Vertex(vertex));
+            result.place = vertex_point(vertex);
             return result;
         }
-        const auto& [face, weights] = measure.locations[i];
+        result.place = measure.locations[i];
+        const Index face = result.place.element[0];
         if (face >= mesh_.number_of_faces())
             fail_input(where,
                        fmt::format("pin {} lies in face {}, but the mesh has {} faces, counted from 0", i, face,
@@ -143,22 +142,11 @@ private:
                        "use the mesh on which the measure was taken");
         result.face = face;
         const auto corner = corners(mesh_, Face(face));
-        double x = 0, y = 0, z = 0;
+        result.point = position(mesh_, result.place);
         for (std::size_t k = 0; k < 3; ++k) {
-            const Point& p = mesh_.point(corner[k]);
-            x += weights[k] * p.x();
-            y += weights[k] * p.y();
-            z += weights[k] * p.z();
-        }
-        result.point = Point(x, y, z);
-        result.node.kind = SurfaceNode::Kind::face;
-        result.node.element = face;
-        result.node.barycentric = weights;
-        result.node.point = result.point;
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (weights[k] >= 1) {  // the pin coincides with this corner
+            if (measure.locations[i].weights[k] >= 1) {  // the pin coincides with this corner
                 result.gates.assign(1, {corner[k], 0.0});
-                result.node = surface_node(mesh_, corner[k]);
+                result.place = vertex_point(corner[k]);
                 result.face = no_index;
                 break;
             }
@@ -323,15 +311,8 @@ void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& aft
 std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure) {
     std::vector<Point> pins;
     for (std::size_t i = 0; i < measure.points.size(); ++i) {
-        if (i < measure.locations.size() && measure.locations[i].face != no_index) {
-            const auto& [face, weights] = measure.locations[i];
-            Vector position(0, 0, 0);
-            const auto vertices = corners(mesh, Face(face));
-            for (std::size_t c = 0; c < 3; ++c) position = position + weights[c] * (mesh.point(vertices[c]) - CGAL::ORIGIN);
-            pins.push_back(CGAL::ORIGIN + position);
-        } else {
-            pins.push_back(mesh.point(Vertex(measure.points[i])));
-        }
+        const bool located = i < measure.locations.size() && measure.locations[i].element[0] != no_index;
+        pins.push_back(position(mesh, located ? measure.locations[i] : vertex_point(measure.points[i])));
     }
     if (measure.tool == "bounding" && measure.direction && pins.size() == 2) {
         const auto& d = *measure.direction;

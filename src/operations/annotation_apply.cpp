@@ -7,7 +7,7 @@
 #include "ostraka/measure/examine.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 #include "ostraka/vocabulary/vocabulary.h"
 
 #include <fmt/core.h>
@@ -211,7 +211,7 @@ struct AnnotationRemap final : Operation {
             if (face_map) faces = read_index_map(face_map.path(), "face", source.number_of_faces(), target.number_of_faces());
         });
         AnnotationSet remapped = remap_annotations(source, set, target, vertices, faces);
-        for (auto& note : lay_free_annotations(source, set, target, remapped)) remapped.notes.push_back(std::move(note));
+        for (auto& note : project_free_annotations(source, set, target, remapped)) remapped.notes.push_back(std::move(note));
         for (const auto& note : refresh_measures(target, remapped).notes) remapped.notes.push_back(note);
         write_annotations(output.path(), remapped, target, after.file(), context.provenance());
         pictures.write(target, remapped, report);

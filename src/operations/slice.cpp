@@ -3,6 +3,7 @@
 #include "slice_report.h"
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/report/slice_drawing.h"
@@ -273,7 +274,7 @@ struct SliceObject final : Operation {
 
     /// Draws the profile; of an object that is not a surface of revolution only if requested.
     void draw_profile(const Path& file, bool is_requested, const CutObject& cut, Report& report) const {
-        const double section_angle = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
+        const double section_angle = angle ? *angle * pi / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
         const Profile found_profile = find_profile(sliced_mesh(), axis, section_angle);
         const std::string name = file.filename().string();

@@ -1,5 +1,6 @@
 #include "slice_report.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
@@ -17,8 +18,6 @@ namespace ostraka {
 using namespace fields;
 
 namespace {
-
-constexpr double slice_degree = M_PI / 180;
 
 /// Descriptors shown to people, in this order: name, title, number of digits.
 struct ShownDescriptor {
@@ -104,7 +103,7 @@ void add_slice_completeness(Report::Row& row, const Slice& slice) {
     else if (c.share_low < c.share_high) shown += fmt::format(" ({} to {})", percent(c.share_low), percent(c.share_high));
     row("completeness.closed_share", c.closed_share)("completeness.share", c.share)("completeness.share_low", c.share_low)(
         "completeness.share_high", c.share_high)("completeness.share_at_most", c.share_at_most)(
-        "completeness.angle_degrees", c.angle() / slice_degree)("completeness.crossing_contours", c.crossing)(
+        "completeness.angle_degrees", c.angle() / degree)("completeness.crossing_contours", c.crossing)(
         "completeness.turned_contours", c.turned)("completeness.doubtful_share", c.doubtful);
     row.shown("completeness.share", shown);
 }
@@ -259,7 +258,7 @@ std::string slice_table(const CutObject& cut, const std::string& unit) {
                                      cell_or_empty(slice.completeness.share_low),
                                      cell_or_empty(slice.completeness.share_high),
                                      cell_or_empty(slice.completeness.share_at_most),
-                                     cell_or_empty(slice.completeness.angle() / slice_degree),
+                                     cell_or_empty(slice.completeness.angle() / degree),
                                      cell_or_empty(slice.completeness.crossing),
                                      cell_or_empty(slice.completeness.turned),
                                      cell_or_empty(slice.completeness.doubtful)};

@@ -124,11 +124,11 @@ JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObje
 std::vector<Point> lifted_points(const Mesh& mesh, const SurfaceCurve& curve) {
     const double step = 0.002 * box_diagonal(mesh);
     std::vector<Point> places;
-    for (std::size_t i = 0; i < curve.nodes.size(); ++i) {
-        const Point& p = curve.nodes[i].point;
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+        const Point p = position(mesh, curve.points[i]);
         Vector normal(0, 0, 0);
         if (curve.faces.empty()) {
-            for (const Face f : faces_of(mesh, curve.nodes[i])) normal += area_vector(mesh, f);
+            for (const Face f : faces_of(mesh, curve.points[i])) normal += area_vector(mesh, f);
         } else {
             const auto [a, b, c] = corners(mesh, Face(curve.faces[std::min(i, curve.faces.size() - 1)]));
             const auto weight = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), p);

@@ -1,6 +1,7 @@
 #include "seam.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/submesh.h"
@@ -30,26 +31,26 @@ Drawing draw(const Mesh& surface, const Patch& patch, const std::vector<std::opt
         std::vector<std::size_t> first;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const SurfaceHit &a = *places[loop[i]], &b = *places[loop[(i + 1) % loop.size()]];
-            const SurfaceNode from = surface_node(surface, a.face, a.barycentric),
-                              to = surface_node(surface, b.face, b.barycentric);
+            const SurfacePoint from = surface_point(surface, a.face, a.barycentric),
+                               to = surface_point(surface, b.face, b.barycentric);
             Vector up = area_vector(surface, Face(a.face));
             up = up / std::sqrt(up.squared_length());
             Vector other = area_vector(surface, Face(b.face));
             up = up + other / std::sqrt(other.squared_length());
-            const double distance = std::sqrt(CGAL::squared_distance(from.point, to.point));
-            const auto piece = distance > 0 ? trace_line(surface, from, to, up, 3 * distance) : std::nullopt;
-            first.push_back(curve.nodes.empty() ? 0 : curve.nodes.size() - 1);
-            if (!piece || piece->nodes.size() < 2) {
+            const double length = distance(position(surface, from), position(surface, to));
+            const auto piece = length > 0 ? trace_line(surface, from, to, up, 3 * length) : std::nullopt;
+            first.push_back(curve.points.empty() ? 0 : curve.points.size() - 1);
+            if (!piece || piece->points.size() < 2) {
                 drawing.failed.push_back(loop[i]);
                 drawing.failed.push_back(loop[(i + 1) % loop.size()]);
-                curve.nodes.assign(1, to);
+                curve.points.assign(1, to);
                 curve.faces.clear();
                 continue;
             }
-            curve.nodes.insert(curve.nodes.end(), piece->nodes.begin() + (curve.nodes.empty() ? 0 : 1), piece->nodes.end());
+            curve.points.insert(curve.points.end(), piece->points.begin() + (curve.points.empty() ? 0 : 1), piece->points.end());
             curve.faces.insert(curve.faces.end(), piece->faces.begin(), piece->faces.end());
         }
-        first.push_back(curve.nodes.size() - 1);
+        first.push_back(curve.points.size() - 1);
         drawing.curves.push_back(std::move(curve));
         drawing.first.push_back(std::move(first));
     }

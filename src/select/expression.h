@@ -64,7 +64,7 @@ public:
     std::vector<std::vector<Index>> polylines(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
     /// The lines of an expression as geodesics.
-    std::vector<std::vector<SurfacePlace>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+    std::vector<std::vector<SurfacePoint>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
     /// True if part of the selection's border is a level of a field, which runs through the faces: for volumes, shapes drawn in
     /// pictures, thresholds on vertices, brushes, lassos along geodesics, growth by a distance, and regions with a free

@@ -4,6 +4,7 @@
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/geodesic.h"
+#include "ostraka/geom/surface_search.h"
 #include "ostraka/select/growth.h"
 #include "ostraka/select/selections.h"
 
@@ -25,18 +26,14 @@ void add_level(const Mesh& mesh, const std::vector<bool>& inside, const Root& ro
         const Vertex a = inside[v] ? w : v, b = inside[v] ? v : w;  // from outside to inside, the same order as seen from the
                                                                     // other face
         const double t = std::clamp(root(a, b), 0.0, 1.0);
-        if (t < at_vertex || t > 1 - at_vertex) return surface_node(mesh, t < 0.5 ? a : b);
-        SurfacePlace place;
-        place.kind = SurfaceNode::Kind::edge;
-        place.element = {std::min<Index>(a, b), std::max<Index>(a, b)};
-        place.weights[0] = a < b ? t : 1 - t;
-        return node_at(mesh, place);
+        if (t < at_vertex || t > 1 - at_vertex) return vertex_point(t < 0.5 ? a : b);
+        return ordered_edge_point(a, b, t);
     };
     for (const Face f : mesh.faces()) {
         SurfaceCurve curve;
         for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(f)))
-            if (inside[mesh.source(h)] != inside[mesh.target(h)]) curve.nodes.push_back(node_on(h));
-        if (curve.nodes.size() != 2) continue;
+            if (inside[mesh.source(h)] != inside[mesh.target(h)]) curve.points.push_back(node_on(h));
+        if (curve.points.size() != 2) continue;
         curve.faces.push_back(f);
         curves.push_back(std::move(curve));
     }
@@ -115,7 +112,7 @@ private:
             std::array<double, 3> side{};
             for (std::size_t k = 0; k < 3; ++k) side[k] = (mesh_.point(corner[k]) - planes_[i].origin) * planes_[i].normal;
             // Intersection of the plane with the face: a chord with its ends on edges.
-            std::vector<std::pair<double, SurfaceNode>> ends;
+            std::vector<std::pair<double, SurfacePoint>> ends;
             for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
                 const Vertex v = std::min(mesh_.source(h), mesh_.target(h)), w = std::max(mesh_.source(h), mesh_.target(h));
                 const auto at = [&](Vertex x) {
@@ -124,19 +121,11 @@ private:
                 const double a = at(v), b = at(w);
                 if ((a > 0) == (b > 0)) continue;
                 const double t = a / (a - b);
-                SurfacePlace place;
-                if (t < at_vertex || t > 1 - at_vertex) {
-                    place.element[0] = t < 0.5 ? v : w;
-                } else {
-                    place.kind = SurfaceNode::Kind::edge;
-                    place.element = {v, w};
-                    place.weights[0] = t;
-                }
-                const SurfaceNode node = node_at(mesh_, place);
-                const auto pixel = camera_.project(node.point);
+                const SurfacePoint end = t < at_vertex || t > 1 - at_vertex ? vertex_point(t < 0.5 ? v : w) : edge_point(v, w, t);
+                const auto pixel = camera_.project(position(mesh_, end));
                 if (!pixel) return;
                 const double x = q[0] - p[0], y = q[1] - p[1];
-                ends.emplace_back((((*pixel)[0] - p[0]) * x + ((*pixel)[1] - p[1]) * y) / (x * x + y * y), node);
+                ends.emplace_back((((*pixel)[0] - p[0]) * x + ((*pixel)[1] - p[1]) * y) / (x * x + y * y), end);
             }
             if (ends.size() != 2) continue;
             if (ends[0].first > ends[1].first) std::swap(ends[0], ends[1]);
@@ -144,20 +133,20 @@ private:
             if (ends[0].first < 0 && !move_to_corner(f, area, i, ends[0].second)) continue;
             if (ends[1].first > 1 && !move_to_corner(f, area, (i + 1) % corners_.size(), ends[1].second)) continue;
             SurfaceCurve curve;
-            curve.nodes = {ends[0].second, ends[1].second};
+            curve.points = {ends[0].second, ends[1].second};
             curve.faces = {f};
             curves.push_back(std::move(curve));
         }
     }
 
-    /// Moves a node to the point of the face that is seen at a corner of the polygon.
-    bool move_to_corner(Face f, const Vector& area, std::size_t i, SurfaceNode& node) const {
+    /// Moves an end to the point of the face that is seen at a corner of the polygon.
+    bool move_to_corner(Face f, const Vector& area, std::size_t i, SurfacePoint& end) const {
         const auto ray = camera_.ray(corners_[i][0], corners_[i][1]);
         const double slope = ray.direction * area;
         if (slope == 0) return false;
         const auto corner = ostraka::corners(mesh_, f);
         const Point place = ray.origin + ((mesh_.point(corner[0]) - ray.origin) * area / slope) * ray.direction;
-        node = surface_node(mesh_, f,
+        end = surface_point(mesh_, f,
                             nearest_barycentric(mesh_.point(corner[0]), mesh_.point(corner[1]), mesh_.point(corner[2]), place),
                             at_vertex);
         return true;
@@ -217,7 +206,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Index a = points[i], b = points[(i + 1) % points.size()];
             if (a == b) continue;
-            const auto leg = geodesic_curve(mesh_, surface_node(mesh_, Vertex(a)), surface_node(mesh_, Vertex(b)));
+            const auto leg = geodesic_curve(mesh_, vertex_point(a), vertex_point(b));
             if (!leg)
                 fail(here, "no path along the surface joins vertices " + std::to_string(a) + " and " + std::to_string(b),
                      "they lie on separate parts of the mesh: pick points on one part");
@@ -350,11 +339,11 @@ std::vector<bool> ExpressionEvaluator::lassoed(const JsonValue& value, PlaceFram
     return inside;
 }
 
-std::vector<std::vector<SurfacePlace>> ExpressionEvaluator::curves(const JsonValue& expression, PlaceFrame around,
+std::vector<std::vector<SurfacePoint>> ExpressionEvaluator::curves(const JsonValue& expression, PlaceFrame around,
                                                                    const std::string& at) const {
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
-    std::vector<std::vector<SurfacePlace>> result;
+    std::vector<std::vector<SurfacePoint>> result;
     if (kind == "union") {
         for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
             for (auto& curve : curves((*value)[i], frame, at + "/union/" + std::to_string(i))) result.push_back(std::move(curve));
@@ -368,15 +357,14 @@ std::vector<std::vector<SurfacePlace>> ExpressionEvaluator::curves(const JsonVal
     if (closed && points.size() > 2 && points.front() != points.back()) points.push_back(points.front());
     if (points.size() < 2)
         fail(at + "/path", "a path through fewer than two different vertices", "pick two or more, farther apart");
-    std::vector<SurfacePlace> places;
+    std::vector<SurfacePoint> places;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const auto leg =
-            geodesic_curve(mesh_, surface_node(mesh_, Vertex(points[i])), surface_node(mesh_, Vertex(points[i + 1])));
+        const auto leg = geodesic_curve(mesh_, vertex_point(points[i]), vertex_point(points[i + 1]));
         if (!leg)
             fail(at + "/path", "no path along the surface joins two of its points",
                  "they lie on separate parts of the mesh: pick points on one part");
-        for (const SurfaceNode& node : leg->nodes)
-            if (const SurfacePlace place = place_of(mesh_, node); places.empty() || places.back() != place)
+        for (const SurfacePoint& p : leg->points)
+            if (const SurfacePoint place = stored_point(mesh_, p); places.empty() || places.back() != place)
                 places.push_back(place);
     }
     result.push_back(std::move(places));

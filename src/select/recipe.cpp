@@ -1,12 +1,13 @@
 #include "ostraka/select/recipe.h"
 
-#include "expression.h"
-
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/measure/measure.h"
+#include "recipe_step.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>
@@ -16,19 +17,6 @@
 namespace ostraka {
 
 namespace {
-
-using std::to_string;
-
-AnnotationType type_of(const std::string& name) {
-    return name == "point" ? AnnotationType::point : name == "line" ? AnnotationType::line : AnnotationType::region;
-}
-
-/// Type of a region's outline.
-enum class Outline {
-    drawn,  ///< free if part of the border is a level of a field; sets of faces end along the edges of the mesh
-    edges,
-    free,  ///< always free: sets of faces end at isolines
-};
 
 /// Executes a recipe. Unknown members are rejected: a misspelt one would silently change the result.
 class RecipeRunner {
@@ -51,7 +39,12 @@ public:
         surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_};
         evaluator_.look_from(surroundings_);
         const JsonValue& steps = recipe["annotations"];
-        for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) step(steps[i], frame, "/annotations/" + to_string(i));
+        for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) {
+            const RecipeStep step = recipe_step_from_json(steps[i], frame, where_, "/annotations/" + std::to_string(i));
+            touched_.insert(step.id);
+            if (step.action == StepAction::make) make(step);
+            else edit(step);
+        }
         if (!set_.object_class.empty()) ensure_root(set_, mesh_);
         check_annotations(set_, mesh_, where_);
         measure();
@@ -75,26 +68,18 @@ private:
             if (const auto kept = others.find(one.id); kept != others.end()) one.attributes.swap(kept->second);
     }
 
-    void step(const JsonValue& step, PlaceFrame around, const std::string& at) {
-        touched_.insert(step["id"].GetInt());
-        const PlaceFrame frame = ExpressionEvaluator::frame_of(step, around);
-        const std::string action = text_in(step, "action");
-        if (action.empty() || action == "make") make(step, frame, at);
-        else edit(action, step, frame, at);
-    }
-
     /// A region from a selection on the mesh cut along the selection's borders. With `given` the selection is added to that
     /// region, taken away from it, or replaces it, according to the action.
-    Annotation selected_free(const JsonValue& select, PlaceFrame frame, const std::string& here, const std::string& action,
-                             const Annotation* given) {
-        const auto [cut, named] = evaluator_.cut_selection(select, frame, here);
+    Annotation selected_free(const RecipeStep& step, const Annotation* given) {
+        const std::string here = step.at + "/select";
+        const auto [cut, named] = evaluator_.cut_selection(*step.select, step.frame, here);
         if (std::none_of(named.begin(), named.end(), [](bool b) { return b; }))
             fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
         Annotation annotation;
         annotation.faces = flagged(named);
-        if (given != nullptr && action != "replace") {
+        if (given != nullptr && step.action != StepAction::replace) {
             std::vector<bool> flags = face_flags(cut.mesh, cut.annotations.find(given->id)->faces);
-            for (const Index face : annotation.faces) flags[face] = action == "add to";
+            for (const Index face : annotation.faces) flags[face] = step.action == StepAction::add_to;
             annotation.faces = flagged(flags);
         }
         annotation.all = annotation.faces.size() == cut.mesh.number_of_faces();
@@ -108,31 +93,26 @@ private:
     }
 
     /// As selected_free for lines, along geodesics; points cannot be free.
-    Annotation drawn_free(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here) {
+    Annotation drawn_free(AnnotationType type, const RecipeStep& step) {
+        const std::string here = step.at + "/select";
         if (type == AnnotationType::point)
             fail(here, "selects vertices: there are no free points of a selection", "leave out \"outline\"");
         Annotation annotation;
         annotation.type = type;
-        annotation.curves = evaluator_.curves(select, frame, here);
+        annotation.curves = evaluator_.curves(*step.select, step.frame, here);
         settle_elements(mesh_, annotation);
         return annotation;
     }
 
-    /// The outline that a step specifies; default `drawn`.
-    static Outline outline_of(const JsonValue& step) {
-        const std::string asked = text_in(step, "outline");
-        return asked == "free" ? Outline::free : asked == "edges" ? Outline::edges : Outline::drawn;
-    }
-
     /// A region with a free outline, combined with `given` if any. Returns nothing if the outline need not be free, or if no
     /// free one can be made; the reason is then stored for note_edges, and the region has to run along the edges of the mesh.
-    std::optional<Annotation> region_where_drawn(const JsonValue& select, PlaceFrame frame, const std::string& here,
-                                                 Outline outline, const std::string& action, const Annotation* given) {
-        if (outline == Outline::edges) return std::nullopt;
-        if (outline == Outline::drawn && !evaluator_.ends_at_levels(select, frame, here)) return std::nullopt;
-        evaluator_.keep_face_sets(outline == Outline::drawn);
+    std::optional<Annotation> region_where_drawn(const RecipeStep& step, StepOutline outline, const Annotation* given) {
+        if (outline == StepOutline::edges) return std::nullopt;
+        const bool drawn = outline == StepOutline::drawn;
+        if (drawn && !evaluator_.ends_at_levels(*step.select, step.frame, step.at + "/select")) return std::nullopt;
+        evaluator_.keep_face_sets(drawn);
         try {
-            return selected_free(select, frame, here, action, given);
+            return selected_free(step, given);
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled || error.kind() == ErrorKind::usage) throw;
             not_free_ = error.problem();
@@ -150,84 +130,85 @@ private:
     }
 
     /// The faces, polylines or points that a step selects, as an annotation of this type.
-    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here,
-                        Outline outline) {
+    Annotation selected(AnnotationType type, const RecipeStep& step, StepOutline outline) {
         if (type == AnnotationType::region) {
-            if (auto region = region_where_drawn(select, frame, here, outline, "make", nullptr)) return std::move(*region);
-        } else if (outline == Outline::free) {
-            return drawn_free(type, select, frame, here);
+            if (auto region = region_where_drawn(step, outline, nullptr)) return std::move(*region);
+        } else if (outline == StepOutline::free) {
+            return drawn_free(type, step);
         }
+        const std::string here = step.at + "/select";
+        const JsonValue& select = *step.select;
         Annotation annotation;
         annotation.type = type;
         if (type == AnnotationType::region) {
-            annotation.faces = flagged(evaluator_.faces(select, frame, here));
+            annotation.faces = flagged(evaluator_.faces(select, step.frame, here));
             annotation.all = kind_of(select).first == "all";
             if (annotation.faces.empty())
                 fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
         } else if (type == AnnotationType::line) {
-            annotation.polylines = evaluator_.polylines(select, frame, here);
+            annotation.polylines = evaluator_.polylines(select, step.frame, here);
         } else {
-            annotation.points = evaluator_.vertices(select, frame, here);
+            annotation.points = evaluator_.vertices(select, step.frame, here);
             if (annotation.points.empty())
                 fail(here, "selects no vertex", "the volume or the set misses the vertices: look at the numbers and the frame");
         }
         return annotation;
     }
 
-    void set_looks(Annotation& annotation, const JsonValue& step) const {
-        if (const JsonValue* tag = find_member(step, "tag")) annotation.tag = text_of(*tag);
-        if (const JsonValue* colour = find_member(step, "colour"))
-            for (rapidjson::SizeType k = 0; k < 3; ++k) annotation.colour[k] = (*colour)[k].GetInt();
+    static void set_looks(Annotation& annotation, const RecipeStep& step) {
+        if (step.tag) annotation.tag = *step.tag;
+        if (step.colour) annotation.colour = *step.colour;
     }
 
-    void make(const JsonValue& step, PlaceFrame frame, const std::string& at) {
-        for (const char* name : {"tag", "type", "select"})
-            if (find_member(step, name) == nullptr)
-                fail(at, std::string("a new annotation without \"") + name + "\"",
-                     "add it, or name the action that edits an older one");
-        const int id = step["id"].GetInt();
-        if (set_.find(id) != nullptr)
-            fail(at + "/id", "the id " + to_string(id) + " is taken",
-                 "give each annotation its own (free is " + to_string(free_id(set_)) +
-                     "), or an action such as 'add to' that edits the older one");
-        Annotation annotation =
-            selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select", outline_of(step));
-        annotation.id = id;
+    void make(const RecipeStep& step) {
+        if (set_.find(step.id) != nullptr)
+            fail(step.at + "/id", fmt::format("the id {} is taken", step.id),
+                 fmt::format("give each annotation its own (free is {}), or an action such as 'add to' that edits the older one",
+                             free_id(set_)));
+        Annotation annotation = selected(*step.type, step, step.outline);
+        annotation.id = step.id;
         annotation.colour = fresh_colour(mesh_, set_, annotation);
         set_looks(annotation, step);
         note_edges(annotation);
-        if (const JsonValue* attributes = find_member(step, "attributes"))
-            add_attributes(annotation, *attributes, frame, at + "/attributes");
+        if (step.attributes != nullptr) add_attributes(annotation, step);
         set_.annotations.push_back(std::move(annotation));
     }
 
-    void edit(const std::string& action, const JsonValue& step, PlaceFrame frame, const std::string& at) {
-        const int id = step["id"].GetInt();
+    /// Checks that the members of a step suit its action.
+    void check_edit(const RecipeStep& step, const Annotation& edited) const {
+        const std::string action = to_string(step.action);
+        if (step.selects() && step.select == nullptr)
+            fail(step.at, fmt::format("the action '{}' without \"select\"", action), "say what to " + action);
+        if (!step.selects() && step.select != nullptr)
+            fail(step.at + "/select", fmt::format("the action '{}' selects nothing", action), "leave it out");
+        if (step.type && *step.type != edited.type)
+            fail(step.at + "/type", fmt::format("annotation {} is a {}", step.id, to_string(edited.type)),
+                 "an edit keeps the type");
+        const std::pair<const char*, bool> looks[]{
+            {"tag", step.tag.has_value()}, {"colour", step.colour.has_value()}, {"attributes", step.attributes != nullptr}};
+        for (const auto& [name, given] : looks)
+            if (step.action == StepAction::erase && given)
+                fail(step.at + '/' + name, "the action 'delete' keeps nothing", "leave it out");
+        if (step.action == StepAction::retag && !step.tag && !step.colour && step.attributes == nullptr)
+            fail(step.at, "the action 'retag' changes nothing", "give a tag, a colour or attributes");
+    }
+
+    void edit(const RecipeStep& step) {
+        const int id = step.id;
         Annotation* found = set_.find(id);
         if (found == nullptr)
-            fail(at + "/id", "no annotation has the id " + to_string(id), "edit one that is there at this step");
-        const JsonValue* select = find_member(step, "select");
-        const bool changes = action != "delete" && action != "retag";
-        if (changes && select == nullptr) fail(at, "the action '" + action + "' without \"select\"", "say what to " + action);
-        if (!changes && select != nullptr) fail(at + "/select", "the action '" + action + "' selects nothing", "leave it out");
-        if (const JsonValue* type = find_member(step, "type"); type != nullptr && type_of(type->GetString()) != found->type)
-            fail(at + "/type", "annotation " + to_string(id) + " is a " + to_string(found->type), "an edit keeps the type");
-        if (action == "delete") {
-            for (const char* name : {"tag", "colour", "attributes"})
-                if (find_member(step, name) != nullptr)
-                    fail(at + '/' + name, "the action 'delete' keeps nothing", "leave it out");
+            fail(step.at + "/id", fmt::format("no annotation has the id {}", id), "edit one that is there at this step");
+        check_edit(step, *found);
+        if (step.action == StepAction::erase) {
             std::erase_if(set_.annotations, [&](const Annotation& a) { return a.id == id; });
             return;
         }
-        if (action == "retag" && find_member(step, "tag") == nullptr && find_member(step, "colour") == nullptr &&
-            find_member(step, "attributes") == nullptr)
-            fail(at, "the action 'retag' changes nothing", "give a tag, a colour or attributes");
         Annotation annotation = *found;
-        if (changes) {
-            const std::string here = at + "/select";
-            change_elements(annotation, action, *select, frame, here, outline_of(step));
+        if (step.selects()) {
+            change_elements(annotation, step);
             if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty() && !is_free(annotation))
-                fail(here, "leaves nothing of annotation " + to_string(id), "select less, or use the action 'delete'");
+                fail(step.at + "/select", fmt::format("leaves nothing of annotation {}", id),
+                     "select less, or use the action 'delete'");
             for (Attribute& attribute : annotation.attributes)
                 if (attribute.type == AttributeType::measure && attribute.measure.tool == "bounding" &&
                     attribute.measure.direction) {
@@ -237,12 +218,12 @@ private:
                 }
         }
         set_looks(annotation, step);
-        if (const JsonValue* attributes = find_member(step, "attributes")) {
-            for (const auto& attribute : attributes->GetArray())
+        if (step.attributes != nullptr) {
+            for (const auto& attribute : step.attributes->GetArray())
                 std::erase_if(annotation.attributes, [&](const Attribute& a) { return a.id == attribute["id"].GetInt(); });
             Annotation fresh = annotation;
             fresh.attributes.clear();
-            add_attributes(fresh, *attributes, frame, at + "/attributes");
+            add_attributes(fresh, step);
             for (Attribute& attribute : fresh.attributes) annotation.attributes.push_back(std::move(attribute));
         }
         *set_.find(id) = std::move(annotation);
@@ -250,53 +231,47 @@ private:
 
     /// Adds what an edit selects, takes it away, or replaces the annotation by it. An edited outline keeps its type, free or
     /// along the edges; a replaced outline has the type of a new one.
-    void change_elements(Annotation& annotation, const std::string& action, const JsonValue& select, PlaceFrame frame,
-                         const std::string& here, Outline outline) {
+    void change_elements(Annotation& annotation, const RecipeStep& step) {
         const Annotation before = annotation;
         const bool was_free = is_free(before);
-        if (outline == Outline::drawn && action != "replace" && !before.all) outline = was_free ? Outline::free : Outline::edges;
+        StepOutline outline = step.outline;
+        if (outline == StepOutline::drawn && step.action != StepAction::replace && !before.all)
+            outline = was_free ? StepOutline::free : StepOutline::edges;
         if (annotation.type == AnnotationType::region) {
-            auto region = region_where_drawn(select, frame, here, outline, action, &before);
-            if (region) {
+            if (auto region = region_where_drawn(step, outline, &before)) {
                 annotation.faces = std::move(region->faces);
                 annotation.curves = std::move(region->curves);
                 annotation.all = region->all;
                 return;
             }
-            const Annotation part = selected(annotation.type, select, frame, here, Outline::edges);
+            const Annotation part = selected(annotation.type, step, StepOutline::edges);
             note_edges(annotation);
             annotation.curves.clear();
-            change(annotation, action, part);
+            change(annotation, step.action, part);
             return;
         }
-        const bool free = outline == Outline::free || (was_free && outline == Outline::drawn);
-        const Annotation part = selected(annotation.type, select, frame, here, free ? Outline::free : Outline::edges);
+        const bool free = outline == StepOutline::free || (was_free && outline == StepOutline::drawn);
+        const Annotation part = selected(annotation.type, step, free ? StepOutline::free : StepOutline::edges);
         // If one of the lines is free the result is free; other lines become curves along the edges.
-        if (free || was_free) change_curves(annotation, action, part, here);
-        else change(annotation, action, part);
+        if (free || was_free) change_curves(annotation, step, part);
+        else change(annotation, step.action, part);
     }
 
-    void change_curves(Annotation& annotation, const std::string& action, const Annotation& part, const std::string& here) const {
-        if (action == "replace") {
+    void change_curves(Annotation& annotation, const RecipeStep& step, const Annotation& part) const {
+        if (step.action == StepAction::replace) {
             annotation.polylines = part.polylines;
             annotation.points = part.points;
             annotation.curves = part.curves;
             return;
         }
-        if (action != "add to")
-            fail(here, "takes a part from a " + to_string(annotation.type) + " that is free", "use the action 'replace'");
+        if (step.action != StepAction::add_to)
+            fail(step.at + "/select", fmt::format("takes a part from a {} that is free", to_string(annotation.type)),
+                 "use the action 'replace'");
         const auto as_curves = [](const Annotation& one) {
             if (is_free(one)) return one.curves;
-            std::vector<std::vector<SurfacePlace>> curves;
-            const auto add = [&](const std::vector<Index>& path) {
-                auto& curve = curves.emplace_back();
-                for (const Index v : path) {
-                    curve.emplace_back();
-                    curve.back().element[0] = v;
-                }
-            };
-            for (const auto& line : one.polylines) add(line);
-            for (const Index v : one.points) add({v});
+            std::vector<std::vector<SurfacePoint>> curves;
+            for (const auto& line : one.polylines) curves.push_back(vertex_curve(line));
+            for (const Index v : one.points) curves.push_back(vertex_curve({v}));
             return curves;
         };
         auto curves = as_curves(annotation);
@@ -305,9 +280,9 @@ private:
         settle_elements(mesh_, annotation);
     }
 
-    void change(Annotation& annotation, const std::string& action, const Annotation& part) const {
-        const bool add = action == "add to";
-        if (action == "replace") {
+    void change(Annotation& annotation, StepAction action, const Annotation& part) const {
+        const bool add = action == StepAction::add_to;
+        if (action == StepAction::replace) {
             annotation.faces = part.faces;
             annotation.polylines = part.polylines;
             annotation.points = part.points;
@@ -362,17 +337,19 @@ private:
 
     /// Attributes are written as in annotation files, except that pins may be given by coordinates, and that a bounding measure
     /// may omit its pins.
-    void add_attributes(Annotation& annotation, const JsonValue& source, PlaceFrame frame, const std::string& at) {
+    void add_attributes(Annotation& annotation, const RecipeStep& step) {
+        const std::string at = step.at + "/attributes";
         Json list;
-        list.CopyFrom(source, list.GetAllocator());
+        list.CopyFrom(*step.attributes, list.GetAllocator());
         for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
             const auto measure = list[i].FindMember("measure");
             if (measure == list[i].MemberEnd()) continue;
-            const std::string here = at + '/' + to_string(i) + "/measure";
+            const std::string here = at + '/' + std::to_string(i) + "/measure";
             JsonValue pins(rapidjson::kArrayType);
             if (const JsonValue* points = find_member(measure->value, "points")) {
                 for (rapidjson::SizeType k = 0; k < points->Size(); ++k)
-                    pins.PushBack(evaluator_.vertex((*points)[k], frame, here + "/points/" + to_string(k)), list.GetAllocator());
+                    pins.PushBack(evaluator_.vertex((*points)[k], step.frame, here + "/points/" + std::to_string(k)),
+                                  list.GetAllocator());
             } else {
                 const JsonValue* direction = find_member(measure->value, "direction");
                 if (direction == nullptr)

@@ -1,4 +1,5 @@
 #include "ostraka/shape_classes/member_fit.h"
+#include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
@@ -230,7 +231,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
         if (mesh.is_border(edge)) continue;
         const double weight = (rest_points[mesh.vertex(edge, 0)] - rest_points[mesh.vertex(edge, 1)]).norm();
         const double angle_change =
-            std::remainder(angle_at(mesh, edge, current_points) - angle_at(mesh, edge, rest_points), 2 * std::acos(-1.0));
+            std::remainder(angle_at(mesh, edge, current_points) - angle_at(mesh, edge, rest_points), 2 * pi);
         length += weight;
         turned += weight * angle_change * angle_change;
     }

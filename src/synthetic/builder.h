@@ -1,6 +1,7 @@
 // Helper functions for describing synthetic objects.
 #pragma once
 
+#include "ostraka/core/angles.h"
 #include "ostraka/synthetic/synthetic_object.h"
 
 #include <memory>
@@ -14,7 +15,7 @@ using Colour3 = std::array<std::uint8_t, 3>;
 
 /// Rotation by `degrees` around an axis.
 inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
-    return Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, axis.normalized()).toRotationMatrix();
+    return Eigen::AngleAxisd(degrees * pi / 180, axis.normalized()).toRotationMatrix();
 }
 
 /// An object without parts; the thinnest wall or gap is in mm.

@@ -190,7 +190,7 @@ Statuette generate_statuette(const StatuetteParameters& parameters) {
             return CGAL::squared_distance(statuette.mesh.point(a), p) < CGAL::squared_distance(statuette.mesh.point(b), p);
         };
         const Vertex vertex = *std::min_element(face_corners.begin(), face_corners.end(), closer);
-        statuette.landmarks.push_back({name, static_cast<Index>(vertex.idx()), hit.face, hit.barycentric, hit.point});
+        statuette.landmarks.push_back({name, static_cast<Index>(vertex.idx()), face_point(hit.face, hit.barycentric)});
     }
     return statuette;
 }

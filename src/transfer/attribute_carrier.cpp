@@ -21,7 +21,7 @@ void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
                 }
                 moved.measure.points.push_back(place.vertex);
                 // Face indices of a refined mesh are new: there, only the nearest vertex is stored.
-                if (!refined_) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
+                if (!refined_) moved.measure.locations.push_back(face_point(place.place.face, place.place.barycentric));
             }
             for (const auto& pins : attribute.measure.repeats) {  // a picking that loses a pin is dropped
                 std::vector<Index> places;

@@ -2,7 +2,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +148,7 @@ void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& v
     annotations = collect_annotations(mesh, table, AnnotationSet(*annotations), vertex_map);
     detach_annotations(mesh);
     if (curved_) {
-        for (auto& note : lay_free_annotations(curved_->mesh, curved_->annotations, mesh, *annotations))
+        for (auto& note : project_free_annotations(curved_->mesh, curved_->annotations, mesh, *annotations))
             notes.push_back(std::move(note));
         curved_.reset();
     }

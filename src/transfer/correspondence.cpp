@@ -38,7 +38,7 @@ struct SearchRadii {
 
 SearchRadii radii_of(const SurfaceSearch& target, const CorrespondenceOptions& options) {
     const double far = options.max_distance * target.diagonal();
-    return {std::min(far, 2 * target.typical_edge()), far, std::cos(options.max_angle * CGAL_PI / 180)};
+    return {std::min(far, 2 * target.typical_edge()), far, options.min_cosine()};
 }
 
 Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& target, const CorrespondenceOptions& options,
@@ -220,7 +220,7 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     for (int i = 0; i < 3; ++i) {
         if (!distinct(es.eigenvalues(), i) || !distinct(et.eigenvalues(), i)) continue;
         const double cosine = std::min(1.0, std::abs(es.eigenvectors().col(i).dot(et.eigenvectors().col(i))));
-        result.rotation = std::max(result.rotation, std::acos(cosine) * 180 / CGAL_PI);
+        result.rotation = std::max(result.rotation, std::acos(cosine) * 180 / pi);
     }
     if (result.rotation > 5) {
         result.problem = "the meshes are not aligned: their principal axes differ by " + digits(result.rotation, 3) +

@@ -3,6 +3,7 @@
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,31 +11,14 @@
 
 namespace ostraka {
 
-std::array<double, 3> weights_in(const Mesh& mesh, Index face, const SurfaceNode& node) {
-    const auto corner = corners(mesh, Face(face));
-    if (node.kind == SurfaceNode::Kind::face) return node.barycentric;
-    std::array<double, 3> weights{0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (node.kind == SurfaceNode::Kind::vertex) {
-            if (static_cast<Index>(corner[k]) == node.element) weights[k] = 1;
-        } else {
-            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
-            if (corner[k] == mesh.source(h)) weights[k] = 1 - node.parameter;
-            if (corner[k] == mesh.target(h)) weights[k] = node.parameter;
-        }
-    }
-    return weights;
-}
-
 namespace {
 
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
 /// Barycentric coordinates of the intersection of two segments in one face; nullopt if they do not intersect or only touch.
-std::optional<std::array<double, 3>> crossing(const Mesh& mesh, Index face, const SurfaceNode& a, const SurfaceNode& b,
-                                              const SurfaceNode& c, const SurfaceNode& d) {
-    const auto p = weights_in(mesh, face, a), q = weights_in(mesh, face, b), r = weights_in(mesh, face, c),
-               s = weights_in(mesh, face, d);
+std::optional<std::array<double, 3>> crossing(const Mesh& mesh, Index face, const SurfacePoint& a, const SurfacePoint& b,
+                                              const SurfacePoint& c, const SurfacePoint& d) {
+    const auto p = in_face(mesh, a, face), q = in_face(mesh, b, face), r = in_face(mesh, c, face), s = in_face(mesh, d, face);
     const auto side = [](const auto& from, const auto& to, const auto& place) {
         return (to[1] - from[1]) * (place[2] - from[2]) - (to[2] - from[2]) * (place[1] - from[1]);
     };
@@ -51,69 +35,69 @@ class Unlooped {
 public:
     Unlooped(const Mesh& mesh, double edge) : mesh_(mesh), edge_(edge) {}
 
-    void add(const SurfacePlace& place) {
-        const SurfaceNode node = node_at(mesh_, place);
-        while (!kept_.empty() && dissolve(place, node)) {
+    void add(const SurfacePoint& place) {
+        const Point at = position(mesh_, place);
+        while (!places_.empty() && dissolve(place, at)) {
         }
-        if (!kept_.empty() && places_.back() == place) return;
-        faces_.push_back(kept_.empty() ? no_index : common_face(mesh_, kept_.back(), node));
-        kept_.push_back(node);
-        places_.push_back(place);
+        if (!places_.empty() && places_.back() == place) return;
+        push(place, at, places_.empty() ? no_index : shared_face(mesh_, places_.back(), place));
     }
 
     Places places_;
 
 private:
-    /// Removes the last loop closed by the segment to `place`; false if there is none.
-    bool dissolve(const SurfacePlace& place, const SurfaceNode& node) {
+    void push(const SurfacePoint& place, const Point& at, Index face) {
+        places_.push_back(place);
+        points_.push_back(at);
+        faces_.push_back(face);
+    }
+
+    /// Removes the last loop closed by the segment to `place`, which lies at `at`; false if there is none.
+    bool dissolve(const SurfacePoint& place, const Point& at) {
         if (places_.back() == place) return false;
-        const Index face = common_face(mesh_, kept_.back(), node);
-        double length = gap(kept_.back(), node);
-        for (std::size_t i = kept_.size() - 1; i-- > 0;) {
+        const Index face = shared_face(mesh_, places_.back(), place);
+        double length = distance(points_.back(), at);
+        for (std::size_t i = places_.size() - 1; i-- > 0;) {
             if (places_[i] == place) {
-                if (!is_small(i, node, length + gap(kept_[i], kept_[i + 1]))) return false;
+                if (!is_small(i, at, length + distance(points_[i], points_[i + 1]))) return false;
                 cut_back(i);
                 return true;
             }
-            if (i + 2 < kept_.size() && face != no_index && faces_[i + 1] == face)
-                if (const auto at = crossing(mesh_, face, kept_[i], kept_[i + 1], kept_.back(), node)) {
-                    const SurfaceNode met = surface_node(mesh_, face, *at);
-                    if (!is_small(i, met, length)) return false;
+            if (i + 2 < places_.size() && face != no_index && faces_[i + 1] == face)
+                if (const auto weights = crossing(mesh_, face, places_[i], places_[i + 1], places_.back(), place)) {
+                    const SurfacePoint met = surface_point(mesh_, face, *weights);
+                    const Point met_at = position(mesh_, met);
+                    if (!is_small(i, met_at, length)) return false;
                     cut_back(i);
-                    if (const SurfacePlace there = place_of(mesh_, met); there != places_.back()) {
-                        faces_.push_back(face);
-                        kept_.push_back(met);
-                        places_.push_back(there);
-                    }
+                    if (const SurfacePoint stored = stored_point(mesh_, met); stored != places_.back())
+                        push(stored, met_at, face);
                     return true;
                 }
-            length += gap(kept_[i], kept_[i + 1]);
+            length += distance(points_[i], points_[i + 1]);
             if (length > 20 * edge_) return false;
         }
         return false;
     }
 
-    static double gap(const SurfaceNode& a, const SurfaceNode& b) { return std::sqrt(CGAL::squared_distance(a.point, b.point)); }
-
-    /// Whether the loop from the node through the places after place i encloses a small area.
-    [[nodiscard]] bool is_small(std::size_t i, const SurfaceNode& node, double length) const {
+    /// Whether the loop from the point `at` through the places after place i encloses a small area.
+    [[nodiscard]] bool is_small(std::size_t i, const Point& at, double length) const {
         if (length > 20 * edge_) return false;
         Vector sum(0, 0, 0);
-        for (std::size_t k = i + 1; k + 1 < kept_.size(); ++k)
-            sum = sum + CGAL::cross_product(kept_[k].point - node.point, kept_[k + 1].point - node.point);
+        for (std::size_t k = i + 1; k + 1 < points_.size(); ++k)
+            sum = sum + CGAL::cross_product(points_[k] - at, points_[k + 1] - at);
         return std::sqrt(sum.squared_length()) < 2 * edge_ * edge_;
     }
 
     void cut_back(std::size_t i) {
-        faces_.resize(i + 1);
-        kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(i) + 1, kept_.end());
         places_.resize(i + 1);
+        points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(i) + 1, points_.end());
+        faces_.resize(i + 1);
     }
 
     const Mesh& mesh_;
     double edge_;
-    std::vector<SurfaceNode> kept_;
-    std::vector<Index> faces_;  ///< face of the segment that leads to each place
+    std::vector<Point> points_;  ///< coordinates of the places
+    std::vector<Index> faces_;   ///< face of the segment that leads to each place
 };
 
 Places unlooped(const Mesh& mesh, const Places& places, double edge) {
@@ -131,7 +115,7 @@ Places unlooped(const Mesh& mesh, const Places& places, double edge) {
 
 }  // namespace
 
-std::vector<SurfacePlace> without_small_loops(const Mesh& mesh, std::vector<SurfacePlace> places, double edge, bool closed) {
+std::vector<SurfacePoint> without_small_loops(const Mesh& mesh, std::vector<SurfacePoint> places, double edge, bool closed) {
     places = unlooped(mesh, places, edge);
     if (!closed || places.size() < 4) return places;
     // A second pass from the opposite point, for a loop that contains the start.

@@ -2,20 +2,16 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
-#include "ostraka/geom/surface_trace.h"
+#include "ostraka/geom/surface_point.h"
 
-#include <array>
 #include <vector>
 
 namespace ostraka {
 
-/// Barycentric coordinates of a node in one of its faces.
-std::array<double, 3> weights_in(const Mesh& mesh, Index face, const SurfaceNode& node);
-
 /// Removes loops in which a curve meets or intersects itself if they enclose less than the square of `edge` and are at most 20
 /// `edge` long. The ends are fixed; a closed curve, which repeats its first place, may start elsewhere afterwards. O(km) for k
 /// places, of which m lie on a stretch of length 20 `edge`.
-std::vector<SurfacePlace> without_small_loops(const Mesh& mesh, std::vector<SurfacePlace> places, double edge, bool closed);
+std::vector<SurfacePoint> without_small_loops(const Mesh& mesh, std::vector<SurfacePoint> places, double edge, bool closed);
 
 /// Removes parts of a region with an area below `area` and fills holes of that size, smallest first, until the region has at
 /// most `outlines` outlines or no small part is left. `selected`: one flag per face. O(n log n) for n faces.

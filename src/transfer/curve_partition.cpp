@@ -126,20 +126,20 @@ bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annota
 }
 
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
-                    std::vector<Laid>& laid) {
+                    std::vector<ProjectedAnnotation>& projected) {
     std::vector<std::size_t> which;  // regions that exist on the target
     std::vector<const Annotation*> there;
     bool untangled = false;
     for (std::size_t i = 0; i < annotations.size(); ++i) {
-        if (annotations[i]->type != AnnotationType::region || annotations[i]->all || laid[i].lost) continue;
+        if (annotations[i]->type != AnnotationType::region || annotations[i]->all || projected[i].lost) continue;
         which.push_back(i);
-        there.push_back(&laid[i].annotation);
-        untangled = untangled || laid[i].untangled;
+        there.push_back(&projected[i].annotation);
+        untangled = untangled || projected[i].untangled;
     }
     if (which.empty() || !part_surface(source, annotations)) return;
     if (!untangled && is_whole(area_of_all(target, there), target)) return;
     AnnotationSet set;
-    for (const std::size_t i : which) set.annotations.push_back(laid[i].annotation);
+    for (const std::size_t i : which) set.annotations.push_back(projected[i].annotation);
     try {
         const CutMesh cut = cut_along_curves(target, set);
         Parting parting(cut.mesh, cut.annotations.annotations);
@@ -154,13 +154,13 @@ void keep_partition(const Mesh& source, const std::vector<const Annotation*>& an
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled) throw;
         for (const std::size_t i : which)
-            if (laid[i].untangled && laid[i].note.empty())
-                laid[i].note = "its neighbours may overlap it, or leave a gap: " + error.where() + ' ' + error.problem();
+            if (projected[i].untangled && projected[i].note.empty())
+                projected[i].note = "its neighbours may overlap it, or leave a gap: " + error.where() + ' ' + error.problem();
         return;
     }
     for (std::size_t r = 0; r < which.size(); ++r) {
-        laid[which[r]].lost = set.annotations[r].faces.empty() && set.annotations[r].curves.empty();
-        laid[which[r]].annotation = std::move(set.annotations[r]);
+        projected[which[r]].lost = set.annotations[r].faces.empty() && set.annotations[r].curves.empty();
+        projected[which[r]].annotation = std::move(set.annotations[r]);
     }
 }
 

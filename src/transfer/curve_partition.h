@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 
 #include <vector>
 
@@ -16,6 +16,6 @@ bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annota
 /// well: pieces in none or several of them are assigned to the region with which they share most of their border. Does nothing
 /// if they already partition it. O(n log n) for n faces of the target cut along all outlines.
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
-                    std::vector<Laid>& laid);
+                    std::vector<ProjectedAnnotation>& projected);
 
 }  // namespace ostraka

@@ -2,7 +2,6 @@
 
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/shortest_path.h"
-#include "ostraka/geom/surface_trace.h"
 
 #include <algorithm>
 #include <map>
@@ -12,15 +11,14 @@ namespace ostraka {
 
 namespace {
 
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
 /// Appends the places strictly between two places of a curve that cannot be dropped (Ramer 1972, Douglas and Peucker 1973).
 void keep_needed(const Mesh& mesh, double tolerance, const Places& curve, std::size_t first, std::size_t last, Places& kept) {
     Places run(curve.begin() + static_cast<std::ptrdiff_t>(first), curve.begin() + static_cast<std::ptrdiff_t>(last) + 1);
     const bool turned = run.back() < run.front();
     if (turned) std::reverse(run.begin(), run.end());
-    std::vector<Point> points;
-    for (const SurfacePlace& place : run) points.push_back(node_at(mesh, place).point);
+    const std::vector<Point> points = positions(mesh, run);
     std::vector<bool> keep(run.size(), false);
     std::vector<std::pair<std::size_t, std::size_t>> stack{{0, run.size() - 1}};
     CancelCheck check;
@@ -46,19 +44,17 @@ void keep_needed(const Mesh& mesh, double tolerance, const Places& curve, std::s
 
 }  // namespace
 
-void thin_out(const Mesh& mesh, double tolerance, std::vector<Laid>& laid) {
-    std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
-    for (const Laid& one : laid)
+void thin_out(const Mesh& mesh, double tolerance, std::vector<ProjectedAnnotation>& projected) {
+    std::map<SurfacePoint, std::set<SurfacePoint>> neighbours;
+    for (const ProjectedAnnotation& one : projected)
         for (const Places& curve : one.annotation.curves) {
             for (std::size_t i = 1; i < curve.size(); ++i) {
-                if (curve[i].kind == SurfaceNode::Kind::face) neighbours[curve[i]].insert(curve[i - 1]);
-                if (curve[i - 1].kind == SurfaceNode::Kind::face) neighbours[curve[i - 1]].insert(curve[i]);
+                if (curve[i].is_in_face()) neighbours[curve[i]].insert(curve[i - 1]);
+                if (curve[i - 1].is_in_face()) neighbours[curve[i - 1]].insert(curve[i]);
             }
         }
-    const auto may_go = [&](const SurfacePlace& place) {
-        return place.kind == SurfaceNode::Kind::face && neighbours.at(place).size() == 2;
-    };
-    for (Laid& one : laid)
+    const auto may_go = [&](const SurfacePoint& place) { return place.is_in_face() && neighbours.at(place).size() == 2; };
+    for (ProjectedAnnotation& one : projected)
         for (Places& curve : one.annotation.curves) {
             Places kept;
             for (std::size_t i = 0; i < curve.size();) {

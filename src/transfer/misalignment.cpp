@@ -1,5 +1,6 @@
 #include "ostraka/transfer/misalignment.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
@@ -73,7 +74,7 @@ public:
 
     void tell(Misalignment& found) const {
         found.distance_left = distance();
-        found.rotation = Eigen::AngleAxisd(rotation_).angle() * 180 / CGAL_PI;
+        found.rotation = Eigen::AngleAxisd(rotation_).angle() * 180 / pi;
         found.shift = shift_.norm();
         found.scale = scale_;
     }

@@ -240,7 +240,7 @@ void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edg
                 for (const Vertex v : corners(target_, Face(f))) shared.insert(v);
         curves.push_back(curve);
         if (step.backwards) {
-            std::reverse(curves.back().nodes.begin(), curves.back().nodes.end());
+            std::reverse(curves.back().points.begin(), curves.back().points.end());
             std::reverse(curves.back().faces.begin(), curves.back().faces.end());
         }
     }

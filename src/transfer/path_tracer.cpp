@@ -1,5 +1,7 @@
 #include "path_tracer.h"
 
+#include "ostraka/geom/distance.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,8 +51,7 @@ std::vector<Correspondence> PathTracer::settle(const SourcePath& vertex_path, Tr
     std::vector<Correspondence> result(n);
     for (std::size_t i = 0; i < n; ++i) result[i] = places_.at(vertex_path.vertices[i]);
     const auto source_length = [&](std::size_t i, std::size_t j) {
-        return std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[i])),
-                                                source_.point(Vertex(vertex_path.vertices[j]))));
+        return distance(source_.point(Vertex(vertex_path.vertices[i])), source_.point(Vertex(vertex_path.vertices[j])));
     };
     const auto joined = [&](const Correspondence& a, const Correspondence& b, double length) {
         return a.vertex == b.vertex || !path(a.vertex, b.vertex, limit(a, b, length)).empty();
@@ -154,8 +155,8 @@ TracedPath PathTracer::trace_edges(const SourcePath& vertex_path, TransferScore&
         if (places[i].vertex == places[j].vertex) continue;
         double length = 0;
         for (std::size_t m = i; m != j; m = (m + 1) % places.size())
-            length += std::sqrt(CGAL::squared_distance(source_.point(Vertex(vertex_path.vertices[m])),
-                                                       source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()]))));
+            length += distance(source_.point(Vertex(vertex_path.vertices[m])),
+                               source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()])));
         const std::vector<Index> found = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score,
                                                  used.empty() ? nullptr : &used);
         if (found.empty()) continue;  // two components: a gap is left
@@ -202,59 +203,37 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
             continue;
         }
         if (backwards) std::swap(i, j);
-        const SurfaceNode from = surface_node(target_, places[i].place.face, places[i].place.barycentric);
-        const SurfaceNode to = surface_node(target_, places[j].place.face, places[j].place.barycentric);
+        const SurfacePoint from = surface_point(target_, places[i].place.face, places[i].place.barycentric);
+        const SurfacePoint to = surface_point(target_, places[j].place.face, places[j].place.barycentric);
         const Vector up = search_.normal(places[i].place.face) + search_.normal(places[j].place.face);
-        const double straight = std::sqrt(CGAL::squared_distance(from.point, to.point));
+        const double straight = distance(position(target_, from), position(target_, to));
         std::optional<SurfaceCurve> curve =
             trace_line(target_, from, to, up, 2 * straight + 1e-9 * longest_edge(places[i].place.face));
         if (!curve) {
             // The straight trace fails (at a fold, for example): edges are used instead, from face to corner, corner to corner,
             // corner to face.
             curve.emplace();
-            curve->nodes.push_back(from);
-            const auto to_node = [&](const SurfaceNode& node, Index face) {
-                if (curve->nodes.back().kind == node.kind && curve->nodes.back().element == node.element &&
-                    curve->nodes.back().point == node.point)
-                    return;
-                curve->nodes.push_back(node);
+            curve->points.push_back(from);
+            const auto lead_to = [&](const SurfacePoint& p, Index face) {
+                if (same_point(target_, curve->points.back(), p)) return;
+                curve->points.push_back(p);
                 curve->faces.push_back(face);
             };
             std::vector<Index> corner_path =
                 connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], straight), score, nullptr);
             if (corner_path.empty()) continue;
-            to_node(surface_node(target_, Vertex(corner_path.front())), places[i].place.face);
+            lead_to(vertex_point(corner_path.front()), places[i].place.face);
             for (std::size_t m = 1; m < corner_path.size(); ++m) {
                 const Halfedge h = find_halfedge(target_, Vertex(corner_path[m - 1]), Vertex(corner_path[m]));
-                to_node(surface_node(target_, Vertex(corner_path[m])),
-                        target_.face(target_.is_border(h) ? target_.opposite(h) : h));
+                lead_to(vertex_point(corner_path[m]), target_.face(target_.is_border(h) ? target_.opposite(h) : h));
             }
-            to_node(to, places[j].place.face);
+            lead_to(to, places[j].place.face);
         }
         if (!places[i].relocated && !places[j].relocated) curve_cache_[key] = curves_.size();
         steps.push_back({curves_.size(), backwards});
         curves_.push_back(std::move(*curve));
     }
     return steps;
-}
-
-std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed) {
-    std::vector<Index> path;
-    for (const Index v : walk) {
-        if (!path.empty() && path.back() == v) continue;
-        if (path.size() >= 2 && path[path.size() - 2] == v) path.pop_back();
-        else path.push_back(v);
-    }
-    if (!closed) return path;
-    std::size_t first = 0, last = path.size();
-    for (;;) {
-        if (last - first < 3) return {};
-        if (path[first] == path[last - 1]) --last;
-        else if (path[first] == path[last - 2]) last -= 1;
-        else if (path[first + 1] == path[last - 1]) ++first;
-        else break;
-    }
-    return {path.begin() + static_cast<std::ptrdiff_t>(first), path.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
 }  // namespace ostraka

@@ -69,7 +69,4 @@ private:
     std::map<std::pair<Index, Index>, std::size_t> curve_cache_;  ///< by pair of source vertices
 };
 
-/// Removes "a, b, a" repeatedly; if `closed`, also across the end. A closed path of fewer than three vertices becomes empty.
-std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed);
-
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 #include "place_mapping.h"
 
 #include "ostraka/core/limits.h"
+#include "ostraka/geom/distance.h"
 
 #include <Eigen/Dense>
 
@@ -9,11 +10,6 @@
 namespace ostraka {
 
 namespace {
-
-/// Edge length of an equilateral triangle with the mesh's mean face area.
-double mean_triangle_edge(const Mesh& mesh) {
-    return std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / std::max<double>(1, static_cast<double>(mesh.number_of_faces())));
-}
 
 /// Solves x(b) + d n(b) = p for the weights b of corners 1 and 2 of a face and the distance d by Newton's method, starting from
 /// the centroid and `first_distance`; nullopt if it does not converge.
@@ -47,22 +43,8 @@ std::optional<Eigen::Vector3d> meet_along_normals(const Mesh& mesh, Index face, 
 
 }  // namespace
 
-Vector smooth_normal(const Mesh& mesh, const SurfaceNode& node) {
-    switch (node.kind) {
-        case SurfaceNode::Kind::vertex:
-            return vertex_normal(mesh, Vertex(node.element));
-        case SurfaceNode::Kind::edge: {
-            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
-            return (1 - node.parameter) * vertex_normal(mesh, mesh.source(h)) +
-                   node.parameter * vertex_normal(mesh, mesh.target(h));
-        }
-        default: {
-            const auto corner = corners(mesh, Face(node.element));
-            Vector sum(0, 0, 0);
-            for (std::size_t k = 0; k < 3; ++k) sum = sum + node.barycentric[k] * vertex_normal(mesh, corner[k]);
-            return sum;
-        }
-    }
+Vector smooth_normal(const Mesh& mesh, const SurfacePoint& p) {
+    return interpolate(mesh, p, [&](Vertex v) { return vertex_normal(mesh, v); });
 }
 
 PlaceMapping::PlaceMapping(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options)
@@ -71,18 +53,20 @@ PlaceMapping::PlaceMapping(const Mesh& source, const SurfaceSearch& target, cons
       target_(target.mesh()),
       edge_(target.typical_edge()),
       far_(options.max_distance * target.diagonal()),
-      min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)) {
-    if (edge_ > (1 + 1e-9) * mean_triangle_edge(source)) on_source_.emplace(source_);
+      min_cosine_(options.min_cosine()) {
+    if (edge_ > (1 + 1e-9) * typical_edge(surface_area(source), source.number_of_faces())) on_source_.emplace(source_);
 }
 
-MappedPlace PlaceMapping::operator()(const SurfacePlace& place) const {
+MappedPlace PlaceMapping::operator()(const SurfacePoint& place) const {
     MappedPlace result;
-    result.from = node_at(source_, place);
-    result.normal = unit_vector(smooth_normal(source_, result.from));
-    const Point& p = result.from.point;
+    result.from = place;
+    result.start = position(source_, place);
+    result.normal = unit_vector(smooth_normal(source_, place));
+    const Point& p = result.start;
     const auto take = [&](CorrespondenceKind kind, Index face, const std::array<double, 3>& weights) {
         result.kind = kind;
-        result.to = surface_node(target_, face, on_longest_edge(face, weights));
+        result.to = surface_point(target_, face, on_longest_edge(face, weights));
+        result.end = position(target_, result.to);
         result.up = unit_vector(smooth_normal(target_, result.to));
     };
     if (result.normal.squared_length() > 0) {
@@ -114,7 +98,7 @@ std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<doubl
     std::size_t apex = 0;
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k)
-        if (const double length = gap_between(target_.point(corner[(k + 1) % 3]), target_.point(corner[(k + 2) % 3]));
+        if (const double length = distance(target_.point(corner[(k + 1) % 3]), target_.point(corner[(k + 2) % 3]));
             length > longest)
             longest = length, apex = k;
     if (weights[apex] == 1 || 2 * face_area(target_, Face(face)) > 1e-6 * longest * longest) return weights;
@@ -125,13 +109,13 @@ std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<doubl
 
 /// Whether the line along the normal of the (coarser) target first meets the source at this place. A place in a fold of the
 /// source that the line meets only after another part of the surface has no inverse image.
-bool PlaceMapping::is_mutual(const MappedPlace& one) const {
-    const std::vector<Face> own = faces_of(source_, one.from);
-    const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
+bool PlaceMapping::is_mutual(const MappedPlace& mapped) const {
+    const std::vector<Face> around = faces_of(source_, mapped.from);
+    const auto faces_up = [&](Index f) { return on_source_->normal(f) * mapped.up >= min_cosine_; };
     // At the edge of a fold, the line may miss the surface.
-    if (!std::all_of(own.begin(), own.end(), faces_up)) return false;
-    const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
-    for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
+    if (!std::all_of(around.begin(), around.end(), faces_up)) return false;
+    const double at = std::abs((mapped.start - mapped.end) * mapped.up), tolerance = 1e-4 * edge_;
+    for (const SurfaceHit& hit : on_source_->line_hits(mapped.end, mapped.up, at))
         if (std::abs(hit.distance) < at - tolerance && faces_up(hit.face)) return false;
     return true;
 }
@@ -170,7 +154,7 @@ std::optional<SurfaceHit> PlaceMapping::hit_in(Index face, const std::array<doub
     for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] = std::max(0.0, weights[k]);
     for (double& weight : hit.barycentric) weight /= sum;
     hit.point = point_at(target_, face, hit.barycentric);
-    hit.distance = gap_between(hit.point, p);
+    hit.distance = distance(hit.point, p);
     if (hit.distance > far_ || search_.normal(face) * normal < min_cosine_) return std::nullopt;
     return hit;
 }

@@ -20,14 +20,14 @@ RegionSettling::RegionSettling(const Mesh& source, const SurfaceSearch& target, 
       options_(options),
       edge_(target.typical_edge()),
       far_(options.max_distance * target.diagonal()),
-      min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)) {}
+      min_cosine_(options.min_cosine()) {}
 
 bool RegionSettling::is_plausible(double area, double expected) const {
     return std::abs(area - expected) <= 0.5 * expected + 0.1 * edge_ * edge_;
 }
 
-void RegionSettling::settle(const Annotation& from, std::size_t outlines, Laid& laid) const {
-    Annotation& to = laid.annotation;
+void RegionSettling::settle(const Annotation& from, std::size_t outlines, ProjectedAnnotation& projected) const {
+    Annotation& to = projected.annotation;
     if (from.all) {
         to.faces.resize(target_.number_of_faces());
         for (Index f = 0; f < to.faces.size(); ++f) to.faces[f] = f;
@@ -35,16 +35,16 @@ void RegionSettling::settle(const Annotation& from, std::size_t outlines, Laid& 
     }
     if (from.type == AnnotationType::region) {
         to.faces = whole_components(from);
-        if (to.curves.empty() && to.faces.empty()) laid.lost = true;
+        if (to.curves.empty() && to.faces.empty()) projected.lost = true;
         if (to.curves.empty()) return;
         const CurveFilling filling = fill_curves(target_, curves_on(target_, to));
         const double expected = area_of(source_, from);
         if (filling.conflicts > 0 || !is_plausible(filling.area(target_), expected)) {
-            untangle(from, expected, outlines, laid);
+            untangle(from, expected, outlines, projected);
             return;
         }
     }
-    if (to.curves.empty()) laid.lost = true;
+    if (to.curves.empty()) projected.lost = true;
     else settle_elements(target_, to);
 }
 
@@ -79,9 +79,10 @@ std::vector<Index> RegionSettling::whole_components(const Annotation& from) cons
 }
 
 /// For intersecting outlines: computes the region by winding numbers on the target cut along them, and extracts a new outline.
-void RegionSettling::untangle(const Annotation& from, double expected, std::size_t outlines, Laid& laid) const {
-    Annotation& to = laid.annotation;
-    laid.untangled = true;
+void RegionSettling::untangle(const Annotation& from, double expected, std::size_t outlines,
+                              ProjectedAnnotation& projected) const {
+    Annotation& to = projected.annotation;
+    projected.untangled = true;
     const std::vector<Index> components = to.faces;
     InsertedCurves inserted = insert_curves(target_, curves_on(target_, to));
     std::vector<Halfedge> edges;
@@ -92,7 +93,7 @@ void RegionSettling::untangle(const Annotation& from, double expected, std::size
     CutMesh cut;
     cut.mesh = std::move(inserted.mesh);
     cut.face_origin = std::move(inserted.face_origin);
-    cut.nodes = std::move(inserted.new_nodes);
+    cut.points = std::move(inserted.new_points);
     cut.old_vertices = target_.number_of_vertices();
     auto wound = fill_by_winding(cut.mesh, edges, expected);
     if (wound) dissolve_small_parts(cut.mesh, edge_ * edge_, outlines, *wound);
@@ -106,7 +107,7 @@ void RegionSettling::untangle(const Annotation& from, double expected, std::size
     to.curves.clear();
     const SurfaceSearch back(source_);
     to.faces = flagged(region_by_vote(source_, back, from.faces, target_, options_));
-    laid.lost = to.faces.empty();
+    projected.lost = to.faces.empty();
     to.note += std::string(to.note.empty() ? "" : "; ") + "its outline could not be followed: it runs along edges now";
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 
 #include <vector>
 
@@ -15,11 +15,11 @@ public:
     RegionSettling(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options);
 
     /// `outlines`: number of outlines of the region on the source.
-    void settle(const Annotation& from, std::size_t outlines, Laid& laid) const;
+    void settle(const Annotation& from, std::size_t outlines, ProjectedAnnotation& projected) const;
 
 private:
     [[nodiscard]] std::vector<Index> whole_components(const Annotation& from) const;
-    void untangle(const Annotation& from, double expected, std::size_t outlines, Laid& laid) const;
+    void untangle(const Annotation& from, double expected, std::size_t outlines, ProjectedAnnotation& projected) const;
     [[nodiscard]] bool is_plausible(double area, double expected) const;
 
     const Mesh& source_;

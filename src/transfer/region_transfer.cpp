@@ -12,34 +12,6 @@
 
 namespace ostraka {
 
-std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<SourcePath> vertex_paths;
-    for (const Outline& outline : extract_outlines(mesh, faces)) {
-        const std::size_t n = outline.size();
-        // Edge i runs from vertex i to vertex i + 1; a border edge has no face on its right.
-        std::vector<bool> border(n, false);
-        bool any = false;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Halfedge h = find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]));
-            border[i] = mesh.is_border(mesh.opposite(h));
-            any = any || border[i];
-        }
-        if (!any) {
-            vertex_paths.push_back({outline, true, false});
-            continue;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            if (border[i] || !border[(i + n - 1) % n]) continue;
-            SourcePath vertex_path;
-            vertex_path.ends_on_border = true;
-            vertex_path.vertices.push_back(outline[i]);
-            for (std::size_t k = i; !border[k % n]; ++k) vertex_path.vertices.push_back(outline[(k + 1) % n]);
-            vertex_paths.push_back(std::move(vertex_path));
-        }
-    }
-    return vertex_paths;
-}
-
 std::vector<Index> diameter_path(const std::vector<Index>& walk) {
     if (walk.empty()) return {};
     std::map<Index, std::vector<Index>> neighbours;
@@ -232,9 +204,9 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
     std::vector<bool> crossed(mesh.number_of_faces(), false), wall(mesh.number_of_edges(), false);
     for (const SurfaceCurve& curve : tracer.curves())
         for (std::size_t i = 0; i < curve.faces.size(); ++i) {
-            const SurfaceNode &a = curve.nodes[i], &b = curve.nodes[i + 1];
-            if (a.kind == SurfaceNode::Kind::vertex && b.kind == SurfaceNode::Kind::vertex) {
-                const Halfedge h = find_halfedge(mesh, Vertex(a.element), Vertex(b.element));
+            const SurfacePoint &a = curve.points[i], &b = curve.points[i + 1];
+            if (a.is_vertex() && b.is_vertex()) {
+                const Halfedge h = find_halfedge(mesh, a.vertex(), b.vertex());
                 if (h != Mesh::null_halfedge()) wall[mesh.edge(h)] = true;
             } else {
                 crossed[curve.faces[i]] = true;

@@ -11,10 +11,6 @@
 
 namespace ostraka {
 
-/// The outlines of a region as paths. An outline is cut where it follows the border of an open mesh: there, the border of the
-/// target bounds the region.
-std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces);
-
 /// Approximation (by two sweeps) of the longest of the shortest paths within the edges of a walk: the line that represents a
 /// region that shrank to a tree of edges.
 std::vector<Index> diameter_path(const std::vector<Index>& walk);

@@ -37,7 +37,7 @@ public:
           near_(on_rim_),
           fine_(0.3 * other.typical_edge()),
           search_radius_(options.max_distance * other.diagonal()),
-          min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
+          min_cosine_(options.min_cosine()),
           stride_(std::max<std::size_t>(1, (region_.size() + max_inner - 1) / max_inner)),
           sums_((region_.size() + piece_size - 1) / piece_size) {
         for (const Index v : area.rim) {
@@ -184,7 +184,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
         for (const Vertex v : corners(source, Face(f))) box += source.point(v).bbox();
     }
     const double search_radius = options.max_distance * box_diagonal(target);
-    const double min_cosine = std::cos(options.max_angle * CGAL_PI / 180);
+    const double min_cosine = options.min_cosine();
     std::vector<std::uint8_t> vote(target.number_of_faces(), 0);
     parallel_for(
         target.number_of_faces(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/geom/polyline_distance.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <functional>
@@ -57,7 +58,6 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
                                  const Mesh& target, const CorrespondenceOptions& options);
 
 /// The outline of a region, the segments of a line, or points as degenerate segments.
-using Segments = std::vector<std::pair<Point, Point>>;
 Segments segments_of(const Mesh& mesh, const Annotation& annotation);
 double length_of(const Segments& segments);
 

@@ -2,28 +2,23 @@
 
 #include "attribute_carrier.h"
 #include "curve_partition.h"
-#include "disjoint_regions.h"
-#include "free_transfer.h"
+#include "edge_transfer.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/stopwatch.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
-#include "outline_rounding.h"
-#include "path_tracer.h"
-#include "region_transfer.h"
+#include "ostraka/transfer/project_curves.h"
 #include "scores.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 
 namespace ostraka {
 
 namespace {
-
-void add_note(std::string& note, const std::string& text) { note += (note.empty() ? "" : "; ") + text; }
 
 void check_annotations(const Mesh& source, const AnnotationSet& set) {
     for (const Annotation& annotation : set.annotations) {
@@ -42,312 +37,187 @@ void check_annotations(const Mesh& source, const AnnotationSet& set) {
     }
 }
 
-/// State of one transfer: correspondences, paths and search trees are shared by its steps.
+/// Which annotations are projected by their curves: free ones, all if requested, and regions that partition the surface, whose
+/// partition only curves preserve without zigzags.
+std::vector<bool> find_projected(const Mesh& source, const AnnotationSet& set, const TransferOptions& options) {
+    using Outlines = TransferOptions::Outlines;
+    const bool along_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
+    std::vector<const Annotation*> all;
+    for (const Annotation& annotation : set.annotations) all.push_back(&annotation);
+    const bool parted = options.outlines == Outlines::partitions && !along_edges && part_surface(source, all);
+    std::vector<bool> projected;
+    for (const Annotation& annotation : set.annotations)
+        projected.push_back(
+            !annotation.all && options.outlines != Outlines::edges &&
+            (is_free(annotation) || options.outlines == Outlines::free || (parted && annotation.type == AnnotationType::region)));
+    return projected;
+}
+
+MovedAnnotation moved_by_curves(const Annotation& from, ProjectedAnnotation projected) {
+    MovedAnnotation moved{&from, std::move(projected.annotation), {}, true};
+    TransferScore& score = moved.score;
+    score.id = from.id;
+    score.tag = from.tag;
+    score.source_type = from.type;
+    score.vertices = projected.places;
+    score.by_ray = projected.by_ray;
+    score.by_closest_point = projected.by_closest_point;
+    score.without_place = projected.without_place;
+    score.detours = projected.detours;
+    score.crossings_resolved = projected.untangled;
+    score.note = projected.note;
+    if (projected.lost) score.outcome = TransferOutcome::lost;
+    return moved;
+}
+
+/// One transfer: some annotations are projected by their curves, the others follow edges; correspondences, attributes, scores
+/// and search trees are common.
 class Transfer {
 public:
-    Transfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options)
+    /// `projected`: for each annotation, whether it is projected by its curves.
+    Transfer(const Mesh& source, const AnnotationSet& set, const std::vector<bool>& projected, const SurfaceSearch& target,
+             const TransferOptions& options)
         : source_(source),
           set_(set),
+          projected_(projected),
           search_(target),
-          target_(target.mesh()),
           options_(options),
           tracer_(source, target, options),
-          regions_(source, set, target, options) {}
+          edges_(source, along_edges_, target, options, tracer_) {}
 
-    TransferResult run(Clock& clock) {
-        result_.times.checks = clock.lap();
-        match();
-        result_.times.correspondence = clock.lap();
-        std::vector<Annotation> transferred(set_.annotations.size());
-        result_.scores.resize(set_.annotations.size());
-        for (std::size_t i = 0; i < set_.annotations.size(); ++i) begin(set_.annotations[i], transferred[i], result_.scores[i]);
-        if (options_.refine) insert(transferred);
-        else
-            for (std::size_t i = 0; i < transferred.size(); ++i) trace(i, transferred[i]);
-        result_.times.paths = clock.lap();
-        const Mesh& mesh = on();
-        std::optional<OutlineRounding> rounding;
-        if (!options_.refine && options_.cover == TransferOptions::Cover::overlapping &&
-            options_.rounding != TransferOptions::Rounding::path)
-            rounding.emplace(source_, set_, target_, vertex_paths_, tracer_);
-        fill_all(transferred, rounding ? &*rounding : nullptr);
-        result_.times.regions = clock.lap();
-        AttributeCarrier attributes(tracer_, result_.refined.has_value());
-        for (std::size_t i = 0; i < transferred.size(); ++i) attributes.carry(set_.annotations[i], transferred[i]);
-        score_all(transferred);
-        result_.times.scores = clock.lap();
-        result_.annotations.object_class = set_.object_class;
-        result_.annotations.unit = set_.unit;
-        result_.annotations.up = set_.up;
-        for (std::size_t i = 0; i < transferred.size(); ++i)
-            if (result_.scores[i].outcome != TransferOutcome::lost)
-                result_.annotations.annotations.push_back(std::move(transferred[i]));
-        refresh_measures(mesh, result_.annotations);
-        attributes.keep_old_values(result_.annotations);
-        return std::move(result_);
-    }
+    TransferResult run(TransferTimes times);
 
 private:
-    const Mesh& on() const { return result_.refined ? result_.refined->mesh : target_; }
-
-    void match() {
-        std::vector<Index> vertices;
-        vertex_paths_.resize(set_.annotations.size());
-        for (std::size_t i = 0; i < set_.annotations.size(); ++i) {
-            const Annotation& annotation = set_.annotations[i];
-            for (const auto& line : annotation.polylines) {
-                SourcePath vertex_path;
-                vertex_path.vertices = line;
-                vertex_path.closed = line.size() > 2 && line.front() == line.back();
-                if (vertex_path.closed) vertex_path.vertices.pop_back();
-                vertex_paths_[i].push_back(std::move(vertex_path));
-            }
-            if (annotation.type == AnnotationType::region && !annotation.all)
-                vertex_paths_[i] = region_paths(source_, annotation.faces);
-            for (const SourcePath& vertex_path : vertex_paths_[i])
-                vertices.insert(vertices.end(), vertex_path.vertices.begin(), vertex_path.vertices.end());
-            vertices.insert(vertices.end(), annotation.points.begin(), annotation.points.end());
-            for (const Attribute& attribute : annotation.attributes) {
-                const std::vector<Index> pins = pins_of(attribute.measure);
-                vertices.insert(vertices.end(), pins.begin(), pins.end());
-            }
-        }
-        tracer_.match(std::move(vertices));
-    }
-
-    void begin(const Annotation& from, Annotation& to, TransferScore& score) {
-        to.id = score.id = from.id;
-        to.tag = score.tag = from.tag;
-        to.colour = from.colour;
-        to.type = score.source_type = from.type;
-        to.all = from.all;
-        to.note = from.note;
-        to.information = from.information;
-        std::set<Index> vertices(from.points.begin(), from.points.end());
-        for (const SourcePath& vertex_path : vertex_paths_[index_of(score)])
-            vertices.insert(vertex_path.vertices.begin(), vertex_path.vertices.end());
-        score.vertices = vertices.size();
-        for (const Index v : vertices) {
-            const Correspondence& place = tracer_.place(v);
-            if (place.kind == CorrespondenceKind::ray) ++score.by_ray;
-            else if (place.kind == CorrespondenceKind::closest) ++score.by_closest_point;
-            else ++score.without_place;
-        }
-    }
-
-    std::size_t index_of(const TransferScore& score) const { return static_cast<std::size_t>(&score - result_.scores.data()); }
-
-    void trace(std::size_t i, Annotation& to) {
-        const Annotation& from = set_.annotations[i];
-        if (from.type == AnnotationType::point) {
-            for (const Index v : from.points)
-                if (const Index w = tracer_.place(v).vertex; w != no_index) to.points.push_back(w);
-            return;
-        }
-        traced_.resize(vertex_paths_.size());
-        for (const SourcePath& vertex_path : vertex_paths_[i]) {
-            traced_[i].push_back(tracer_.trace_edges(vertex_path, result_.scores[i]));
-            if (from.type == AnnotationType::line) add_line(traced_[i].back(), to);
-        }
-    }
-
-    static void add_line(const TracedPath& vertex_path, Annotation& to) {
-        std::vector<Index> line = vertex_path.path;
-        if (line.empty()) line = diameter_path(vertex_path.walk);
-        else if (vertex_path.closed) line.push_back(line.front());
-        if (line.size() >= 2) to.polylines.push_back(std::move(line));
-    }
-
-    /// Inserts the curves of all annotations as edges at once, then reads the paths from the refined mesh.
-    void insert(std::vector<Annotation>& transferred) {
-        std::vector<std::vector<std::vector<PathTracer::Step>>> steps(vertex_paths_.size());
-        for (std::size_t i = 0; i < vertex_paths_.size(); ++i)
-            for (const SourcePath& vertex_path : vertex_paths_[i])
-                steps[i].push_back(tracer_.trace_curves(vertex_path, result_.scores[i]));
-        std::vector<SurfaceCurve> curves = tracer_.curves();
-        // Points become vertices as well: curves of a single node.
-        std::map<Index, std::size_t> point_curve;
-        for (const Annotation& annotation : set_.annotations)
-            for (const Index v : annotation.points) {
-                const Correspondence& place = tracer_.place(v);
-                if (place.vertex == no_index || point_curve.count(v) > 0) continue;
-                point_curve[v] = curves.size();
-                SurfaceCurve curve;
-                curve.nodes.push_back(surface_node(target_, place.place.face, place.place.barycentric));
-                curves.push_back(std::move(curve));
-            }
-        result_.refined = insert_curves(target_, curves);
-        const InsertedCurves& refined = *result_.refined;
-        PathSearch paths(refined.mesh);
-        traced_.resize(vertex_paths_.size());
-        for (std::size_t i = 0; i < vertex_paths_.size(); ++i) {
-            const Annotation& from = set_.annotations[i];
-            for (const Index v : from.points)
-                if (const auto found = point_curve.find(v); found != point_curve.end())
-                    transferred[i].points.push_back(refined.node_vertex[found->second].front());
-            for (std::size_t c = 0; c < vertex_paths_[i].size(); ++c) {
-                TracedPath vertex_path;
-                vertex_path.closed = vertex_paths_[i][c].closed;
-                const auto to_vertex = [&](Index v) {
-                    if (vertex_path.walk.empty()) {
-                        vertex_path.walk.push_back(v);
-                        return;
-                    }
-                    const Index last = vertex_path.walk.back();
-                    if (last == v) return;
-                    if (find_halfedge(refined.mesh, Vertex(last), Vertex(v)) != Mesh::null_halfedge()) {
-                        vertex_path.walk.push_back(v);
-                        return;
-                    }
-                    const std::vector<Index> way = paths.find(Vertex(last), Vertex(v), {});
-                    if (!way.empty()) vertex_path.walk.insert(vertex_path.walk.end(), way.begin() + 1, way.end());
-                };
-                for (const PathTracer::Step& step : steps[i][c]) {
-                    const auto& nodes = refined.node_vertex[step.curve];
-                    if (step.backwards)
-                        for (auto v = nodes.rbegin(); v != nodes.rend(); ++v) to_vertex(*v);
-                    else
-                        for (const Index v : nodes) to_vertex(v);
-                }
-                if (vertex_path.walk.empty() && !vertex_paths_[i][c].vertices.empty()) {
-                    const Correspondence& place = tracer_.place(vertex_paths_[i][c].vertices.front());
-                    if (place.vertex != no_index) vertex_path.walk.push_back(place.vertex);
-                }
-                if (vertex_path.closed && vertex_path.walk.size() > 1 && vertex_path.walk.front() == vertex_path.walk.back())
-                    vertex_path.walk.pop_back();
-                vertex_path.path = prune_spikes(vertex_path.walk, vertex_path.closed);
-                traced_[i].push_back(vertex_path);
-                if (from.type == AnnotationType::line) add_line(vertex_path, transferred[i]);
-            }
-        }
-    }
-
-    /// Calls body(i) for each annotation in parallel, largest first for a balanced load.
-    template <class Body>
-    void for_each_annotation(const Body& body) const {
-        std::vector<std::size_t> order(set_.annotations.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-            return set_.annotations[i].faces.size() > set_.annotations[j].faces.size();
-        });
-        parallel_for(
-            order.size(), [&](std::size_t k) { body(order[k]); }, 1);
-    }
-
-    void fill_all(std::vector<Annotation>& transferred, OutlineRounding* rounding) {
-        regions_.set_outlines(traced_, on(), result_.refined ? &result_.refined->face_origin : nullptr);
-        std::vector<FilledRegion> filled(transferred.size());
-        for_each_annotation([&](std::size_t i) {
-            if (set_.annotations[i].type == AnnotationType::region && !set_.annotations[i].all)
-                filled[i] = regions_.fill(i, result_.scores[i]);
-        });
-        for (std::size_t i = 0; i < transferred.size(); ++i)
-            if (result_.scores[i].voted) filled[i].selected = regions_.vote(i);
-        for_each_annotation([&](std::size_t i) {
-            if (filled[i].selected.empty()) return;
-            if (options_.cover != TransferOptions::Cover::overlapping)
-                regions_.cover(filled[i].selected, vertex_paths_[i], result_.scores[i]);
-            else if (rounding != nullptr && !result_.scores[i].voted && filled[i].area > 0)
-                rounding->round(i, filled[i], regions_.target_edge(), options_.rounding == TransferOptions::Rounding::balanced);
-        });
-        if (rounding != nullptr) rounding->round_shared_outlines(filled);
-        std::vector<std::vector<bool>> selected;
-        for (FilledRegion& region : filled) selected.push_back(std::move(region.selected));
-        if (options_.cover == TransferOptions::Cover::overlapping)
-            keep_disjoint(
-                source_, set_, [&]() -> const SurfaceSearch& { return regions_.source_search(); }, on(), selected);
-        for_each_annotation([&](std::size_t i) {
-            if (set_.annotations[i].type == AnnotationType::region) finish(i, transferred[i], selected[i]);
-            if (set_.annotations[i].type == AnnotationType::line) finish_line(i, transferred[i]);
-        });
-    }
-
-    /// A line shorter than the target's edges becomes a point.
-    void finish_line(std::size_t i, Annotation& to) {
-        if (!to.polylines.empty()) return;
-        for (const TracedPath& vertex_path : traced_[i])
-            if (!vertex_path.walk.empty()) to.points.push_back(vertex_path.walk.front());
-        if (to.points.empty()) return;
-        to.type = AnnotationType::point;
-        result_.scores[i].outcome = TransferOutcome::became_point;
-        add_note(to.note, "was a line, too short for this mesh");
-    }
-
-    /// Stores the faces of a region or, if there are none, the line or point that it is reduced to.
-    void finish(std::size_t i, Annotation& to, const std::vector<bool>& selected) {
-        TransferScore& score = result_.scores[i];
-        if (set_.annotations[i].all) {
-            for (Index f = 0; f < on().number_of_faces(); ++f) to.faces.push_back(f);
-            return;
-        }
-        to.faces = flagged(selected);
-        if (!to.faces.empty()) return;
-        // Only the traced outlines are left: the longest path represents the region.
-        std::vector<Index> line;
-        for (const TracedPath& vertex_path : traced_[i])
-            if (std::vector<Index> path = diameter_path(vertex_path.walk); path.size() > line.size()) line = std::move(path);
-        if (line.size() >= 2) {
-            to.type = AnnotationType::line;
-            to.polylines = {line};
-            score.outcome = TransferOutcome::became_line;
-        } else if (line.size() == 1) {
-            to.type = AnnotationType::point;
-            to.points = line;
-            score.outcome = TransferOutcome::became_point;
-        } else {
-            score.outcome = TransferOutcome::lost;
-        }
-        if (score.outcome != TransferOutcome::lost) add_note(to.note, "was a region, too small for this mesh");
-    }
-
-    void score_all(const std::vector<Annotation>& transferred);
-    std::optional<OverlapQuestion> score(const Annotation& from, const Annotation& to, TransferScore& score);
+    void match();
+    [[nodiscard]] std::vector<ProjectedAnnotation> project() const;
+    [[nodiscard]] std::vector<MovedAnnotation> in_order(std::vector<ProjectedAnnotation> projected);
+    void score_all(std::vector<MovedAnnotation>& moved);
+    [[nodiscard]] std::optional<OverlapQuestion> measure(MovedAnnotation& moved);
 
     const Mesh& source_;
     const AnnotationSet& set_;
+    const std::vector<bool>& projected_;
     const SurfaceSearch& search_;
-    const Mesh& target_;
     const TransferOptions& options_;
+    AnnotationSet along_edges_ = without_projected();
     PathTracer tracer_;
-    RegionTransfer regions_;
-    std::vector<std::vector<SourcePath>> vertex_paths_;
-    std::vector<std::vector<TracedPath>> traced_;
-    TransferResult result_;
+    EdgeTransfer edges_;
+
+    [[nodiscard]] AnnotationSet without_projected() const {
+        AnnotationSet others;
+        for (std::size_t i = 0; i < set_.annotations.size(); ++i)
+            if (!projected_[i]) others.annotations.push_back(set_.annotations[i]);
+        return others;
+    }
 };
 
-void Transfer::score_all(const std::vector<Annotation>& transferred) {
-    Progress progress("scores", transferred.size());
-    std::vector<std::optional<OverlapQuestion>> asked(transferred.size());
-    for_each_annotation([&](std::size_t i) {
-        asked[i] = score(set_.annotations[i], transferred[i], result_.scores[i]);
-        progress.advance();
-    });
-    std::vector<OverlapQuestion> questions;
-    for (auto& question : asked)
-        if (question) questions.push_back(std::move(*question));
-    if (!questions.empty())
-        score_overlaps({source_, regions_.source_search()}, {on(), search_}, questions, options_.correspondence);
+TransferResult Transfer::run(TransferTimes times) {
+    {
+        const AddedSeconds seconds(times.correspondence);
+        match();
+    }
+    std::vector<ProjectedAnnotation> projected;
+    {
+        const AddedSeconds seconds(times.paths);
+        edges_.trace();
+        projected = project();
+    }
+    {
+        const AddedSeconds seconds(times.regions);
+        edges_.fill();
+    }
+    const Stopwatch watch;
+    TransferResult result;
+    AttributeCarrier attributes(tracer_, edges_.refined().has_value());
+    std::vector<MovedAnnotation> moved = in_order(std::move(projected));
+    for (MovedAnnotation& annotation : moved) attributes.carry(*annotation.from, annotation.to);
+    score_all(moved);
+    result.annotations.object_class = set_.object_class;
+    result.annotations.unit = set_.unit;
+    result.annotations.up = set_.up;
+    for (MovedAnnotation& annotation : moved) {
+        if (annotation.score.outcome != TransferOutcome::lost) result.annotations.annotations.push_back(std::move(annotation.to));
+        result.scores.push_back(std::move(annotation.score));
+    }
+    refresh_measures(edges_.mesh(), result.annotations);
+    attributes.keep_old_values(result.annotations);
+    result.refined = std::move(edges_.refined());
+    times.scores = watch.seconds();
+    result.times = times;
+    return result;
+}
+
+/// Finds the correspondences of the vertices of paths and of pins.
+void Transfer::match() {
+    std::vector<Index> vertices = edges_.vertices();
+    for (const Annotation& annotation : set_.annotations)
+        for (const Attribute& attribute : annotation.attributes) {
+            const std::vector<Index> pins = pins_of(attribute.measure);
+            vertices.insert(vertices.end(), pins.begin(), pins.end());
+        }
+    tracer_.match(std::move(vertices));
+}
+
+std::vector<ProjectedAnnotation> Transfer::project() const {
+    std::vector<const Annotation*> annotations;
+    for (std::size_t i = 0; i < set_.annotations.size(); ++i)
+        if (projected_[i]) annotations.push_back(&set_.annotations[i]);
+    if (annotations.empty()) return {};
+    return project_curves(source_, annotations, search_, options_.correspondence);
+}
+
+/// The results of both kinds in the order of the set.
+std::vector<MovedAnnotation> Transfer::in_order(std::vector<ProjectedAnnotation> projected) {
+    std::vector<MovedAnnotation> moved;
+    auto next_projected = projected.begin();
+    auto next_along_edges = edges_.moved().begin();
+    for (std::size_t i = 0; i < set_.annotations.size(); ++i)
+        moved.push_back(projected_[i] ? moved_by_curves(set_.annotations[i], std::move(*next_projected++))
+                                      : std::move(*next_along_edges++));
+    return moved;
+}
+
+void Transfer::score_all(std::vector<MovedAnnotation>& moved) {
+    Progress progress("scores", moved.size());
+    std::vector<std::optional<OverlapQuestion>> questions(moved.size());
+    parallel_for(
+        moved.size(),
+        [&](std::size_t i) {
+            questions[i] = measure(moved[i]);
+            progress.advance();
+        },
+        1);
+    std::vector<OverlapQuestion> given;
+    for (auto& question : questions)
+        if (question) given.push_back(std::move(*question));
+    if (!given.empty())
+        score_overlaps({source_, edges_.regions().source_search()}, {edges_.mesh(), search_}, given, options_.correspondence);
 }
 
 /// Computes all scores except the overlap, for which a query is returned if it is to be measured.
-std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Annotation& to, TransferScore& score) {
+std::optional<OverlapQuestion> Transfer::measure(MovedAnnotation& moved) {
+    const Annotation &from = *moved.from, &to = moved.to;
+    TransferScore& score = moved.score;
     score.target_type = to.type;
-    if (score.outcome == TransferOutcome::kept && to.points.empty() && to.polylines.empty() && to.faces.empty())
+    if (score.outcome == TransferOutcome::kept && !moved.by_curves && to.points.empty() && to.polylines.empty() &&
+        to.faces.empty())
         score.outcome = TransferOutcome::lost;
-    const Segments a = segments_of(source_, from), b = segments_of(on(), to);
+    const Mesh& mesh = edges_.mesh();
+    const Segments a = segments_of(source_, from), b = segments_of(mesh, to);
     score.source_length = length_of(a);
     score.target_length = length_of(b);
     if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
-    else if (score.outcome == TransferOutcome::kept)
+    else if (score.outcome == TransferOutcome::kept && !moved.by_curves)
         add_note(score.note, b.empty() ? "its outline vanished" : "it got an outline");
     if (from.type != AnnotationType::region) {
-        if (from.type == AnnotationType::point && to.points.size() > std::set<Index>(to.points.begin(), to.points.end()).size())
+        const std::set<Index> vertices(to.points.begin(), to.points.end());
+        if (from.type == AnnotationType::point && !moved.by_curves && to.points.size() > vertices.size())
             add_note(score.note, "several points fell on one vertex");
         return {};
     }
-    score.source_area = area_of(source_, from.faces);
-    score.target_area = area_of(on(), to.faces);
-    if (!options_.overlap || to.faces.empty()) return {};
+    score.source_area = area_of(source_, from);
+    score.target_area = area_of(mesh, to);
+    if (!options_.overlap || score.outcome != TransferOutcome::kept) return {};
     if (from.all) {
         // If the meshes show the same object, the whole of one corresponds to the whole of the other.
         if (distortions(score).area < 0.05) {
@@ -356,57 +226,36 @@ std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Ann
         }
         return {};
     }
-    OverlapQuestion question{region_area(source_, from), region_area(on(), to), {}, &score};
-    question.in_target = regions_.membership(to.faces);
+    OverlapQuestion question{region_area(source_, from), region_area(mesh, to), {}, &score};
+    if (const auto region = question.target.free)
+        question.in_target = [region](const SurfaceHit& hit) { return region->contains(hit.face, hit.point); };
+    else question.in_target = edges_.regions().membership(to.faces);
     return question;
-}
-
-}  // namespace
-
-namespace {
-
-/// Which annotations are projected by their curves: free ones, all if requested, and regions that partition the surface, whose
-/// partition only curves preserve without zigzags.
-std::vector<bool> laid_by_curves(const Mesh& source, const AnnotationSet& set, const TransferOptions& options) {
-    using Outlines = TransferOptions::Outlines;
-    const bool along_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
-    std::vector<const Annotation*> all;
-    for (const Annotation& annotation : set.annotations) all.push_back(&annotation);
-    const bool parted = options.outlines == Outlines::partitions && !along_edges && part_surface(source, all);
-    std::vector<bool> free;
-    for (const Annotation& annotation : set.annotations)
-        free.push_back(
-            !annotation.all && options.outlines != Outlines::edges &&
-            (is_free(annotation) || options.outlines == Outlines::free || (parted && annotation.type == AnnotationType::region)));
-    return free;
 }
 
 }  // namespace
 
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
                         const TransferOptions& options) {
-    Clock clock;
+    const Stopwatch watch;
     check_options(options, "transfer");
     check_annotations(source, annotations);
     if (!options.force) {
         const Agreement alignment = compare_alignment(source, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
+    const bool needs_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
     if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
-    const std::vector<bool> free = laid_by_curves(source, annotations, options);
-    AnnotationSet along_edges = annotations;
-    for (Annotation& annotation : along_edges.annotations)
-        if (options.outlines == TransferOptions::Outlines::edges) annotation.curves.clear();
-    if (std::none_of(free.begin(), free.end(), [](bool b) { return b; }))
-        return Transfer(source, along_edges, target, options).run(clock);
-    if (options.refine || options.cover != TransferOptions::Cover::overlapping)
+    const std::vector<bool> projected = find_projected(source, annotations, options);
+    if (needs_edges && std::find(projected.begin(), projected.end(), true) != projected.end())
         fail_usage("--refine and --cover are for outlines along edges", "leave them out, or give --outlines edges");
-    std::size_t i = 0;
-    std::erase_if(along_edges.annotations, [&](const Annotation&) { return free[i++]; });
-    TransferResult result = Transfer(source, along_edges, target, options).run(clock);
-    transfer_free(source, annotations, free, target, options, clock, result);
-    return result;
+    AnnotationSet set = annotations;
+    if (options.outlines == TransferOptions::Outlines::edges)
+        for (Annotation& annotation : set.annotations) annotation.curves.clear();
+    TransferTimes times;
+    times.checks = watch.seconds();
+    return Transfer(source, set, projected, target, options).run(times);
 }
 
 std::string to_string(TransferOutcome outcome) {

@@ -68,7 +68,7 @@ AnnotationSet everything(const Mesh& mesh) {
     height.measure.value = 31.25;
     height.measure.unit = "mm";
     height.measure.stale = true;
-    height.measure.locations = {{3, {0.25, 0.25, 0.5}}, {4, {1, 0, 0}}};
+    height.measure.locations = {face_point(3, {0.25, 0.25, 0.5}), face_point(4, {1, 0, 0})};
     region.attributes.push_back(height);
     Attribute area{7, "area", AttributeType::descriptor, "", {}, {}};
     area.descriptor.values = {0.1};
@@ -111,8 +111,8 @@ TEST(AnnotationFile, WriteReadWriteGivesTheSameBytes) {
         EXPECT_EQ(back.annotations[i].tag, set.annotations[i].tag);
         EXPECT_EQ(back.annotations[i].attributes.size(), set.annotations[i].attributes.size());
     }
-    EXPECT_EQ(back.annotations[1].attributes[1].measure.locations[0].barycentric,
-              set.annotations[1].attributes[1].measure.locations[0].barycentric);
+    EXPECT_EQ(back.annotations[1].attributes[1].measure.locations[0].weights,
+              set.annotations[1].attributes[1].measure.locations[0].weights);
     EXPECT_EQ(first.find("folder"), std::string::npos) << "no folder in a result file";
 }
 

@@ -19,21 +19,21 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 /// The closed curve through the nearest places of points, counter-clockwise seen from outside.
-std::vector<SurfacePlace> drawn(const Mesh& mesh, const SurfaceSearch& search, const std::vector<Point>& points) {
-    std::vector<SurfacePlace> places;
+std::vector<SurfacePoint> drawn(const Mesh& mesh, const SurfaceSearch& search, const std::vector<Point>& points) {
+    std::vector<SurfacePoint> places;
     const auto node_of = [&](const Point& p) {
         const SurfaceHit hit = search.closest(p);
-        return surface_node(mesh, hit.face, hit.barycentric);
+        return surface_point(mesh, hit.face, hit.barycentric);
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const SurfaceNode a = node_of(points[i]), b = node_of(points[(i + 1) % points.size()]);
+        const SurfacePoint a = node_of(points[i]), b = node_of(points[(i + 1) % points.size()]);
         const SurfaceHit hit = search.closest(points[i]);
         const auto line = trace_line(mesh, a, b, search.normal(hit.face), 10);
         EXPECT_TRUE(line);
         if (!line) return {};
-        for (std::size_t k = i == 0 ? 0 : 1; k < line->nodes.size(); ++k)
-            if (places.empty() || places.back() != place_of(mesh, line->nodes[k]))
-                places.push_back(place_of(mesh, line->nodes[k]));
+        for (std::size_t k = i == 0 ? 0 : 1; k < line->points.size(); ++k)
+            if (places.empty() || places.back() != stored_point(mesh, line->points[k]))
+                places.push_back(stored_point(mesh, line->points[k]));
     }
     return places;
 }
@@ -49,7 +49,7 @@ std::vector<Point> circle(double angle, int n, const Point& centre = Point(0, 0,
     return points;
 }
 
-Annotation region(const Mesh& mesh, std::vector<std::vector<SurfacePlace>> curves) {
+Annotation region(const Mesh& mesh, std::vector<std::vector<SurfacePoint>> curves) {
     Annotation annotation;
     annotation.tag = "cap";
     annotation.curves = std::move(curves);
@@ -84,12 +84,12 @@ TEST(FreeOutline, InsideAndOutsideAreAllThereIs) {
             const Mesh unit = build_mesh(octahedron_sphere(4));
             TriangleSoup soup = to_soup(unit);
             const SurfaceSearch unit_search(unit);
-            const std::vector<SurfacePlace> curve = drawn(unit, unit_search, circle(1.1, 300));
+            const std::vector<SurfacePoint> curve = drawn(unit, unit_search, circle(1.1, 300));
             for (auto& p : soup.points)
                 p = {p[0] * size + shift.x() * size, p[1] * size + shift.y() * size, p[2] * size + shift.z() * size};
             const Mesh mesh = build_mesh(soup);
             const Annotation cap = region(mesh, {curve}),
-                             rest = region(mesh, {std::vector<SurfacePlace>(curve.rbegin(), curve.rend())});
+                             rest = region(mesh, {std::vector<SurfacePoint>(curve.rbegin(), curve.rend())});
             EXPECT_NEAR((area_of(mesh, cap) + area_of(mesh, rest)) / surface_area(mesh), 1, 1e-8);
             EXPECT_NEAR(measure_region(mesh, cap).perimeter / measure_region(mesh, rest).perimeter, 1, 1e-12);
             const CurveFilling filling = filling_of(mesh, cap);
@@ -107,14 +107,10 @@ TEST(FreeOutline, AlongEdgesItIsTheRegionOfTheEdges) {
     for (const Face f : mesh.faces())
         if (centroid(mesh, f).z() > 0.3) faces.push_back(f);
     const RegionMeasures expected = measure_region(mesh, faces);
-    std::vector<std::vector<SurfacePlace>> curves;
+    std::vector<std::vector<SurfacePoint>> curves;
     for (const Outline& outline : extract_outlines(mesh, faces)) {
         auto& curve = curves.emplace_back();
-        for (std::size_t i = 0; i <= outline.size(); ++i) {
-            SurfacePlace place;
-            place.element[0] = outline[i % outline.size()];
-            curve.push_back(place);
-        }
+        for (std::size_t i = 0; i <= outline.size(); ++i) curve.push_back(vertex_point(outline[i % outline.size()]));
     }
     const Annotation annotation = region(mesh, curves);
     EXPECT_EQ(annotation.faces, faces);
@@ -131,14 +127,9 @@ TEST(FreeOutline, CutAndBroughtBackItIsTheSame) {
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(0.7, 200))}));
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(1.2, 150))}));
     const auto corner = corners(mesh, Face(77));
-    std::vector<SurfacePlace> small;
-    for (const auto& [u, v] : {std::pair{0.2, 0.2}, {0.5, 0.2}, {0.2, 0.5}, {0.2, 0.2}}) {
-        SurfacePlace place;
-        place.kind = SurfaceNode::Kind::face;
-        place.element[0] = 77;
-        place.weights = {u, v};
-        small.push_back(place);
-    }
+    std::vector<SurfacePoint> small;
+    for (const auto& [u, v] : {std::pair{0.2, 0.2}, {0.5, 0.2}, {0.2, 0.5}, {0.2, 0.2}})
+        small.push_back(face_point(77, {1 - u - v, u, v}));
     set.annotations.push_back(region(mesh, {small}));
     EXPECT_TRUE(set.annotations.back().faces.empty());
     EXPECT_NEAR(area_of(mesh, set.annotations.back()) / face_area(mesh, Face(77)), 0.09, 1e-12);
@@ -208,8 +199,8 @@ TEST(FreeOutline, FileGivesTheSameAgain) {
 TEST(FreeOutline, WhatCannotBeIsRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const SurfaceSearch search(mesh);
-    const std::vector<SurfacePlace> good = drawn(mesh, search, circle(0.9, 100));
-    const auto refused = [&](std::vector<SurfacePlace> curve, const std::string& why) {
+    const std::vector<SurfacePoint> good = drawn(mesh, search, circle(0.9, 100));
+    const auto refused = [&](std::vector<SurfacePoint> curve, const std::string& why) {
         Annotation annotation;
         annotation.tag = "cap";
         annotation.curves = {std::move(curve)};
@@ -229,12 +220,11 @@ TEST(FreeOutline, WhatCannotBeIsRefused) {
     gap.erase(gap.begin() + 10, gap.begin() + 30);
     refused(gap, "no common face");
     auto beyond = good;
-    beyond[5].kind = SurfaceNode::Kind::vertex;
-    beyond[5].element[0] = 1000000;
+    beyond[5] = vertex_point(1000000);
     refused(beyond, "does not have");
     auto outside = good;
-    for (SurfacePlace& place : outside)
-        if (place.kind == SurfaceNode::Kind::edge) place.weights[0] = 1.5;
+    for (SurfacePoint& place : outside)
+        if (place.is_on_edge()) place.weights = {-0.5, 1.5, 0};
     refused(outside, "not within the edge");
     // Its elements are kept from saying something else.
     AnnotationSet set;
@@ -259,12 +249,12 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
     const SurfaceSearch search(mesh);
     const auto node = [&](double x, double y) {
         const SurfaceHit hit = search.closest(Point(x, y, 0));
-        return surface_node(mesh, hit.face, hit.barycentric);
+        return surface_point(mesh, hit.face, hit.barycentric);
     };
     const auto line = trace_line(mesh, node(0.31, 0), node(0.77, 1), Vector(0, 0, 1), 10);
     ASSERT_TRUE(line);
-    std::vector<SurfacePlace> curve;
-    for (const SurfaceNode& one : line->nodes) curve.push_back(place_of(mesh, one));
+    std::vector<SurfacePoint> curve;
+    for (const SurfacePoint& one : line->points) curve.push_back(stored_point(mesh, one));
     const Annotation left = region(mesh, {curve});
     const double length = std::hypot(0.46, 1.0);
     EXPECT_NEAR(area_of(mesh, left), 0.54, 1e-9);

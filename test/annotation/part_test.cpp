@@ -107,7 +107,7 @@ TEST(Part, FollowsFreeOutlines) {
     for (const Face f : mesh.faces())
         for (const Vertex v : corners(mesh, f))
             if (face == no_index && mesh.point(v).z() > 0.9999) face = f;
-    const auto at = [&](double a, double b, double c) { return place_of(mesh, surface_node(mesh, face, {a, b, c})); };
+    const auto at = [&](double a, double b, double c) { return stored_point(mesh, surface_point(mesh, face, {a, b, c})); };
     free.curves = {{at(0.6, 0.2, 0.2), at(0.2, 0.6, 0.2), at(0.2, 0.2, 0.6), at(0.6, 0.2, 0.2)}};
     settle_elements(mesh, free);
     set.annotations.push_back(free);

@@ -49,13 +49,13 @@ TEST(Geodesic, AroundTheCornersOfACube) {
     EXPECT_NEAR(distances[1], 1, 1e-12);
     EXPECT_NEAR(distances[3], std::sqrt(2), 1e-12);
     EXPECT_NEAR(distances[7], std::sqrt(5), 1e-12);  // two faces unfolded
-    EXPECT_NEAR(geodesic_distance(mesh, surface_node(mesh, Vertex(0)), surface_node(mesh, Vertex(7))), std::sqrt(5), 1e-12);
+    EXPECT_NEAR(geodesic_distance(mesh, vertex_point(0), vertex_point(7)), std::sqrt(5), 1e-12);
     // Between the middles of opposite faces: down one side, over 1/2 + 1 + 1/2.
-    const SurfaceNode bottom = surface_node(mesh, 0, {0, 0.5, 0.5}), top = surface_node(mesh, 2, {0, 0.5, 0.5});
-    EXPECT_EQ(bottom.kind, SurfaceNode::Kind::edge);
+    const SurfacePoint bottom = surface_point(mesh, 0, {0, 0.5, 0.5}), top = surface_point(mesh, 2, {0, 0.5, 0.5});
+    EXPECT_EQ(bottom.kind, SurfacePoint::Kind::edge);
     EXPECT_NEAR(geodesic_distance(mesh, bottom, top), 2, 1e-12);
-    const SurfaceNode inside = surface_node(mesh, 0, {0.5, 0.25, 0.25});  // at (1/4, 1/4, 0)
-    EXPECT_NEAR(geodesic_distance(mesh, inside, surface_node(mesh, Vertex(4))), std::hypot(0.25, 1.25), 1e-12);
+    const SurfacePoint inside = surface_point(mesh, 0, {0.5, 0.25, 0.25});  // at (1/4, 1/4, 0)
+    EXPECT_NEAR(geodesic_distance(mesh, inside, vertex_point(4)), std::hypot(0.25, 1.25), 1e-12);
     EXPECT_NEAR(geodesic_distance(mesh, inside, inside), 0, 0);
 }
 
@@ -88,7 +88,7 @@ TEST(Geodesic, AroundANotch) {
     const Vertex right(5 * 11 + 10), upper(10 * 11 + 5);  // (1, 1/2) and (1/2, 1)
     EXPECT_NEAR(geodesic_distances(mesh, {static_cast<Index>(right)})[upper], 1, 1e-12);
     const Vertex low(4 * 11 + 10);  // (1, 0.4)
-    EXPECT_NEAR(geodesic_distance(mesh, surface_node(mesh, low), surface_node(mesh, upper)), std::hypot(0.5, 0.1) + 0.5, 1e-12);
+    EXPECT_NEAR(geodesic_distance(mesh, vertex_point(low), vertex_point(upper)), std::hypot(0.5, 0.1) + 0.5, 1e-12);
 }
 
 TEST(Geodesic, ALimitChangesNothingBelowIt) {
@@ -119,7 +119,7 @@ TEST(Geodesic, ALimitChangesNothingBelowIt) {
     PathSearch paths(mesh);
     for (const Index v : {3U, 99U, 250U, 700U}) {
         EXPECT_NEAR(all[v], std::min({a[v], b[v], c[v]}), 1e-12);
-        EXPECT_NEAR(geodesic_distance(mesh, surface_node(mesh, Vertex(v)), surface_node(mesh, Vertex(0))), a[v], 1e-12);
+        EXPECT_NEAR(geodesic_distance(mesh, vertex_point(v), vertex_point(0)), a[v], 1e-12);
         double length = 0;
         const std::vector<Index> path = paths.find(Vertex(0), Vertex(v), {});
         for (std::size_t i = 0; i + 1 < path.size(); ++i)
@@ -137,8 +137,8 @@ TEST(Geodesic, SeparatePartsIsolatedVerticesAndFacesWithoutArea) {
     EXPECT_EQ(geodesic_distances(mesh, {0}), (std::vector<double>{0, 1, 1, infinite, infinite, infinite, infinite}));
     EXPECT_EQ(geodesic_distances(mesh, {6})[0], infinite);
     EXPECT_EQ(geodesic_distances(mesh, {6})[6], 0);
-    EXPECT_EQ(geodesic_distance(mesh, surface_node(mesh, Vertex(0)), surface_node(mesh, Vertex(4))), infinite);
-    EXPECT_EQ(geodesic_distance(mesh, surface_node(mesh, Vertex(6)), surface_node(mesh, Vertex(4))), infinite);
+    EXPECT_EQ(geodesic_distance(mesh, vertex_point(0), vertex_point(4)), infinite);
+    EXPECT_EQ(geodesic_distance(mesh, vertex_point(6), vertex_point(4)), infinite);
     // A sliver of three collinear points between two triangles.
     soup.points = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, -1, 0}};
     soup.triangles = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}, {1, 0, 4}};
@@ -156,10 +156,10 @@ TEST(Geodesic, ErrorsSayWhatIsWrong) {
     EXPECT_THROW((void)geodesic_distances(mesh, {9}), Error);
     EXPECT_THROW((void)geodesic_distances(mesh, {0}, -1), Error);
     EXPECT_THROW((void)geodesic_distances(mesh, {0}, std::nan("")), Error);
-    SurfaceNode nowhere;
-    nowhere.kind = SurfaceNode::Kind::face;
-    nowhere.element = 99;
-    EXPECT_THROW((void)geodesic_distance(mesh, nowhere, surface_node(mesh, Vertex(0))), Error);
+    SurfacePoint nowhere;
+    nowhere.kind = SurfacePoint::Kind::face;
+    nowhere.element[0] = 99;
+    EXPECT_THROW((void)geodesic_distance(mesh, nowhere, vertex_point(0)), Error);
 }
 
 TEST(Geodesic, IsRefusedWhereTheMemoryIsNotThere) {

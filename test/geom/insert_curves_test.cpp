@@ -1,4 +1,5 @@
 #include "ostraka/geom/insert_curves.h"
+#include "ostraka/geom/distance.h"
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
@@ -13,8 +14,6 @@ using namespace ostraka::test;
 
 namespace {
 
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
 Mesh flat_patch(Index n) {
     TriangleSoup soup = patch(n, n);
     for (auto& p : soup.points) p[2] = 0;
@@ -23,7 +22,7 @@ Mesh flat_patch(Index n) {
 
 SurfaceCurve line(const Mesh& mesh, const SurfaceSearch& search, const Point& from, const Point& to) {
     const SurfaceHit a = search.closest(from), b = search.closest(to);
-    const auto curve = trace_line(mesh, surface_node(mesh, a.face, a.barycentric), surface_node(mesh, b.face, b.barycentric),
+    const auto curve = trace_line(mesh, surface_point(mesh, a.face, a.barycentric), surface_point(mesh, b.face, b.barycentric),
                                   Vector(0, 0, 1), 10);
     EXPECT_TRUE(curve);
     return curve.value_or(SurfaceCurve{});
@@ -51,9 +50,11 @@ TEST(InsertCurves, CurvesBecomeEdgesAndTheSurfaceStays) {
         for (const Face f : mesh.faces()) EXPECT_NEAR(area[f], face_area(mesh, f), 1e-12);
         for (Index v = 0; v < mesh.number_of_vertices(); ++v) EXPECT_EQ(inserted.mesh.point(Vertex(v)), mesh.point(Vertex(v)));
         for (std::size_t c = 0; c < curves.size(); ++c) {
-            ASSERT_EQ(inserted.node_vertex[c].size(), curves[c].nodes.size());
-            for (std::size_t i = 0; i < curves[c].nodes.size(); ++i)
-                EXPECT_NEAR(distance(inserted.mesh.point(Vertex(inserted.node_vertex[c][i])), curves[c].nodes[i].point), 0, 1e-6);
+            ASSERT_EQ(inserted.node_vertex[c].size(), curves[c].points.size());
+            for (std::size_t i = 0; i < curves[c].points.size(); ++i)
+                EXPECT_NEAR(
+                    distance(inserted.mesh.point(Vertex(inserted.node_vertex[c][i])), position(mesh, curves[c].points[i])), 0,
+                    1e-6);
         }
         // A single curve has nothing to cross: each piece is an edge.
         const InsertedCurves alone = insert_curves(mesh, {curves.front()});
@@ -70,7 +71,7 @@ TEST(InsertCurves, NothingToInsertChangesNothing) {
     EXPECT_EQ(mesh_checksum(same.mesh), mesh_checksum(mesh));
     SurfaceCurve edge;
     const auto [a, b, c] = corners(mesh, Face(3));
-    edge.nodes = {surface_node(mesh, a), surface_node(mesh, b)};
+    edge.points = {vertex_point(a), vertex_point(b)};
     edge.faces = {3};
     EXPECT_EQ(mesh_checksum(insert_curves(mesh, {edge}).mesh), mesh_checksum(mesh));
 }
@@ -78,10 +79,10 @@ TEST(InsertCurves, NothingToInsertChangesNothing) {
 TEST(InsertCurves, RefusesPlacesThatDoNotExist) {
     const Mesh mesh = build_mesh(torus(12, 8));
     SurfaceCurve curve;
-    curve.nodes.push_back(surface_node(mesh, Vertex(0)));
-    for (const auto kind : {SurfaceNode::Kind::vertex, SurfaceNode::Kind::edge, SurfaceNode::Kind::face}) {
-        curve.nodes[0].kind = kind;
-        curve.nodes[0].element = 1000000;
+    curve.points.push_back(vertex_point(0));
+    for (const auto kind : {SurfacePoint::Kind::vertex, SurfacePoint::Kind::edge, SurfacePoint::Kind::face}) {
+        curve.points[0].kind = kind;
+        curve.points[0].element = {1000000, 1000001};
         EXPECT_THROW(insert_curves(mesh, {curve}), Error);
     }
 }

@@ -1,5 +1,6 @@
 #include "meshes.h"
 #include "ostraka/core/error.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
@@ -11,10 +12,6 @@
 
 using namespace ostraka;
 using namespace ostraka::test;
-
-namespace {
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-}  // namespace
 
 TEST(SurfaceSearch, ClosestPointOfEveryCentroidIsItself) {
     for (const auto& [name, soup] : group()) {
@@ -205,19 +202,19 @@ TEST(TraceLine, IsStraightOnAPlaneAndStaysInTheNamedFaces) {
     std::uniform_real_distribution<double> uniform(0.01, 0.99);
     for (int i = 0; i < 200; ++i) {
         const auto node = [&](bool at_vertex) {
-            if (at_vertex) return surface_node(mesh, Vertex(static_cast<Index>(random() % mesh.number_of_vertices())));
+            if (at_vertex) return vertex_point(static_cast<Index>(random() % mesh.number_of_vertices()));
             const SurfaceHit hit = search.closest(Point(uniform(random), uniform(random), 0));
-            return surface_node(mesh, hit.face, hit.barycentric);
+            return surface_point(mesh, hit.face, hit.barycentric);
         };
-        const SurfaceNode from = node(i % 2 == 0), to = node(i % 3 == 0);
-        const double straight = distance(from.point, to.point);
+        const SurfacePoint from = node(i % 2 == 0), to = node(i % 3 == 0);
+        const double straight = distance(position(mesh, from), position(mesh, to));
         const auto curve = trace_line(mesh, from, to, Vector(0, 0, 1), 2 * straight + 1);
         ASSERT_TRUE(curve) << i;
-        EXPECT_NEAR(curve->length(), straight, 1e-4) << i;
-        ASSERT_EQ(curve->faces.size() + 1, curve->nodes.size());
+        EXPECT_NEAR(curve->length(mesh), straight, 1e-4) << i;
+        ASSERT_EQ(curve->faces.size() + 1, curve->points.size());
         for (std::size_t k = 0; k < curve->faces.size(); ++k)
             for (const std::size_t end : {k, k + 1}) {
-                const Point& p = curve->nodes[end].point;
+                const Point p = position(mesh, curve->points[end]);
                 const auto [a, b, c] = corners(mesh, Face(curve->faces[k]));
                 const auto w = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), p);
                 EXPECT_NEAR(distance(point_at(mesh, curve->faces[k], w), p), 0, 1e-6);
@@ -227,9 +224,9 @@ TEST(TraceLine, IsStraightOnAPlaneAndStaysInTheNamedFaces) {
 
 TEST(TraceLine, GivesUpAtTheBorderAndAtTheLimit) {
     const Mesh mesh = build_mesh(joined(patch(5, 5), moved(patch(5, 5), 1, {3, 0, 0})));
-    const SurfaceNode from = surface_node(mesh, Vertex(7)), to = surface_node(mesh, Vertex(36 + 7));
+    const SurfacePoint from = vertex_point(7), to = vertex_point(36 + 7);
     EXPECT_FALSE(trace_line(mesh, from, to, Vector(0, 0, 1), 100));
-    EXPECT_FALSE(trace_line(mesh, surface_node(mesh, Vertex(0)), surface_node(mesh, Vertex(35)), Vector(0, 0, 1), 0.01));
+    EXPECT_FALSE(trace_line(mesh, vertex_point(0), vertex_point(35), Vector(0, 0, 1), 0.01));
 }
 
 TEST(HausdorffDistance, KnownAnswers) {

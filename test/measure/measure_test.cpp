@@ -84,16 +84,16 @@ TEST(Measure, PinsInsideFaces) {
     const Mesh mesh = grid(2);
     const Annotation root = whole_annotation(mesh);
     Measure tape = measure("tape", {0, 1});
-    tape.locations = {{0, {0.5, 0.25, 0.25}}, {0, {0.25, 0.5, 0.25}}};
+    tape.locations = {face_point(0, {0.5, 0.25, 0.25}), face_point(0, {0.25, 0.5, 0.25})};
     Measure ruler = tape;
     ruler.tool = "ruler";
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, tape), evaluate(mesh, root, ruler)) << "in one face the way is straight";
-    tape.locations[1] = {7, {0.25, 0.5, 0.25}};
+    tape.locations[1] = face_point(7, {0.25, 0.5, 0.25});
     ruler.locations = tape.locations;
     EXPECT_GE(evaluate(mesh, root, tape), evaluate(mesh, root, ruler));
     EXPECT_LE(evaluate(mesh, root, tape), 1.2 * evaluate(mesh, root, ruler));
     // A location at a corner is that vertex.
-    tape.locations = {{0, {1, 0, 0}}, {7, {0, 1, 0}}};
+    tape.locations = {face_point(0, {1, 0, 0}), face_point(7, {0, 1, 0})};
     const Index a = corners(mesh, Face(0))[0], b = corners(mesh, Face(7))[1];
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, tape), evaluate(mesh, root, measure("tape", {a, b})));
 }
@@ -134,7 +134,7 @@ TEST(Measure, ErrorsNameTheAnnotation) {
     EXPECT_TRUE(fails(measure("bounding", {0, 1}, std::array<double, 3>{0, 0, 0})));
     EXPECT_TRUE(fails(measure("laser", {0, 1})));
     Measure invalid = measure("ruler", {0, 1});
-    invalid.locations = {{0, {1, 0, 0}}, {99, {1, 0, 0}}};
+    invalid.locations = {face_point(0, {1, 0, 0}), face_point(99, {1, 0, 0})};
     EXPECT_TRUE(fails(invalid));
     annotation.faces.clear();
     EXPECT_THROW((void)extremes(mesh, annotation, {0, 0, 1}), Error);

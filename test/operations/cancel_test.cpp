@@ -193,7 +193,7 @@ TEST(Cancelling, IsAskedForByEachAlgorithm) {
              static_cast<void>(refine(own, more));
          }},
         {"distances", [&] { static_cast<void>(geodesic_distances(mesh, {0}, 10)); }},
-        {"curve", [&] { static_cast<void>(geodesic_curve(mesh, surface_node(mesh, Vertex(0)), surface_node(mesh, far))); }},
+        {"curve", [&] { static_cast<void>(geodesic_curve(mesh, vertex_point(0), vertex_point(far))); }},
         {"wrap", [&] { static_cast<void>(wrap_soup(soup, 0.05, 0.01)); }},
         {"cage", [&] { static_cast<void>(make_cage(small, {})); }},
         {"segments", [&] { static_cast<void>(segment(mesh, thickness)); }},

@@ -209,15 +209,15 @@ TEST(Page, HoldsCurvesThatRunThroughTheTriangles) {
     const JsonValue &entry = read.data["objects"][0]["annotations"][0], &origin = read.data["objects"][0]["origin"];
     const auto curves = curves_on(annotated.mesh, annotated.set.annotations[0]);
     ASSERT_EQ(entry["curves"].Size(), curves.size());
-    ASSERT_EQ(entry["curves"][0].Size(), curves[0].nodes.size());
-    for (rapidjson::SizeType i = 0; i < curves[0].nodes.size(); ++i) {
+    ASSERT_EQ(entry["curves"][0].Size(), curves[0].points.size());
+    for (rapidjson::SizeType i = 0; i < curves[0].points.size(); ++i) {
         const JsonValue& place = entry["curves"][0][i];
-        const Point position(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
+        const Point shown(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
                              place[2].GetDouble() + origin[2].GetDouble());
-        const double distance = std::sqrt(CGAL::squared_distance(position, curves[0].nodes[i].point));
+        const double distance = std::sqrt(CGAL::squared_distance(shown, position(annotated.mesh, curves[0].points[i])));
         EXPECT_NEAR(distance, 0.002 * box_diagonal(annotated.mesh), 1e-4 * box_diagonal(annotated.mesh));
-        EXPECT_GT(std::sqrt(CGAL::squared_distance(position, Point(1000, 2000, 3000))),
-                  std::sqrt(CGAL::squared_distance(curves[0].nodes[i].point, Point(1000, 2000, 3000))));
+        EXPECT_GT(std::sqrt(CGAL::squared_distance(shown, Point(1000, 2000, 3000))),
+                  std::sqrt(CGAL::squared_distance(position(annotated.mesh, curves[0].points[i]), Point(1000, 2000, 3000))));
     }
     EXPECT_FALSE(entry.HasMember("lines"));
 }

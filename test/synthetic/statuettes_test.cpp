@@ -160,7 +160,7 @@ TEST(Statuettes, PlantedSizesAreThoseOfTheLandmarks) {
         const Statuette s = generate_statuette(p);
         const auto place = [&](const std::string& name) {
             for (const StatuetteLandmark& each : s.landmarks)
-                if (each.name == name) return each.place;
+                if (each.name == name) return position(s.mesh, each.place);
             ADD_FAILURE() << name;
             return Point(0, 0, 0);
         };
@@ -181,7 +181,7 @@ TEST(Statuettes, PlantedSizesAreThoseOfTheLandmarks) {
         }
         for (const StatuetteLandmark& each : s.landmarks) {
             ASSERT_LT(each.vertex, s.mesh.number_of_vertices());
-            ASSERT_LT(each.face, s.mesh.number_of_faces());
+            ASSERT_LT(each.place.element[0], s.mesh.number_of_faces());
         }
     }
 }

@@ -3,6 +3,8 @@
 
 #include "meshes.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/surface_trace.h"
 
 #include <gtest/gtest.h>
 
@@ -14,23 +16,23 @@ using namespace ostraka::test;
 namespace {
 
 /// A curve over the plane patch of n by n squares of side 1 / n, straight from place to place.
-std::vector<SurfacePlace> drawn(const Mesh& mesh, const std::vector<Point>& corners_) {
+std::vector<SurfacePoint> drawn(const Mesh& mesh, const std::vector<Point>& corners_) {
     const SurfaceSearch search(mesh);
     const auto node = [&](const Point& p) {
         const SurfaceHit hit = search.closest(p);
-        return surface_node(mesh, hit.face, hit.barycentric);
+        return surface_point(mesh, hit.face, hit.barycentric);
     };
-    std::vector<SurfacePlace> places{place_of(mesh, node(corners_.front()))};
+    std::vector<SurfacePoint> places{stored_point(mesh, node(corners_.front()))};
     for (std::size_t i = 0; i + 1 < corners_.size(); ++i) {
-        const SurfaceNode a = node(corners_[i]), b = node(corners_[i + 1]);
+        const SurfacePoint a = node(corners_[i]), b = node(corners_[i + 1]);
         const auto line = trace_line(mesh, a, b, Vector(0, 0, 1), 100);
         EXPECT_TRUE(line);
-        for (std::size_t k = 1; line && k < line->nodes.size(); ++k) places.push_back(place_of(mesh, line->nodes[k]));
+        for (std::size_t k = 1; line && k < line->points.size(); ++k) places.push_back(stored_point(mesh, line->points[k]));
     }
     return places;
 }
 
-double length(const Mesh& mesh, const std::vector<SurfacePlace>& places) { return curve_through(mesh, places).length(); }
+double length(const Mesh& mesh, const std::vector<SurfacePoint>& places) { return curve_through(mesh, places).length(mesh); }
 
 /// A plane, in the unit of the squares.
 Mesh plane(Index n) {

@@ -3,7 +3,7 @@
 
 #include "ostraka/core/json.h"
 #include "ostraka/core/mesh.h"
-#include "ostraka/geom/surface_trace.h"
+#include "ostraka/geom/surface_point.h"
 
 #include <array>
 #include <optional>
@@ -12,18 +12,11 @@
 
 namespace ostraka {
 
-/// A position on the surface, not necessarily at a vertex.
-struct Location {
-    Index face = no_index;
-    std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face), summing to one
-    bool operator==(const Location&) const = default;
-};
-
 /// A measure and the pins (picked vertices) that define it (Appendix B.1).
 struct Measure {
-    std::string tool;                 ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;        ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
-    std::vector<Location> locations;  ///< empty, or the exact position of the pin for each of `points`
+    std::string tool;                     ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;            ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
+    std::vector<SurfacePoint> locations;  ///< empty, or the exact place of the pin for each of `points`, in a face
     std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
     std::optional<double> value;                     ///< in `unit`; the mean over the repeated pickings
     std::string unit;
@@ -85,10 +78,10 @@ struct Annotation {
     std::vector<Index> points;                  ///< vertices, in the order given
     std::vector<std::vector<Index>> polylines;  ///< consecutive vertices connected by edges; closed if first = last
     std::vector<Index> faces;                   ///< faces of the region, ascending, without repeats
-    /// Curves of a free annotation; consecutive places lie in a common face. Region: outlines with the interior to the left,
-    /// closed (the first place is repeated) or from border to border. Line: poly-lines, closed if first = last. Point: one
-    /// place each.
-    std::vector<std::vector<SurfacePlace>> curves;
+    /// Curves of a free annotation, made of stored points (stored_point); consecutive ones lie in a common face. Region:
+    /// outlines with the interior to the left, closed (the first point is repeated) or from border to border. Line: poly-lines,
+    /// closed if first = last. Point: one point each.
+    std::vector<std::vector<SurfacePoint>> curves;
     bool all = false;  ///< the region is the whole mesh: `faces` lists every face
     std::vector<Attribute> attributes;
     std::vector<Information> information;

@@ -43,8 +43,8 @@ AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 /// from the faces. Points and poly-lines follow the vertex map and keep their order; with an empty map they are read from the
 /// vertices and edges in index order, and pins keep their indices. Consecutive poly-line vertices that coincide after the edits
 /// are merged; a segment that was split is followed along the edges that carry the annotation. A region without remaining faces
-/// becomes a line or a point and keeps its tag; `note` reports it. Free annotations lose their curves; `lay_curves` recomputes
-/// them. Values of measures and descriptors are marked stale; `refresh_measures` recomputes them.
+/// becomes a line or a point and keeps its tag; `note` reports it. Free annotations lose their curves; `project_curves`
+/// recomputes them. Values of measures and descriptors are marked stale; `refresh_measures` recomputes them.
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map = {});
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
-#include "ostraka/geom/surface_trace.h"
+#include "ostraka/geom/surface_point.h"
 
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace ostraka {
 
 /// A stretch of curve between junctions, or a loop without junctions, which repeats its first place.
 struct CurveStrand {
-    std::vector<SurfacePlace> places;  ///< in the same order for all curves that share the strand
+    std::vector<SurfacePoint> places;  ///< in the same order for all curves that share the strand
     bool closed = false;
 };
 
@@ -25,7 +25,7 @@ struct StrandUse {
 /// `strands` and returns, by annotation and curve, the sequence of its strands; empty for annotations that are not chosen and
 /// for curves of one place. O(k log k) for k places.
 std::vector<std::vector<std::vector<StrandUse>>> take_apart(const Mesh& mesh,
-                                                            const std::vector<std::vector<std::vector<SurfacePlace>>>& curves,
+                                                            const std::vector<std::vector<std::vector<SurfacePoint>>>& curves,
                                                             const std::vector<bool>& chosen, std::vector<CurveStrand>& strands);
 
 }  // namespace ostraka

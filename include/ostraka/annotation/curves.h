@@ -14,7 +14,11 @@ namespace ostraka {
 inline bool is_free(const Annotation& annotation) { return !annotation.curves.empty(); }
 bool any_free(const AnnotationSet& set);
 
-/// The curves of an annotation with coordinates. Throws Error (input), naming the annotation, if they do not fit the mesh.
+/// The curve through vertices; a closed one repeats its first point.
+std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path, bool closed = false);
+
+/// The curves of a free annotation with the faces of their pieces. Throws Error (input), naming the annotation, if they do not
+/// fit the mesh.
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation);
 
 /// For each face, whether it is inside, outside or partly inside a free region.
@@ -39,10 +43,10 @@ std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation&
 
 /// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
 struct CutMesh {
-    Mesh mesh;                       ///< old vertices first, with unchanged indices
-    AnnotationSet annotations;       ///< without curves; measures keep their pins
-    std::vector<Index> face_origin;  ///< new face -> old face, ascending
-    std::vector<SurfaceNode> nodes;  ///< for each new vertex, its position on the old mesh
+    Mesh mesh;                         ///< old vertices first, with unchanged indices
+    AnnotationSet annotations;         ///< without curves; measures keep their pins
+    std::vector<Index> face_origin;    ///< new face -> old face, ascending
+    std::vector<SurfacePoint> points;  ///< for each new vertex, its place on the old mesh
     std::size_t old_vertices = 0;
     std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
 

@@ -18,6 +18,18 @@ using Outline = std::vector<Index>;
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected);
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces);
 
+/// A path of vertices along an outline: all of it, or a stretch from border to border of the mesh.
+struct OutlinePath {
+    std::vector<Index> vertices;
+    bool closed = false;  ///< without repeating the first vertex
+};
+/// The outlines of faces without the edges on the border of the mesh, which split them into open paths.
+std::vector<OutlinePath> outline_paths(const Mesh& mesh, const std::vector<Index>& faces);
+
+/// The walk without repeats and without "a, b, a"; if `closed`, also across the end. A closed path of fewer than three vertices
+/// becomes empty.
+std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed);
+
 /// The interior of a set of outlines.
 struct Filling {
     std::vector<bool> selected;  ///< one flag per face

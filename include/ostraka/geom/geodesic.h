@@ -26,10 +26,10 @@ std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair
 
 /// Geodesic distance between two places; infinite if they are not connected. Only the faces that a curve no longer than the
 /// shortest edge path can meet are processed. Throws Error (usage) for a place that is not on the mesh.
-double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
+double geodesic_distance(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to);
 
 /// Geodesic between two places, straight in each face; nullopt if they are not connected. If a degenerate face prevents the
 /// exact method, the shortest edge path.
-std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
+std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to);
 
 }  // namespace ostraka

@@ -15,7 +15,7 @@ struct InsertedCurves {
     std::vector<Index> face_origin;               ///< new face -> old face
     std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: its vertex
     std::vector<std::vector<Index>> paths;        ///< per curve: all vertices along it, consecutive ones connected by an edge
-    std::vector<SurfaceNode> new_nodes;           ///< for each new vertex, its position on the old mesh
+    std::vector<SurfacePoint> new_points;         ///< for each new vertex, its place on the old mesh
     std::map<Index, std::vector<Index>> on_edge;  ///< old edge -> new vertices on it, from the source of its first halfedge
 };
 

@@ -60,6 +60,9 @@ private:
     std::unique_ptr<Tree> tree_;
 };
 
+/// Edge length of an equilateral triangle with the mean area of `faces` faces.
+double typical_edge(double area, std::size_t faces);
+
 /// Barycentric coordinates of the point of triangle abc nearest to p (Ericson 2005, section 5.1.5).
 std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p);
 

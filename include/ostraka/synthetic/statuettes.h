@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ostraka/core/options.h"
+#include "ostraka/geom/surface_point.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/synthetic/synthetic_object.h"
 
@@ -42,10 +43,8 @@ struct StatuetteParameters {
 /// A named point on the surface.
 struct StatuetteLandmark {
     std::string name;
-    Index vertex = no_index;                     ///< nearest vertex of the mesh
-    Index face = no_index;                       ///< face that contains the point
-    std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face)
-    Point place{0, 0, 0};
+    Index vertex = no_index;  ///< nearest vertex of the mesh
+    SurfacePoint place;       ///< in a face
 };
 
 struct Statuette {

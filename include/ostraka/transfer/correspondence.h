@@ -1,10 +1,12 @@
 // Corresponding points of the vertices of one mesh on another mesh (thesis, Algorithm 2 with its erratum).
 #pragma once
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/surface_search.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,8 @@ struct CorrespondenceOptions {
     double max_distance = 0.02;  ///< fraction of the target's box diagonal
     double max_angle = 90;       ///< maximum angle in degrees between the normals of vertex and target face
     enum class Corner { projection, source } vertex = Corner::projection;  ///< face corner nearest to projection or source
+    /// Cosine of `max_angle`.
+    [[nodiscard]] double min_cosine() const { return std::cos(max_angle * pi / 180); }
     void describe(OptionList& visit);
 };
 

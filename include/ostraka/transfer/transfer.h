@@ -69,7 +69,7 @@ struct TransferResult {
 /// Transfers all annotations. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
 /// corresponding vertices; regions are the faces to the left of their outlines; measures move with their pins and are
 /// recomputed. A region too small for the target becomes a line or a point, and its note reports it. Three kinds of annotations
-/// are projected by their curves (lay_curves.h) and keep their type, however small: free annotations; with `outlines` = free,
+/// are projected by their curves (project_curves.h) and keep their type, however small: free annotations; with `outlines` = free,
 /// all annotations; with `outlines` = partitions, regions that partition the whole surface (unless `refine` or `cover` require
 /// edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,

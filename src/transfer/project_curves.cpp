@@ -1,4 +1,4 @@
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 
 #include "curve_loops.h"
 #include "curve_partition.h"
@@ -10,11 +10,11 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/words.h"
+#include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
 #include "place_mapping.h"
 #include "region_settling.h"
-#include "region_transfer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,10 +26,10 @@ namespace ostraka {
 
 namespace {
 
-using Places = std::vector<SurfacePlace>;
+using Places = std::vector<SurfacePoint>;
 
 /// A strand of the source and its projection. Curves that share a strand on the source share it on the target.
-struct LaidStrand {
+struct ProjectedStrand {
     CurveStrand from;
     bool bounds_region = false;
     bool first_at_border = false, last_at_border = false;  ///< ends of an outline that ends at the border of the mesh
@@ -37,9 +37,9 @@ struct LaidStrand {
     std::size_t count = 0, by_ray = 0, by_closest_point = 0, without_place = 0, detours = 0;
 };
 
-class Laying {
+class CurveProjector {
 public:
-    Laying(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options)
+    CurveProjector(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options)
         : source_(source),
           search_(target),
           target_(target.mesh()),
@@ -47,8 +47,8 @@ public:
           mapping_(source, target, options),
           edge_(mapping_.edge()) {}
 
-    std::vector<Laid> run(const std::vector<const Annotation*>& annotations) {
-        std::vector<Laid> laid(annotations.size());
+    std::vector<ProjectedAnnotation> run(const std::vector<const Annotation*>& annotations) {
+        std::vector<ProjectedAnnotation> projected(annotations.size());
         std::vector<std::vector<Places>> drawn(annotations.size());
         for (std::size_t i = 0; i < annotations.size(); ++i)
             if (!annotations[i]->all) drawn[i] = places_of(*annotations[i]);
@@ -56,25 +56,25 @@ public:
             for (Places& curve : curves) curve = divided(curve);
         map_all(drawn);
         const auto uses = find_strands(annotations, drawn);
-        for (LaidStrand& strand : strands_) lay(strand);
+        for (ProjectedStrand& strand : strands_) project(strand);
         for (std::size_t i = 0; i < annotations.size(); ++i) {
-            begin(*annotations[i], laid[i]);
+            begin(*annotations[i], projected[i]);
             for (std::size_t c = 0; c < drawn[i].size(); ++c) {
-                Places on_target =
-                    drawn[i][c].size() == 1 ? lay_point(drawn[i][c].front(), laid[i]) : put_together(uses[i][c], laid[i]);
+                Places on_target = drawn[i][c].size() == 1 ? project_point(drawn[i][c].front(), projected[i])
+                                                           : put_together(uses[i][c], projected[i]);
                 const bool region = annotations[i]->type == AnnotationType::region;
                 const bool closes = drawn[i][c].front() == drawn[i][c].back();
                 if (region && closes && (on_target.size() < 4 || on_target.front() != on_target.back())) continue;
                 if (on_target.size() >= (annotations[i]->type == AnnotationType::point ? 1U : 2U))
-                    laid[i].annotation.curves.push_back(std::move(on_target));
+                    projected[i].annotation.curves.push_back(std::move(on_target));
             }
         }
-        thin_out(target_, 1e-4 * edge_, laid);
+        thin_out(target_, 1e-4 * edge_, projected);
         parallel_for(
-            laid.size(), [&](std::size_t i) { settling_.settle(*annotations[i], drawn[i].size(), laid[i]); }, 1);
-        keep_partition(source_, annotations, target_, laid);
-        for (std::size_t i = 0; i < annotations.size(); ++i) note_change(*annotations[i], drawn[i].size(), laid[i]);
-        return laid;
+            projected.size(), [&](std::size_t i) { settling_.settle(*annotations[i], drawn[i].size(), projected[i]); }, 1);
+        keep_partition(source_, annotations, target_, projected);
+        for (std::size_t i = 0; i < annotations.size(); ++i) note_change(*annotations[i], drawn[i].size(), projected[i]);
+        return projected;
     }
 
 private:
@@ -86,19 +86,11 @@ private:
             return annotation.curves;
         }
         std::vector<Places> curves;
-        const auto add = [&](const std::vector<Index>& path, bool closed) {
-            Places& places = curves.emplace_back();
-            for (const Index v : path) {
-                SurfacePlace place;
-                place.element[0] = v;
-                places.push_back(place);
-            }
-            if (closed) places.push_back(places.front());
-        };
-        for (const Index v : annotation.points) add({v}, false);
-        for (const auto& line : annotation.polylines) add(line, false);
+        for (const Index v : annotation.points) curves.push_back(vertex_curve({v}));
+        for (const auto& line : annotation.polylines) curves.push_back(vertex_curve(line));
         if (annotation.type == AnnotationType::region)
-            for (const SourcePath& path : region_paths(source_, annotation.faces)) add(path.vertices, path.closed);
+            for (const OutlinePath& path : outline_paths(source_, annotation.faces))
+                curves.push_back(vertex_curve(path.vertices, path.closed));
         return curves;
     }
 
@@ -107,8 +99,7 @@ private:
         Places places;
         for (std::size_t i = 0; i < curve.size(); ++i) {
             if (i > 0) {
-                const SurfaceNode a = node_at(source_, curve[i - 1]), b = node_at(source_, curve[i]);
-                const double length = gap_between(a.point, b.point);
+                const double length = distance(position(source_, curve[i - 1]), position(source_, curve[i]));
                 const int parts = std::clamp(static_cast<int>(std::ceil(length / edge_)), 1, 1000);
                 for (int k = 1; k < parts; ++k) places.push_back(between(curve[i - 1], curve[i], k, parts));
             }
@@ -118,21 +109,20 @@ private:
     }
 
     /// Point k of `parts` on the way from a to b, computed from the smaller place on.
-    SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, int k, int parts) const {
+    SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, int k, int parts) const {
         if (b < a) return between(b, a, parts - k, parts);
-        const SurfaceNode from = node_at(source_, a), to = node_at(source_, b);
-        const Index face = common_face(source_, from, to);
-        const auto u = weights_in(source_, face, from), v = weights_in(source_, face, to);
+        const Index face = shared_face(source_, a, b);
+        const auto u = in_face(source_, a, face), v = in_face(source_, b, face);
         const double t = static_cast<double>(k) / parts;
         std::array<double, 3> weights{};
         for (std::size_t c = 0; c < 3; ++c) weights[c] = (1 - t) * u[c] + t * v[c];
-        return place_of(source_, surface_node(source_, face, weights, 1e-9));
+        return stored_point(source_, surface_point(source_, face, weights, 1e-9));
     }
 
     // Places.
 
     void map_all(const std::vector<std::vector<Places>>& drawn) {
-        std::vector<SurfacePlace> all;
+        std::vector<SurfacePoint> all;
         for (const auto& curves : drawn)
             for (const Places& curve : curves) all.insert(all.end(), curve.begin(), curve.end());
         std::sort(all.begin(), all.end());
@@ -143,7 +133,7 @@ private:
         for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], std::move(found[i]));
     }
 
-    const MappedPlace& at(const SurfacePlace& place) {
+    const MappedPlace& at(const SurfacePoint& place) {
         const auto [entry, fresh] = mapped_.try_emplace(place);
         if (fresh) entry->second = mapping_(place);
         return entry->second;
@@ -171,12 +161,12 @@ private:
     }
 
     /// Computes the places of a strand on the target, including those where the traces between them cross edges.
-    void lay(LaidStrand& strand) {
+    void project(ProjectedStrand& strand) {
         check_cancelled();
         const Places& from = strand.from.places;
         const std::vector<std::size_t> good = trusted(strand);
         if (good.empty()) return;
-        Places places{place_of(target_, at(from[good.front()]).to)};
+        Places places{stored_point(target_, at(from[good.front()]).to)};
         for (std::size_t k = 0; k + 1 < good.size(); ++k) append(from[good[k]], from[good[k + 1]], strand.detours, places);
         if (strand.from.closed && good.front() != 0) append(from[good.back()], from[good.front()], strand.detours, places);
         if (strand.last_at_border) lead_to_border(places);
@@ -189,55 +179,55 @@ private:
             strand.bounds_region ? without_small_loops(target_, std::move(places), edge_, strand.from.closed) : std::move(places);
     }
 
-    Places lay_point(const SurfacePlace& place, Laid& laid) {
+    Places project_point(const SurfacePoint& place, ProjectedAnnotation& projected) {
         const MappedPlace& one = at(place);
-        ++laid.places;
+        ++projected.places;
         if (one.kind == CorrespondenceKind::none) {
-            ++laid.without_place;
+            ++projected.without_place;
             return {};
         }
-        ++(one.kind == CorrespondenceKind::ray ? laid.by_ray : laid.by_closest_point);
-        return {place_of(target_, one.to)};
+        ++(one.kind == CorrespondenceKind::ray ? projected.by_ray : projected.by_closest_point);
+        return {stored_point(target_, one.to)};
     }
 
     /// Joins the strands of a curve. Gaps left by strands that vanished or lost their ends are bridged.
-    Places put_together(const std::vector<StrandUse>& uses, Laid& laid) {
+    Places put_together(const std::vector<StrandUse>& uses, ProjectedAnnotation& projected) {
         Places places;
         for (const StrandUse& use : uses) {
-            const LaidStrand& strand = strands_[use.strand];
-            laid.places += strand.count;
-            laid.by_ray += strand.by_ray;
-            laid.by_closest_point += strand.by_closest_point;
-            laid.without_place += strand.without_place;
-            laid.detours += strand.detours;
+            const ProjectedStrand& strand = strands_[use.strand];
+            projected.places += strand.count;
+            projected.by_ray += strand.by_ray;
+            projected.by_closest_point += strand.by_closest_point;
+            projected.without_place += strand.without_place;
+            projected.detours += strand.detours;
             Places part = strand.places;
             if (use.backwards) std::reverse(part.begin(), part.end());
             if (part.empty()) continue;
-            if (!places.empty() && places.back() != part.front()) bridge(part.front(), laid, places);
-            for (const SurfacePlace& place : part)
+            if (!places.empty() && places.back() != part.front()) bridge(part.front(), projected, places);
+            for (const SurfacePoint& place : part)
                 if (places.empty() || places.back() != place) places.push_back(place);
         }
         if (uses.empty()) return places;
-        const SurfacePlace &first = strand_end(uses.front(), true), &last = strand_end(uses.back(), false);
-        if (first == last && places.size() > 2 && places.front() != places.back()) bridge(places.front(), laid, places);
+        const SurfacePoint &first = strand_end(uses.front(), true), &last = strand_end(uses.back(), false);
+        if (first == last && places.size() > 2 && places.front() != places.back()) bridge(places.front(), projected, places);
         return places;
     }
 
-    const SurfacePlace& strand_end(const StrandUse& use, bool first) const {
+    const SurfacePoint& strand_end(const StrandUse& use, bool first) const {
         const Places& places = strands_[use.strand].from.places;
         return first != use.backwards ? places.front() : places.back();
     }
 
-    void bridge(const SurfacePlace& to, Laid& laid, Places& places) {
-        ++laid.detours;
-        along_edges(node_at(target_, places.back()), node_at(target_, to), places);
+    void bridge(SurfacePoint to, ProjectedAnnotation& projected, Places& places) {
+        ++projected.detours;
+        along_edges(SurfacePoint(places.back()), to, places);
     }
 
     /// Selects the places of a strand to use: both ends, and starting from the place nearest to its origin, those whose
     /// distance from the previous one is not much larger than on the source. Between two nearby places where the mapping is
     /// invertible, places where it is not are skipped: they lie in folds. A loop repeats its first place at the end if that
     /// place is used.
-    std::vector<std::size_t> trusted(LaidStrand& strand) {
+    std::vector<std::size_t> trusted(ProjectedStrand& strand) {
         const Places& curve = strand.from.places;
         const bool closed = strand.from.closed;
         const std::size_t n = closed ? curve.size() - 1 : curve.size();
@@ -251,7 +241,7 @@ private:
             if (one.kind == CorrespondenceKind::ray) ++strand.by_ray;
             else if (one.kind == CorrespondenceKind::closest) ++strand.by_closest_point;
             if (one.kind == CorrespondenceKind::none) continue;
-            const double off = gap_between(one.from.point, one.to.point) + (one.mutual ? 0 : mapping_.far());
+            const double off = distance(one.start, one.end) + (one.mutual ? 0 : mapping_.far());
             if (off < nearest - 1e-9 * edge_) nearest = off, best = i;
         }
         if (best == n) {
@@ -284,19 +274,18 @@ private:
         std::vector<double> along(steps + 1, 0);
         std::vector<std::size_t> next_mutual(steps + 2, steps + 1);  // from each step on
         for (std::size_t k = 1; k <= steps; ++k)
-            along[k] = along[k - 1] + gap_between(places[at_step(k)]->from.point, places[at_step(k - 1)]->from.point);
+            along[k] = along[k - 1] + distance(places[at_step(k)]->start, places[at_step(k - 1)]->start);
         for (std::size_t k = steps; k >= 1; --k) next_mutual[k] = places[at_step(k)]->mutual ? k : next_mutual[k + 1];
         const auto follows = [&](std::size_t k, std::size_t last) {
             const MappedPlace &one = *places[at_step(k)], &before = *places[at_step(last)];
             return one.kind != CorrespondenceKind::none &&
-                   gap_between(one.to.point, before.to.point) <= 3 * (along[k] - along[last]) + 0.5 * edge_;
+                   distance(one.end, before.end) <= 3 * (along[k] - along[last]) + 0.5 * edge_;
         };
         std::size_t last = 0;
         for (std::size_t k = 1; k <= steps; ++k) {
             if (!places[at_step(k)]->mutual) {
                 const std::size_t m = next_mutual[k];
-                if (m <= steps && follows(m, last) &&
-                    gap_between(places[at_step(m)]->to.point, places[at_step(last)]->to.point) <= 2 * edge_)
+                if (m <= steps && follows(m, last) && distance(places[at_step(m)]->end, places[at_step(last)]->end) <= 2 * edge_)
                     k = m;
             }
             if (!follows(k, last)) continue;
@@ -306,18 +295,18 @@ private:
     }
 
     /// Appends the trace from the place of a, which is the last of `places`, to the place of b.
-    void append(const SurfacePlace& a, const SurfacePlace& b, std::size_t& detours, Places& places) {
+    void append(const SurfacePoint& a, const SurfacePoint& b, std::size_t& detours, Places& places) {
         const auto [entry, fresh] = traces_.try_emplace(std::minmax(a, b));
         if (fresh) {
-            const SurfacePlace &low = entry->first.first, &high = entry->first.second;
-            entry->second.places.push_back(place_of(target_, at(low).to));
+            const SurfacePoint &low = entry->first.first, &high = entry->first.second;
+            entry->second.places.push_back(stored_point(target_, at(low).to));
             join(low, high, 0, entry->second);
         }
         detours += entry->second.detours;
         const Places& way = entry->second.places;
         const bool forward = a == entry->first.first;
         for (std::size_t k = 1; k < way.size(); ++k) {
-            const SurfacePlace& place = forward ? way[k] : way[way.size() - 1 - k];
+            const SurfacePoint& place = forward ? way[k] : way[way.size() - 1 - k];
             if (places.back() != place) places.push_back(place);
         }
     }
@@ -330,23 +319,23 @@ private:
     /// Appends the way from the place of a to that of b: a straight trace in the plane of the correspondence normals; if it
     /// does not arrive, the segment is halved, unless the mapping is not invertible at its midpoint; across folds, the
     /// geodesic.
-    void join(const SurfacePlace& a, const SurfacePlace& b, int depth, Trace& trace) {
+    void join(const SurfacePoint& a, const SurfacePoint& b, int depth, Trace& trace) {
         const MappedPlace from = at(a), to = at(b);
-        const double apart = gap_between(from.to.point, to.to.point), least = 1e-9 * search_.diagonal();
+        const double apart = distance(from.end, to.end), least = 1e-9 * search_.diagonal();
         const Vector across = mapping_.by_target_normals() ? from.up + to.up : from.normal + to.normal;
         const auto add = [&](const SurfaceCurve& line) {
-            for (std::size_t k = 1; k < line.nodes.size(); ++k) trace.places.push_back(place_of(target_, line.nodes[k]));
+            for (std::size_t k = 1; k < line.points.size(); ++k) trace.places.push_back(stored_point(target_, line.points[k]));
         };
         if (const auto line = trace_line(target_, from.to, to.to, unit_vector(across), 2 * apart + least)) return add(*line);
         if (const auto line = trace_line(target_, from.to, to.to, unit_vector(from.up + to.up), 2 * apart + least))
             return add(*line);
-        if (depth < 6 && common_face(source_, from.from, to.from) != no_index) {
-            const SurfacePlace middle = between(a, b, 1, 2);
+        if (depth < 6 && shared_face(source_, from.from, to.from) != no_index) {
+            const SurfacePoint middle = between(a, b, 1, 2);
             const MappedPlace& half = at(middle);
             const double reach = 2 * apart + 0.1 * edge_;
             const bool there = mapping_.by_target_normals() ? half.mutual : half.kind != CorrespondenceKind::none;
-            if (middle != a && middle != b && there && gap_between(half.to.point, from.to.point) < reach &&
-                gap_between(half.to.point, to.to.point) < reach) {
+            if (middle != a && middle != b && there && distance(half.end, from.end) < reach &&
+                distance(half.end, to.end) < reach) {
                 join(a, middle, depth + 1, trace);
                 join(middle, b, depth + 1, trace);
                 return;
@@ -358,22 +347,21 @@ private:
     }
 
     /// Connects the places through corners of their faces and an edge path; a gap between two components is left open.
-    void along_edges(const SurfaceNode& a, const SurfaceNode& b, Places& places) {
-        const auto nearest = [&](const SurfaceNode& node) {
-            if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
-            const auto corner = corners(target_, faces_of(target_, node).front());
+    void along_edges(const SurfacePoint& a, const SurfacePoint& b, Places& places) {
+        const auto nearest = [&](const SurfacePoint& p) {
+            if (p.is_vertex()) return p.vertex();
+            const Point at = position(target_, p);
+            const auto corner = corners(target_, faces_of(target_, p).front());
             return *std::min_element(corner.begin(), corner.end(), [&](Vertex v, Vertex w) {
-                return CGAL::squared_distance(target_.point(v), node.point) <
-                       CGAL::squared_distance(target_.point(w), node.point);
+                return CGAL::squared_distance(target_.point(v), at) < CGAL::squared_distance(target_.point(w), at);
             });
         };
         if (!paths_) paths_.emplace(target_);
         for (const Index v : paths_->find(nearest(a), nearest(b), {})) {
-            SurfacePlace place;
-            place.element[0] = v;
+            const SurfacePoint place = vertex_point(v);
             if (places.back() != place) places.push_back(place);
         }
-        if (const SurfacePlace last = place_of(target_, b); places.back() != last) places.push_back(last);
+        if (const SurfacePoint last = stored_point(target_, b); places.back() != last) places.push_back(last);
     }
 
     /// Extends the end of an outline that started at the border to the nearest border point of the target.
@@ -382,55 +370,45 @@ private:
             for (const Halfedge h : target_.halfedges())
                 if (target_.is_border(h)) border_.push_back(h);
         if (border_.empty()) return;
-        const SurfaceNode from = node_at(target_, way.back());
-        if (from.kind == SurfaceNode::Kind::vertex
-                ? target_.is_border(Vertex(from.element))
-                : from.kind == SurfaceNode::Kind::edge && target_.is_border(Edge(from.element)))
-            return;
+        const SurfacePoint from = way.back();
+        if (is_on_border(target_, from)) return;
+        const Point start = position(target_, from);
         double best = std::numeric_limits<double>::infinity();
-        SurfaceNode goal;
+        SurfacePoint goal;
         for (const Halfedge h : border_) {
             const Point &a = target_.point(target_.source(h)), &b = target_.point(target_.target(h));
             const Vector along = b - a;
-            const double t = std::clamp(((from.point - a) * along) / along.squared_length(), 0.0, 1.0);
-            const double off = CGAL::squared_distance(a + t * along, from.point);
+            const double t = std::clamp(((start - a) * along) / along.squared_length(), 0.0, 1.0);
+            const double off = CGAL::squared_distance(a + t * along, start);
             if (off >= best) continue;
             best = off;
-            SurfacePlace place;
             const Index v = target_.source(h), w = target_.target(h);
-            if (t < 1e-6 || t > 1 - 1e-6) {
-                place.element[0] = t < 0.5 ? v : w;
-            } else {
-                place.kind = SurfaceNode::Kind::edge;
-                place.element = {std::min(v, w), std::max(v, w)};
-                place.weights[0] = v < w ? t : 1 - t;
-            }
-            goal = node_at(target_, place);
+            goal = t < 1e-6 || t > 1 - 1e-6 ? vertex_point(t < 0.5 ? v : w) : ordered_edge_point(v, w, t);
         }
         const Vector up = unit_vector(smooth_normal(target_, from) + smooth_normal(target_, goal));
         if (const auto line = trace_line(target_, from, goal, up, 4 * std::sqrt(best) + 1e-9 * search_.diagonal()))
-            for (std::size_t k = 1; k < line->nodes.size(); ++k) way.push_back(place_of(target_, line->nodes[k]));
+            for (std::size_t k = 1; k < line->points.size(); ++k) way.push_back(stored_point(target_, line->points[k]));
         else along_edges(from, goal, way);
     }
 
-    static void begin(const Annotation& from, Laid& laid) {
-        laid.annotation.id = from.id;
-        laid.annotation.tag = from.tag;
-        laid.annotation.colour = from.colour;
-        laid.annotation.type = from.type;
-        laid.annotation.note = from.note;
-        laid.annotation.information = from.information;
-        laid.annotation.all = from.all;
+    static void begin(const Annotation& from, ProjectedAnnotation& projected) {
+        projected.annotation.id = from.id;
+        projected.annotation.tag = from.tag;
+        projected.annotation.colour = from.colour;
+        projected.annotation.type = from.type;
+        projected.annotation.note = from.note;
+        projected.annotation.information = from.information;
+        projected.annotation.all = from.all;
     }
 
     /// Adds a note if a region or line has another number of outlines than on the source.
-    static void note_change(const Annotation& from, std::size_t before, Laid& laid) {
-        const std::size_t after = laid.annotation.curves.size();
-        if (from.all || laid.lost || after == before || after == 0 || !laid.note.empty()) return;
-        laid.note = counted(before, from.type == AnnotationType::line    ? "line"
-                                    : from.type == AnnotationType::point ? "point"
-                                                                         : "outline") +
-                    " became " + std::to_string(after);
+    static void note_change(const Annotation& from, std::size_t before, ProjectedAnnotation& projected) {
+        const std::size_t after = projected.annotation.curves.size();
+        if (from.all || projected.lost || after == before || after == 0 || !projected.note.empty()) return;
+        projected.note = counted(before, from.type == AnnotationType::line    ? "line"
+                                         : from.type == AnnotationType::point ? "point"
+                                                                              : "outline") +
+                         " became " + std::to_string(after);
     }
 
     const Mesh& source_;
@@ -439,43 +417,43 @@ private:
     RegionSettling settling_;
     PlaceMapping mapping_;
     double edge_;  ///< typical edge length of the target
-    std::vector<LaidStrand> strands_;
-    std::map<SurfacePlace, MappedPlace> mapped_;
-    std::map<std::pair<SurfacePlace, SurfacePlace>, Trace> traces_;
+    std::vector<ProjectedStrand> strands_;
+    std::map<SurfacePoint, MappedPlace> mapped_;
+    std::map<std::pair<SurfacePoint, SurfacePoint>, Trace> traces_;
     std::optional<PathSearch> paths_;
     std::vector<Halfedge> border_;
 };
 
 }  // namespace
 
-std::vector<Laid> lay_curves(const Mesh& source, const std::vector<const Annotation*>& annotations, const SurfaceSearch& target,
-                             const CorrespondenceOptions& options) {
+std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
+                                                const SurfaceSearch& target, const CorrespondenceOptions& options) {
     check_options(options, "correspondence");
-    return Laying(source, target, options).run(annotations);
+    return CurveProjector(source, target, options).run(annotations);
 }
 
-std::vector<std::string> lay_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
-                                              AnnotationSet& to, const CorrespondenceOptions& options) {
+std::vector<std::string> project_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
+                                                  AnnotationSet& to, const CorrespondenceOptions& options) {
     std::vector<std::string> notes;
     std::vector<const Annotation*> free;
     for (const Annotation& annotation : from.annotations)
         if (is_free(annotation)) free.push_back(&annotation);
     if (free.empty() || target.number_of_faces() == 0) return notes;
     const SurfaceSearch search(target);
-    for (Laid& laid : lay_curves(source, free, search, options)) {
-        Annotation* now = to.find(laid.annotation.id);
-        if (laid.lost) {
-            notes.push_back(name_of(laid.annotation) + ": its curves have no place on the new mesh");
+    for (ProjectedAnnotation& projected : project_curves(source, free, search, options)) {
+        Annotation* now = to.find(projected.annotation.id);
+        if (projected.lost) {
+            notes.push_back(name_of(projected.annotation) + ": its curves have no place on the new mesh");
             continue;
         }
-        if (!laid.note.empty()) notes.push_back(name_of(laid.annotation) + ": " + laid.note);
+        if (!projected.note.empty()) notes.push_back(name_of(projected.annotation) + ": " + projected.note);
         if (now == nullptr) continue;
-        now->type = laid.annotation.type;
-        now->points = std::move(laid.annotation.points);
-        now->polylines = std::move(laid.annotation.polylines);
-        now->faces = std::move(laid.annotation.faces);
-        now->curves = std::move(laid.annotation.curves);
-        now->note = std::move(laid.annotation.note);
+        now->type = projected.annotation.type;
+        now->points = std::move(projected.annotation.points);
+        now->polylines = std::move(projected.annotation.polylines);
+        now->faces = std::move(projected.annotation.faces);
+        now->curves = std::move(projected.annotation.curves);
+        now->note = std::move(projected.annotation.note);
     }
     return notes;
 }

@@ -10,7 +10,7 @@
 namespace ostraka {
 
 /// Result of projecting one annotation onto another mesh.
-struct Laid {
+struct ProjectedAnnotation {
     Annotation annotation;  ///< id, tag, colour, type, note, curves and the elements that follow from these; no attributes
     std::size_t places = 0, by_ray = 0, by_closest_point = 0, without_place = 0;
     std::size_t detours = 0;  ///< pairs of consecutive places connected along edges because no trace connected them
@@ -27,12 +27,12 @@ struct Laid {
 /// the surface elsewhere first) are dropped. Regions that partition the whole source partition the whole target. Places closer
 /// than a ten-thousandth of an edge to the straight segment between their neighbours are dropped. Regions that are the whole
 /// mesh (`all`) stay so. O(k log n) for k places. The result does not depend on the number of threads.
-std::vector<Laid> lay_curves(const Mesh& source, const std::vector<const Annotation*>& annotations, const SurfaceSearch& target,
-                             const CorrespondenceOptions& options = {});
+std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
+                                                const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
 /// Sets the curves of the free annotations of `to`, a set on the target with the same ids as `from` on `source`, by projection,
 /// and adds missing ones that have corresponding places. Returns notes.
-std::vector<std::string> lay_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
-                                              AnnotationSet& to, const CorrespondenceOptions& options = {});
+std::vector<std::string> project_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
+                                                  AnnotationSet& to, const CorrespondenceOptions& options = {});
 
 }  // namespace ostraka

@@ -1,5 +1,5 @@
 // Free annotations on other meshes.
-#include "ostraka/transfer/lay_curves.h"
+#include "ostraka/transfer/project_curves.h"
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
@@ -74,7 +74,7 @@ AnnotationSet cells(const Mesh& mesh, std::size_t count) {
 
 }  // namespace
 
-TEST(LayCurves, ThereAndBackIsTheSameCurve) {
+TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
     const Mesh coarse = made("teapot", 2500, 1), fine = made("teapot", 20000, 2);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 4);
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
@@ -97,7 +97,7 @@ TEST(LayCurves, ThereAndBackIsTheSameCurve) {
         }
 }
 
-TEST(LayCurves, APartitionStaysOne) {
+TEST(ProjectCurves, APartitionStaysOne) {
     const Mesh coarse = made("statuette", 3000, 1), fine = made("statuette", 12000, 5);
     const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
     ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
@@ -115,7 +115,7 @@ TEST(LayCurves, APartitionStaysOne) {
     EXPECT_LT(wrong / surface_area(coarse), 1e-6);
 }
 
-TEST(LayCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
+TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
     const Mesh coarse = made("teapot", 1500, 1), fine = made("teapot", 6000, 2);
     AnnotationSet set;
     set.annotations.resize(1);
@@ -137,7 +137,7 @@ TEST(LayCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
     EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
 }
 
-TEST(LayCurves, LabelsOfAPartitionBecomeFree) {
+TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
     const Mesh fine = made("teapot", 6000, 1), coarse = made("teapot", 1500, 7);
     AnnotationSet set = cells(fine, 6);
     const SurfaceSearch on_coarse(coarse);
@@ -167,7 +167,7 @@ TEST(LayCurves, LabelsOfAPartitionBecomeFree) {
     for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
 }
 
-TEST(LayCurves, FollowsSimplificationAndRefinement) {
+TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     const Mesh mesh = made("teapot", 6000, 1);
     const AnnotationSet set = slabs(mesh, Vector(0.3, 0.2, 0.93), 3);
     MeshFile file;
@@ -193,12 +193,12 @@ TEST(LayCurves, FollowsSimplificationAndRefinement) {
     }
 }
 
-TEST(LayCurves, SameToTheBitForAnyNumberOfThreads) {
+TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
     const Mesh coarse = made("statuette", 2000, 1), fine = made("statuette", 8000, 5);
     const AnnotationSet set = slabs(coarse, Vector(0, 0.6, 0.8), 3);
     const SurfaceSearch search(fine);
     const int before = threads();
-    std::vector<std::vector<std::vector<SurfacePlace>>> curves;
+    std::vector<std::vector<std::vector<SurfacePoint>>> curves;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
         const TransferResult there = transfer(coarse, set, search);
@@ -237,15 +237,15 @@ Annotation disc_on(const Mesh& mesh, double x, double y, double radius) {
     const auto node = [&](int k) {
         const double angle = 2 * CGAL_PI * k / 60;
         const SurfaceHit hit = search.closest(Point(x + radius * std::cos(angle), y + radius * std::sin(angle), 0));
-        return surface_node(mesh, hit.face, hit.barycentric);
+        return surface_point(mesh, hit.face, hit.barycentric);
     };
     Annotation disc;
     disc.tag = "disc";
-    auto& places = disc.curves.emplace_back(1, place_of(mesh, node(0)));
+    auto& places = disc.curves.emplace_back(1, stored_point(mesh, node(0)));
     for (int k = 0; k < 60; ++k) {
         const auto line = trace_line(mesh, node(k), node((k + 1) % 60), Vector(0, 0, 1), 10);
         if (line)
-            for (std::size_t i = 1; i < line->nodes.size(); ++i) places.push_back(place_of(mesh, line->nodes[i]));
+            for (std::size_t i = 1; i < line->points.size(); ++i) places.push_back(stored_point(mesh, line->points[i]));
     }
     settle_elements(mesh, disc);
     return disc;
@@ -264,7 +264,7 @@ Mesh moved_and_scaled(const Mesh& mesh, double scale, const Vector& by, double n
 
 }  // namespace
 
-TEST(LayCurves, FoldsLeaveNoSpikesOnTheWayBack) {
+TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     const Mesh coarse = waves(20, 0, 0), fine = waves(200, 0.25, 0.12);
     AnnotationSet set;
     set.annotations.push_back(disc_on(coarse, 5.03, 4.91, 2.37));
@@ -283,7 +283,7 @@ TEST(LayCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     EXPECT_NEAR(after.area / before.area, 1, 2e-4);
 }
 
-TEST(LayCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
+TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
     for (const char* object : {"teapot", "statuette"}) {
         const Mesh fine = made(object, 6000, 1), coarse = made(object, 1500, 7);
         const AnnotationSet set = cells(fine, 12);
@@ -305,7 +305,7 @@ TEST(LayCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
     }
 }
 
-TEST(LayCurves, UnitPositionAndRoundingChangeNothing) {
+TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
     const Mesh coarse = made("statuette", 1500, 1), fine = made("statuette", 6000, 5);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 3);
     const auto measured = [&](double scale, const Vector& by, double noise) {
@@ -329,7 +329,7 @@ TEST(LayCurves, UnitPositionAndRoundingChangeNothing) {
     }
 }
 
-TEST(LayCurves, AnotherNumberOfOutlinesIsReported) {
+TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
     // Of two discs, one lies on a piece that the target does not have.
     const Mesh whole = waves(20, 0, 0);
     TriangleSoup half = to_soup(whole);
