@@ -1,21 +1,25 @@
 // Reassembles boxes that mix the fragments of one object with unrelated fragments: placed fragments, wrong joins.
 #include "boxes.h"
-#include "breaks.h"
-#include "experiments.h"
-#include "report.h"
 
-#include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
 #include "ostraka/reassembly/reassembly.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <sstream>
+#include <cmath>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct AssemblyOptions : BoxOptions {
+    AssemblyOptions() { output = "experiments-output/assemblies", pieces = 10; }
+    int strangers = 10;
+    bool found = false;
+    void describe(OptionList& visit) {
+        BoxOptions::describe(visit);
+        visit("strangers", strangers, "number of unrelated fragments per box, one from each of the other boxes", Range{0, 100});
+        visit("found", found, "facets that the library finds, instead of known ones");
+    }
+};
 
 /// Results of one box, or of several.
 struct Outcome {
@@ -44,7 +48,7 @@ std::pair<double, double> deviation(const Mesh& mesh, const Given& given, const 
 }
 
 Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& given, const Reassembly& result, double diagonal,
-              const std::string& name, std::ostream& joins) {
+              const std::string& name, Rows& joins) {
     constexpr double near_degrees = 2, near_share = 0.01;
     Outcome outcome;
     std::vector<Motion> home(given.size());  // from the true position in the object to the group's frame
@@ -81,39 +85,30 @@ Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& 
         outcome.wrong += right ? 0 : 1;
         if (join.confidence >= 0.9) ++outcome.sure, outcome.sure_right += right ? 1 : 0;
         if (join.confidence >= 0.5) ++outcome.even, outcome.even_right += right ? 1 : 0;
-        joins << name << ',' << fragments[i].name << ',' << fragments[j].name << ',' << right << ',' << join.confidence << ','
-              << join.pair << ',' << join.loops << ',' << join.carries << ',' << join.evidence.share << '\n';
+        joins(name, fragments[i].name, fragments[j].name, right, join.confidence, join.pair, join.loops, join.carries,
+              join.evidence.share);
     }
     outcome.pairs = result.pairs_tried;
     return outcome;
 }
 
-}  // namespace
+void add_row(Table& table, const std::string& name, const Outcome& one) {
+    table.row("{} | {} of {} | {} of {} | {}, {} | {} of {} | {} of {} | {:.2f} | {:.2f} | {} | {:.1f} | {:.1f}", name,
+              one.placed, one.own, one.strangers_joined, one.strangers, one.joins, one.wrong, one.sure_right, one.sure,
+              one.even_right, one.even, one.degrees, 100 * one.off, one.pairs, one.seconds.wall, one.seconds.processor);
+}
 
-void assemblies(const AssemblyExperiment& options) {
-    std::filesystem::create_directories(options.output);
+/// Reassembles boxes that contain the fragments of one object and unrelated fragments, one from each other box.
+void assemblies(const AssemblyOptions& options) {
     std::vector<Box> boxes;
-    std::uint64_t seed = options.seed;
-    for (const std::string& source : options.boxes) {
-        ++seed;
-        try {
-            boxes.push_back(read_box(source, options.pieces, seed, options.found ? FacetChoice::found : FacetChoice::known));
-        } catch (const Error& error) {
-            std::cerr << source << " is left out: " << error.what() << '\n';
-        }
-    }
-    std::cout << "| box | placed, of | strangers joined, of | joins, wrong | right of those at 0.9 | at 0.5 | degrees off | % of "
-                 "the diagonal off | pairs | s wall | s processor |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
-    std::ostringstream joins;
-    joins << "box,first,second,right,confidence,pair,loops,carries,share\n";
-    const auto line = [](const std::string& name, const Outcome& one) {
-        std::cout
-            << format("| %s | %zu of %zu | %zu of %zu | %zu, %zu | %zu of %zu | %zu of %zu | %.2f | %.2f | %zu | %.1f | %.1f |\n",
-                      name.c_str(), one.placed, one.own, one.strangers_joined, one.strangers, one.joins, one.wrong,
-                      one.sure_right, one.sure, one.even_right, one.even, one.degrees, 100 * one.off, one.pairs, one.seconds.wall,
-                      one.seconds.processor)
-            << std::flush;
-    };
+    for_each_box(
+        options, [&](std::uint64_t) { return options.found ? FacetChoice::found : FacetChoice::known; },
+        [&](Box&& box, std::uint64_t) { boxes.push_back(std::move(box)); });
+    Table table(
+        "box | placed, of | strangers joined, of | joins, wrong | right of those at 0.9 | at 0.5 | degrees off | % of the "
+        "diagonal "
+        "off | pairs | s wall | s processor");
+    Rows joins("box,first,second,right,confidence,pair,loops,carries,share");
     Outcome all;
     for (std::size_t b = 0; b < boxes.size(); ++b) {
         Random random(options.seed + b, 11);
@@ -132,17 +127,21 @@ void assemblies(const AssemblyExperiment& options) {
             add(other, (b + s) % other.fragments.size());
         }
         const Stopwatch watch;
-        const Reassembly result = reassemble(fragments, options.reassembly);
+        const Reassembly result = reassemble(fragments, {});
         const Seconds seconds = watch.seconds();
         Outcome one = judge(fragments, given, result, boxes[b].diagonal, boxes[b].name, joins);
         one.seconds = seconds;
-        line(boxes[b].name + boxes[b].level, one);
+        add_row(table, boxes[b].name + boxes[b].level, one);
         all += one;
         all.degrees += one.degrees / static_cast<double>(boxes.size());
         all.off += one.off / static_cast<double>(boxes.size());
     }
-    line("all", all);
-    write_file(Path(options.output) / "assemblies.csv", joins.str());
+    add_row(table, "all", all);
+    joins.write(Path(options.output) / "assemblies.csv");
 }
+
+const Registration registered("assemblies", "fragments of one object among strangers put together", assemblies);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,19 +1,15 @@
 #include "boxes.h"
 
+#include "shatter.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/fracture/facets.h"
-#include "ostraka/geom/eigen.h"
-#include "ostraka/geom/surface_search.h"
-#include "ostraka/io/mesh_file.h"
 #include "ostraka/reconstruction/fragment_file.h"
-#include "ostraka/stats/random.h"
-#include "ostraka/synthetic/make_mesh.h"
-#include "report.h"
-#include "shatter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 
 namespace ostraka::experiments {
 
@@ -33,139 +29,84 @@ Mesh whole_of(const std::string& source) {
         options.wall = random.uniform(0.35, 0.9);
         return make_pot(options);
     }
-    if (kind == "plate" || kind == "stone") {
-        // A plate or bar, or a block or boulder.
-        Random random(std::stoull(rest), 79);
-        MakeOptions options;
-        options.vertices = 8000;
-        const char* body = random.uniform() < 0.5 ? "box" : kind == "plate" ? "cylinder" : "sphere";
-        const double thin = kind == "plate" ? random.uniform(0.08, 0.2) : random.uniform(0.6, 1);
-        const Vector3d factors(1, random.uniform(0.6, 1.2), thin);
-        Mesh mesh = make_mesh(synthetic_object(body), options).mesh;
-        CGAL::Bbox_3 box;
-        for (const Vertex v : mesh.vertices()) box += mesh.point(v).bbox();
-        const Vector3d extent(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
-        for (const Vertex v : mesh.vertices())
-            mesh.point(v) = point_of(eigen(mesh.point(v)).cwiseQuotient(extent).cwiseProduct(factors));
-        return mesh;
-    }
-    if (kind == "made") {
-        MakeOptions options;
-        options.vertices = 8000;
-        return make_mesh(synthetic_object(rest), options).mesh;
-    }
-    return read_mesh(source).mesh;
+    if (kind != "plate" && kind != "stone") return read_or_make(source, 8000);
+    // A plate or bar, or a block or boulder.
+    Random random(std::stoull(rest), 79);
+    const char* body = random.uniform() < 0.5 ? "box" : kind == "plate" ? "cylinder" : "sphere";
+    const double thin = kind == "plate" ? random.uniform(0.08, 0.2) : random.uniform(0.6, 1);
+    const Vector3d factors(1, random.uniform(0.6, 1.2), thin);
+    const Mesh mesh = made_mesh(body, 8000);
+    const CGAL::Bbox_3 box = bounding_box(mesh);
+    const Vector3d extent(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+    return warped(mesh, [&](const Vector3d& p) { return p.cwiseQuotient(extent).cwiseProduct(factors); });
 }
 
-/// Whether each face of a fragment faces another's surface within the distance `reach`.
-std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch*>& others, double reach) {
-    std::vector<bool> result(mesh.number_of_faces(), false);
-    for (const Face f : mesh.faces()) {
-        const Vector normal = area_vector(mesh, f);
-        const double length = std::sqrt(normal.squared_length());
-        if (!(length > 0)) continue;
-        for (const SurfaceSearch* other : others)
-            if (other->closest_compatible(centroid(mesh, f), -normal / length, 0.5, reach)) result[f] = true;
-    }
-    return result;
+std::vector<SurfaceSearch> searches_of(const std::vector<Fragment>& fragments) {
+    std::vector<SurfaceSearch> searches;
+    for (const Fragment& fragment : fragments) searches.emplace_back(fragment.mesh);
+    return searches;
 }
 
-}  // namespace
+const auto any_hit = [](const SurfaceHit&, const Point&, const Vector&) { return true; };
 
-std::vector<Path> fragment_files(const std::string& folder) {
-    std::vector<Path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
-        // The vessel's folder also holds two point clouds of other vessels.
-        if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
-            files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
+Box scanned_box(const std::string& folder, FacetChoice facets) {
+    FragmentLayout layout = read_layout(folder, facets);
+    Box box;
+    box.name = layout.name;
+    box.diagonal = layout.diagonal;
+    box.gap = layout.copied ? 1e-4 * box.diagonal : std::max(2 * layout.edge, 0.012 * box.diagonal);
+    box.fragments = std::move(layout.fragments);
+    if (facets == FacetChoice::found) return box;
+    const std::vector<SurfaceSearch> searches = searches_of(box.fragments);
+    for (std::size_t k = 0; k < searches.size(); ++k)
+        for (const bool broken : facing(box.fragments[k].mesh, others_than(k, searches), box.gap, any_hit))
+            box.fragments[k].facets.push_back(broken ? Facet::fracture : Facet::outer);
+    return box;
 }
 
-Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
+Box broken_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
     Box box;
     box.name = source;
-    if (std::filesystem::is_directory(source)) {
-        box.name = Path(source).filename().string();
-        box.scanned = true;
-        const std::vector<Path> files = fragment_files(source);
-        FragmentFileOptions reading;
-        reading.facets =
-            facets == FacetChoice::found ? FragmentFileOptions::FacetSource::automatic : FragmentFileOptions::FacetSource::none;
-        CGAL::Bbox_3 bounds;
-        double edge = 0;
-        for (const Path& file : files) {
-            box.fragments.push_back(read_fragment(file, reading).fragment);
-            const Mesh& mesh = box.fragments.back().mesh;
-            for (const Vertex v : mesh.vertices()) bounds += mesh.point(v).bbox();
-            edge = std::max(edge, mean_edge_length(mesh));
-        }
-        box.diagonal = std::sqrt(std::pow(bounds.xmax() - bounds.xmin(), 2) + std::pow(bounds.ymax() - bounds.ymin(), 2) +
-                                 std::pow(bounds.zmax() - bounds.zmin(), 2));
-        const bool copied = box.name.rfind("bb_", 0) == 0;
-        box.gap = copied ? 1e-4 * box.diagonal : std::max(2 * edge, 0.012 * box.diagonal);
-        if (facets == FacetChoice::known) {
-            std::vector<SurfaceSearch> searches;
-            for (const Fragment& one : box.fragments) searches.emplace_back(one.mesh);
-            for (std::size_t k = 0; k < searches.size(); ++k) {
-                std::vector<const SurfaceSearch*> others;
-                for (std::size_t q = 0; q < searches.size(); ++q)
-                    if (q != k) others.push_back(&searches[q]);
-                const std::vector<bool> broken = facing(box.fragments[k].mesh, others, box.gap);
-                for (const bool one : broken) box.fragments[k].facets.push_back(one ? Facet::fracture : Facet::outer);
-            }
-        }
-    } else {
-        const Mesh whole = whole_of(source);
-        ShatterOptions breaking;
-        breaking.pieces = pieces;
-        breaking.seed = seed;
-        Random random(seed, 78);
-        breaking.roughness = random.uniform(0.008, 0.04);
-        const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // as a share of the diagonal
-        breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
-        breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // on each side: up to 3 % between two pieces
-        // Mating faces have separate vertices and edges, and in one box of four the scans are simplified. With seeds 300 to 399
-        // the pieces stay as cut, like published simulated fractures.
-        const bool as_cut = seed / 100 == 3;
-        const double own_edge = 0.01 * std::pow(2, random.uniform()) * piece;
-        const std::uint64_t few = seed % 4 == 3 && !as_cut ? 500 + random.below(1000) : 0;
-        if (as_cut) breaking.noise = breaking.erosion = 0;
-        else breaking.edge = own_edge;
-        box.level = format(", noise %.1f %%, wear %.2f %%", 100 * breaking.noise / piece, 100 * breaking.erosion / piece);
-        if (as_cut) box.level += ", as cut";
-        if (few > 0) box.level += format(", %llu vertices", static_cast<unsigned long long>(few));
-        box.diagonal = box_diagonal(whole);
-        box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise + (few > 0 ? 0.8 : 0.3) * own_edge) * box.diagonal;
-        const SurfaceSearch skin(whole);
-        for (Sherd& sherd : shatter(whole, breaking)) {
-            if (few > 0) sherd = simplified(sherd, few);
-            Fragment fragment;
-            fragment.name = std::to_string(box.fragments.size());
-            if (facets == FacetChoice::known) {
-                // The original side of a face would require a classification of the whole's outside; here all intact faces are
-                // outer.
-                for (const bool broken : sherd.broken) fragment.facets.push_back(broken ? Facet::fracture : Facet::outer);
-                const Facets found = find_facets(sherd.mesh);
-                for (std::size_t f = 0; f < fragment.facets.size(); ++f)
-                    if (found.shell && !sherd.broken[f] && found.of_face[f] == Facet::inner) fragment.facets[f] = Facet::inner;
-            } else {
-                fragment.facets = find_facets(sherd.mesh).of_face;
-            }
-            fragment.mesh = std::move(sherd.mesh);
-            box.fragments.push_back(std::move(fragment));
-        }
+    const Mesh whole = whole_of(source);
+    ShatterOptions breaking;
+    breaking.pieces = pieces;
+    breaking.seed = seed;
+    Random random(seed, 78);
+    breaking.roughness = random.uniform(0.008, 0.04);
+    const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // as a share of the diagonal
+    breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
+    breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // on each side: up to 3 % between two pieces
+    // Mating faces have separate vertices and edges, and in one box of four the scans are simplified. With seeds 300 to 399
+    // the pieces stay as cut, like published simulated fractures.
+    const bool as_cut = seed / 100 == 3;
+    const double own_edge = 0.01 * std::pow(2, random.uniform()) * piece;
+    const std::uint64_t few = seed % 4 == 3 && !as_cut ? 500 + random.below(1000) : 0;
+    if (as_cut) breaking.noise = breaking.erosion = 0;
+    else breaking.edge = own_edge;
+    box.level = fmt::format(", noise {:.1f} %, wear {:.2f} %", 100 * breaking.noise / piece, 100 * breaking.erosion / piece);
+    if (as_cut) box.level += ", as cut";
+    if (few > 0) box.level += fmt::format(", {} vertices", few);
+    box.diagonal = box_diagonal(whole);
+    box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise + (few > 0 ? 0.8 : 0.3) * own_edge) * box.diagonal;
+    for (Sherd& sherd : shatter(whole, breaking)) {
+        if (few > 0) sherd = ostraka::simplified(sherd, few);
+        Fragment& fragment = box.fragments.emplace_back();
+        fragment.name = std::to_string(box.fragments.size() - 1);
+        const Facets found = find_facets(sherd.mesh);
+        fragment.facets = found.of_face;
+        // Known fracture; the original side of an intact face would require a classification of the whole's outside.
+        for (std::size_t f = 0; facets == FacetChoice::known && f < fragment.facets.size(); ++f)
+            fragment.facets[f] = sherd.broken[f]                                   ? Facet::fracture
+                                 : found.shell && found.of_face[f] == Facet::inner ? Facet::inner
+                                                                                   : Facet::outer;
+        fragment.mesh = std::move(sherd.mesh);
     }
-    find_contacts(box);
     return box;
 }
 
 void find_contacts(Box& box) {
     const std::size_t n = box.fragments.size();
-    std::vector<SurfaceSearch> searches;
-    for (const Fragment& one : box.fragments) searches.emplace_back(one.mesh);
+    const std::vector<SurfaceSearch> searches = searches_of(box.fragments);
     std::vector<double> broken(n, 0);
     std::vector<std::vector<double>> area(n, std::vector<double>(n, 0));
     for (std::size_t k = 0; k < n; ++k) {
@@ -173,7 +114,7 @@ void find_contacts(Box& box) {
         std::vector<bool> any(mesh.number_of_faces(), false);
         for (std::size_t q = 0; q < n; ++q) {
             if (q == k) continue;
-            const std::vector<bool> touching = facing(mesh, {&searches[q]}, box.gap);
+            const std::vector<bool> touching = facing(mesh, {&searches[q]}, box.gap, any_hit);
             for (const Face f : mesh.faces())
                 if (touching[f]) area[k][q] += face_area(mesh, f), any[f] = true;
         }
@@ -182,10 +123,66 @@ void find_contacts(Box& box) {
     }
     box.contact.assign(n, std::vector<double>(n, 0));
     for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = i + 1; j < n; ++j) {
-            const double smaller = std::min(broken[i], broken[j]);
-            if (smaller > 0) box.contact[i][j] = 0.5 * (area[i][j] + area[j][i]) / smaller;
+        for (std::size_t j = i + 1; j < n; ++j)
+            if (const double smaller = std::min(broken[i], broken[j]); smaller > 0)
+                box.contact[i][j] = 0.5 * (area[i][j] + area[j][i]) / smaller;
+}
+
+}  // namespace
+
+std::vector<const SurfaceSearch*> others_than(std::size_t k, const std::vector<SurfaceSearch>& searches) {
+    std::vector<const SurfaceSearch*> others;
+    for (std::size_t q = 0; q < searches.size(); ++q)
+        if (q != k) others.push_back(&searches[q]);
+    return others;
+}
+
+FragmentLayout read_layout(const std::string& folder, FacetChoice facets) {
+    std::vector<Path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
+        // The vessel's folder also holds two point clouds of other vessels.
+        if ((ending == ".obj" || ending == ".ply") && !stem.starts_with("AL_") && !stem.starts_with("CC_"))
+            files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    FragmentFileOptions reading;
+    using Source = FragmentFileOptions::FacetSource;
+    reading.facets = facets == FacetChoice::found ? Source::automatic : Source::none;
+    FragmentLayout layout;
+    layout.name = Path(folder).filename().string();
+    layout.copied = layout.name.starts_with("bb_");
+    CGAL::Bbox_3 bounds;
+    for (const Path& file : files) {
+        layout.fragments.push_back(read_fragment(file, reading).fragment);
+        bounds += bounding_box(layout.fragments.back().mesh);
+        layout.edge = std::max(layout.edge, mean_edge_length(layout.fragments.back().mesh));
+    }
+    layout.diagonal =
+        Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
+    return layout;
+}
+
+Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
+    Box box = std::filesystem::is_directory(source) ? scanned_box(source, facets) : broken_box(source, pieces, seed, facets);
+    find_contacts(box);
+    return box;
+}
+
+void for_each_box(const BoxOptions& options, const std::function<FacetChoice(std::uint64_t)>& facets,
+                  const std::function<void(Box&&, std::uint64_t)>& take) {
+    std::uint64_t seed = options.seed;
+    for (const std::string& source : options.boxes) {
+        ++seed;
+        std::optional<Box> box;
+        try {
+            box = read_box(source, options.pieces, seed, facets(seed));
+        } catch (const Error& error) {
+            std::cerr << source << " is left out: " << error.what() << '\n';
+            continue;
         }
+        take(std::move(*box), seed);
+    }
 }
 
 }  // namespace ostraka::experiments

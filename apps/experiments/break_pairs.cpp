@@ -1,12 +1,8 @@
 // Registers two halves of a bottle, and neighbouring scanned sherds, by their fracture surfaces.
-#include "breaks.h"
-#include "experiments.h"
-#include "report.h"
+#include "sherds.h"
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/json.h"
 #include "ostraka/fracture/break_pair.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/reconstruction/fragment_file.h"
 
@@ -15,7 +11,6 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <sstream>
 
 namespace ostraka::experiments {
 
@@ -78,7 +73,7 @@ Motion published_pose(const Path& file) {
     return motion;
 }
 
-void bottle(const BreakExperiment& options, std::ostream& csv) {
+void bottle(const SherdOptions& options, Rows& csv) {
     const Path folder = Path(options.data) / "fragments-bottle-pair";
     if (!std::filesystem::exists(folder / "solution.json")) {
         std::cerr << "SKIPPED: " << folder.string() << " is not there; name the folder above it with --data\n";
@@ -87,66 +82,47 @@ void bottle(const BreakExperiment& options, std::ostream& csv) {
     const Fragment first = read_fragment(folder / "obj1_challenge.ply").fragment,
                    second = read_fragment(folder / "obj2_challenge.ply").fragment;
     const Json solution = read_json(folder / "solution.json");
-    Motion applied;
-    for (unsigned i = 0; i < 3; ++i)
-        for (unsigned j = 0; j < 4; ++j) {
-            const double value = solution["T"][i][j].GetDouble();
-            (j < 3 ? applied.rotation(i, j) : applied.translation[i]) = value;
-        }
-    const Motion truth = applied.inverse(), published = published_pose(folder / "best_registration.csv");
+    const Motion truth = motion_of(solution["T"]).inverse(), published = published_pose(folder / "best_registration.csv");
     const Stopwatch watch;
     const BreakPair pair = pair_breaks(first, second);
     const double seconds = watch.seconds().processor;
     if (pair.candidates.empty()) {
-        std::cout << "bottle: no pose\n";
+        fmt::print("bottle: no pose\n");
         return;
     }
-    const Motion& found = pair.candidates.front().pose;
-    const double diagonal = box_diagonal(second.mesh);
     const auto a = read_point_cloud(folder / "segmented" / "obj1_challenge_part_1_.ply"),
                b = read_point_cloud(folder / "segmented" / "obj2_challenge_part_1_.ply");
     const std::vector<Point> thin_a = thinned(a->points, 0.011), thin_b = thinned(b->points, 0.011);
-    std::cout
-        << "Bottle: " << (pair.decided() ? "decided" : "not decided") << ", confidence "
-        << format("%.2f; %.1f s of processor. Breaks thinned to %zu and %zu points.\n\n", pair.confidence, seconds, thin_a.size(),
-                  thin_b.size())
-        << "| pose | degrees off the truth | % of the diagonal | RMSE, thinned | chamfer, thinned | RMSE, all | chamfer, all "
-           "|\n|---|---|---|---|---|---|---|\n";
-    for (const auto& [name, pose] :
-         {std::pair("ostraka pair", found), std::pair("published registration", published), std::pair("truth", truth)}) {
+    fmt::print("Bottle: {}, confidence {:.2f}; {:.1f} s of processor. Breaks thinned to {} and {} points.\n\n",
+               pair.decided() ? "decided" : "not decided", pair.confidence, seconds, thin_a.size(), thin_b.size());
+    Table table("pose | degrees off the truth | % of the diagonal | RMSE, thinned | chamfer, thinned | RMSE, all | chamfer, all");
+    for (const auto& [name, pose] : {std::pair("ostraka pair", pair.candidates.front().pose),
+                                     std::pair("published registration", published), std::pair("truth", truth)}) {
         const Motion off = truth.inverse().after(pose);
-        const double degrees = degrees_of(off), percent = 100 * off_of(second.mesh, off) / diagonal;
+        const double degrees = degrees_of(off), percent = 100 * off_of(second.mesh, off) / box_diagonal(second.mesh);
         const auto [rmse, chamfer] = rmse_and_chamfer(thin_a, thin_b, pose);
         const auto [rmse_all, chamfer_all] = rmse_and_chamfer(a->points, b->points, pose);
-        std::cout << "| " << name
-                  << format(" | %.2f | %.2f | %.5f | %.5f | %.5f | %.5f |\n", degrees, percent, rmse, chamfer, rmse_all,
-                            chamfer_all);
-        csv << "bottle," << name << ',' << degrees << ',' << percent << ',' << pair.confidence << ',' << pair.decided() << '\n';
+        table.row("{} | {:.2f} | {:.2f} | {:.5f} | {:.5f} | {:.5f} | {:.5f}", name, degrees, percent, rmse, chamfer, rmse_all,
+                  chamfer_all);
+        csv("bottle", name, degrees, percent, pair.confidence, pair.decided());
     }
 }
 
-void sherds(const BreakExperiment& options, std::ostream& csv) {
-    const auto scanned = scanned_sherds(options.data);
-    if (scanned.empty()) return;
-    std::vector<Fragment> fragments(scanned.size());
-    for (std::size_t k = 0; k < scanned.size(); ++k) {
-        fragments[k].name = scanned[k].first;
-        fragments[k].mesh = scanned[k].second;
-        fragments[k].facets = find_facets(fragments[k].mesh).of_face;
-    }
-    std::cout << "\n| sherds | right pose is first | decided | confidence | degrees | % of the diagonal | s of processor "
-                 "|\n|---|---|---|---|---|---|---|\n";
-    // Pairs in contact, and two that are not.
+void sherd_pairs(const SherdOptions& options, Rows& csv) {
+    std::vector<Fragment> fragments = scanned_sherds(options.data);
+    if (fragments.empty()) return;
+    for (Fragment& fragment : fragments) fragment.facets = find_facets(fragment.mesh).of_face;
+    fmt::print("\n");
+    Table table("sherds | right pose is first | decided | confidence | degrees | % of the diagonal | s of processor");
+    // Pairs in contact, and the last one, which is not.
     const std::vector<std::pair<std::size_t, std::size_t>> pairs{{5, 2}, {3, 4}, {1, 4}, {2, 3}, {1, 2},
                                                                  {4, 5}, {3, 5}, {1, 5}, {2, 4}};
     for (const auto& [i, j] : pairs) {
         const Fragment &a = fragments[i - 1], &b = fragments[j - 1];
         Random random(10 * i + j, 8);
         const Motion motion = random_motion(random, 20);
-        Fragment there;
-        there.name = b.name;
+        Fragment there = b;
         there.mesh = moved(b.mesh, motion);
-        there.facets = b.facets;
         const Stopwatch watch;
         const BreakPair pair = pair_breaks(a, there);
         const double seconds = watch.seconds().processor;
@@ -156,26 +132,26 @@ void sherds(const BreakExperiment& options, std::ostream& csv) {
             degrees = degrees_of(off), percent = 100 * off_of(b.mesh, off) / box_diagonal(b.mesh);
         }
         const bool touch = i != 2 || j != 4, right = touch && degrees < 5 && percent < 10;
-        std::cout << "| " << i << ' ' << j << " | "
-                  << (!touch  ? "-"
-                      : right ? "yes"
-                              : "no")
-                  << " | " << (pair.decided() ? "yes" : "no") << format(" | %.2f | ", pair.confidence)
-                  << (right ? format("%.1f | %.1f", degrees, percent) : std::string(" | ")) << format(" | %.1f |\n", seconds)
-                  << std::flush;
-        csv << "sherds," << i << '-' << j << ',' << degrees << ',' << percent << ',' << pair.confidence << ',' << pair.decided()
-            << '\n';
+        table.row("{} {} | {} | {} | {:.2f} | {} | {:.1f}", i, j,
+                  !touch  ? "-"
+                  : right ? "yes"
+                          : "no",
+                  pair.decided() ? "yes" : "no", pair.confidence,
+                  right ? fmt::format("{:.1f} | {:.1f}", degrees, percent) : " | ", seconds);
+        csv("sherds", fmt::format("{}-{}", i, j), degrees, percent, pair.confidence, pair.decided());
     }
 }
 
-}  // namespace
-
-void break_pairs(const BreakExperiment& options) {
-    std::ostringstream csv;
-    csv << "what,case,degrees,percent,confidence,decided\n";
+/// Registers two halves of a bottle, and neighbouring sherds of five.
+void break_pairs(const SherdOptions& options) {
+    Rows csv("what,case,degrees,percent,confidence,decided");
     bottle(options, csv);
-    sherds(options, csv);
-    write_file(Path(options.output) / "break-pairs.csv", csv.str());
+    sherd_pairs(options, csv);
+    csv.write(Path(options.output) / "break-pairs.csv");
 }
+
+const Registration registered("break-pairs", "two halves of a bottle, and neighbours among scanned sherds", break_pairs);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,16 +1,9 @@
 // Places the sherds of synthetic vessels on the whole vessel, and recovers their rotations from the fractures.
-#include "breaks.h"
-#include "experiments.h"
-#include "report.h"
+#include "sherds.h"
 
-#include "ostraka/core/file.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/reconstruction/reconstruct.h"
-#include "shatter.h"
 
 #include <cmath>
-#include <iostream>
-#include <sstream>
 
 namespace ostraka::experiments {
 
@@ -37,117 +30,140 @@ Fragment fragment_of(Sherd sherd, const std::string& name, double wall) {
     return fragment;
 }
 
-}  // namespace
+/// The sherds of a vessel, moved at random; those from `belong` on are of another one.
+struct BrokenPot {
+    Mesh whole;
+    std::vector<Fragment> fragments;
+    std::vector<Motion> motions;
+    std::size_t belong = 0;
+    /// A fragment in its true position.
+    [[nodiscard]] Mesh home(std::size_t k) const { return moved(fragments[k].mesh, motions[k].inverse()); }
+};
 
-void broken_pots(const BreakExperiment& options) {
+BrokenPot break_pot(const Kind& kind, int number) {
+    BrokenPot pot;
+    PotOptions shape;
+    shape.shape = static_cast<std::uint64_t>(number);
+    ShatterOptions breaking;
+    breaking.pieces = 5 + number % 4;
+    breaking.erosion = kind.erosion, breaking.noise = kind.noise;
+    breaking.seed = static_cast<std::uint64_t>(100 + number);
+    pot.whole = make_pot(shape);
+    std::vector<Sherd> sherds = shatter(pot.whole, breaking);
+    if (kind.missing) sherds.erase(sherds.begin() + 1);
+    pot.belong = sherds.size();
+    if (kind.stranger) {
+        // From a vessel of the same shape, so that the template does not reject it.
+        breaking.seed += 1000;
+        sherds.push_back(std::move(shatter(pot.whole, breaking)[1]));
+    }
+    Random random(static_cast<std::uint64_t>(number), 6);
+    for (Sherd& one : sherds) {
+        pot.fragments.push_back(fragment_of(std::move(one), std::to_string(pot.fragments.size() + 1), shape.wall));
+        pot.motions.push_back(random_motion(random, 20));
+        pot.fragments.back().mesh = moved(pot.fragments.back().mesh, pot.motions.back());
+    }
+    return pot;
+}
+
+/// Places fragments on the whole and decides their rotations, as in reconstruct, without the later stages.
+std::optional<RotationMatch> place(const BrokenPot& pot, CommonPlacement& placement) {
+    for (std::size_t k = 0; k < pot.fragments.size(); ++k) {
+        placement.fragments.emplace_back();
+        placement.fragments.back().problem = "no landmarks";
+    }
+    const std::vector<const Fragment*> pointers = pointers_to(pot.fragments);
+    const auto searched = place_by_search(pot.whole, pointers, {}, placement.scale, placement.fragments);
+    const SurfaceSearch surface(pot.whole);
+    for (std::size_t k = 0; k < pot.fragments.size(); ++k) {
+        FragmentPlacement& one = placement.fragments[k];
+        if (!one.problem.empty()) continue;
+        one.pose = align_part(pot.fragments[k].mesh, not_broken(pot.fragments[k].facets), surface, one.pose).pose;
+    }
+    return decide_open_rotations(pot.whole, pointers, searched, placement.fragments);
+}
+
+/// Without the rotation about the vertical axis.
+Motion without_rotation(const Motion& motion) {
+    const Eigen::Matrix3d& r = motion.rotation;
+    Motion about_axis;
+    about_axis.rotation =
+        Eigen::AngleAxisd(std::atan2(r(0, 1) - r(1, 0), r(0, 0) + r(1, 1)), Vector3d::UnitZ()).toRotationMatrix();
+    return about_axis.after(motion);
+}
+
+struct Counts {
+    std::size_t all = 0, placed = 0, well = 0, carry = 0, right = 0, decided = 0, decided_right = 0, strangers = 0, own = 0,
+                together = 0;
+    double overlap = 0, seconds = 0;
+};
+
+void judge(const BrokenPot& pot, const CommonPlacement& placement, const std::optional<RotationMatch>& rotations,
+           const std::string& kind, int number, Counts& counts, Rows& csv) {
+    const double diagonal = box_diagonal(pot.whole);
+    const auto back = [&](std::size_t k) { return placement.fragments[k].pose.after(pot.motions[k]); };
+    counts.all += pot.fragments.size();
+    counts.own += pot.belong;
+    for (std::size_t k = 0; k < pot.fragments.size(); ++k) {
+        if (!placement.fragments[k].problem.empty()) continue;
+        ++counts.placed;
+        counts.well += off_of(pot.home(k), without_rotation(back(k))) < 0.02 * diagonal;
+    }
+    if (!rotations) return;
+    std::vector<std::size_t> size(pot.fragments.size(), 0);
+    for (std::size_t k = 0; k < pot.fragments.size(); ++k) {
+        if (rotations->group[k] >= 0 && k < pot.belong) ++size[static_cast<std::size_t>(rotations->group[k])];
+        counts.overlap = std::max(counts.overlap, 100 * rotations->overlap[k]);
+    }
+    counts.together += *std::max_element(size.begin(), size.end());
+    for (const BreakJoint& joint : rotations->joints) {
+        const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
+        const Motion off = back(a).inverse().after(back(b));
+        const double percent = 100 * off_of(pot.home(b), off) / diagonal;
+        const bool strange = a >= pot.belong || b >= pot.belong, good = !strange && percent < 2;
+        csv(kind, number, a + 1, b + 1, degrees_of(off), percent, good, joint.carries, joint.contact, joint.rim, joint.share,
+            joint.lead, joint.confidence, joint.decided);
+        if (!joint.carries) continue;
+        ++counts.carry;
+        counts.right += good;
+        counts.decided += joint.decided;
+        counts.decided_right += joint.decided && good;
+        counts.strangers += joint.decided && strange;
+    }
+}
+
+/// Synthetic vessels, broken: rotations from fractures with wear, noise, a missing piece, a piece of another vessel.
+void broken_pots(const SherdOptions& options) {
     const std::vector<Kind> kinds{{"fresh", 0, 0},
                                   {"noise 0.1 %", 0, 0.001},
                                   {"worn 0.2 %; noise 0.05 %", 0.002, 0.0005},
                                   {"the same; one missing", 0.002, 0.0005, true},
                                   {"the same; one of another vessel", 0.002, 0.0005, false, true},
                                   {"worn 0.4 %; noise 0.1 %", 0.004, 0.001}};
-    std::ostringstream csv;
-    csv << "kind,pot,first,second,degrees,percent,right,carries,contact,rim,share,lead,confidence,decided\n";
-    std::cout << "| kind | sherds placed on the template, of these well, of all | joints that carry: right, of all | decided | "
-                 "of these right | "
-                 "strangers decided | sherds in one group with the largest, of those that belong % | overlap at most % | s each "
-                 "|\n|---|---|---|---|---|---|---|---|---|\n";
+    Rows csv("kind,pot,first,second,degrees,percent,right,carries,contact,rim,share,lead,confidence,decided");
+    Table table(
+        "kind | sherds placed on the template, of these well, of all | joints that carry: right, of all | decided | of these "
+        "right "
+        "| strangers decided | sherds in one group with the largest, of those that belong % | overlap at most % | s each");
     for (const Kind& kind : kinds) {
-        std::size_t all = 0, placed = 0, well = 0, carry = 0, right = 0, decided = 0, decided_right = 0, strangers = 0, own = 0,
-                    together = 0;
-        double overlap = 0, seconds = 0;
-        for (int pot = 1; pot <= options.pots; ++pot) {
-            PotOptions shape;
-            shape.shape = static_cast<std::uint64_t>(pot);
-            ShatterOptions breaking;
-            breaking.pieces = 5 + pot % 4;
-            breaking.erosion = kind.erosion, breaking.noise = kind.noise;
-            breaking.seed = static_cast<std::uint64_t>(100 + pot);
-            const Mesh whole = make_pot(shape);
-            std::vector<Sherd> sherds = shatter(whole, breaking);
-            if (kind.missing) sherds.erase(sherds.begin() + 1);
-            const std::size_t belong = sherds.size();
-            if (kind.stranger) {
-                // From a vessel of the same shape, so that the template does not reject it.
-                breaking.seed += 1000;
-                std::vector<Sherd> others = shatter(whole, breaking);
-                sherds.push_back(std::move(others[1]));
-            }
-            Random random(static_cast<std::uint64_t>(pot), 6);
-            std::vector<Fragment> fragments;
-            std::vector<Motion> motions;
-            std::vector<const Fragment*> pointers;
-            for (Sherd& one : sherds) {
-                fragments.push_back(fragment_of(std::move(one), std::to_string(fragments.size() + 1), shape.wall));
-                motions.push_back(random_motion(random, 20));
-                fragments.back().mesh = moved(fragments.back().mesh, motions.back());
-            }
-            for (const Fragment& one : fragments) pointers.push_back(&one);
-            const Stopwatch watch;
-            // As in reconstruct, without the later stages.
+        Counts counts;
+        for (int number = 1; number <= options.pots; ++number) {
+            const BrokenPot pot = break_pot(kind, number);
             CommonPlacement placement;
-            for (std::size_t k = 0; k < fragments.size(); ++k) {
-                placement.fragments.emplace_back();
-                placement.fragments.back().problem = "no landmarks";
-            }
-            const auto searched = place_by_search(whole, pointers, {}, placement.scale, placement.fragments);
-            const SurfaceSearch surface(whole);
-            for (std::size_t k = 0; k < fragments.size(); ++k) {
-                FragmentPlacement& one = placement.fragments[k];
-                if (!one.problem.empty()) continue;
-                std::vector<bool> counts;
-                for (const Facet facet : fragments[k].facets) counts.push_back(facet != Facet::fracture);
-                one.pose = align_part(fragments[k].mesh, counts, surface, one.pose).pose;
-            }
-            const auto rotations = decide_open_rotations(whole, pointers, searched, placement.fragments);
-            seconds += watch.seconds().processor;
-            all += fragments.size();
-            for (std::size_t k = 0; k < fragments.size(); ++k) {
-                if (!placement.fragments[k].problem.empty()) continue;
-                ++placed;
-                // Without the rotation about the axis.
-                const Motion back = placement.fragments[k].pose.after(motions[k]);
-                Motion about_axis;
-                about_axis.rotation = Eigen::AngleAxisd(std::atan2(back.rotation(0, 1) - back.rotation(1, 0),
-                                                                   back.rotation(0, 0) + back.rotation(1, 1)),
-                                                        Vector3d::UnitZ())
-                                          .toRotationMatrix();
-                const double off = off_of(moved(fragments[k].mesh, motions[k].inverse()), about_axis.after(back));
-                well += off < 0.02 * box_diagonal(whole) ? 1 : 0;
-            }
-            own += belong;
-            if (!rotations) continue;
-            std::vector<std::size_t> size(fragments.size(), 0);
-            for (std::size_t k = 0; k < fragments.size(); ++k) {
-                if (rotations->group[k] >= 0 && k < belong) ++size[static_cast<std::size_t>(rotations->group[k])];
-                overlap = std::max(overlap, 100 * rotations->overlap[k]);
-            }
-            together += *std::max_element(size.begin(), size.end());
-            for (const BreakJoint& joint : rotations->joints) {
-                const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
-                const Motion back =
-                    placement.fragments[a].pose.after(motions[a]).inverse().after(placement.fragments[b].pose.after(motions[b]));
-                const Mesh there = moved(fragments[b].mesh, motions[b].inverse());
-                const double degrees = degrees_of(back), percent = 100 * off_of(there, back) / box_diagonal(whole);
-                const bool good = a < belong && b < belong && percent < 2;
-                csv << '"' << kind.name << "\"," << pot << ',' << a + 1 << ',' << b + 1 << ',' << degrees << ',' << percent << ','
-                    << good << ',' << joint.carries << ',' << joint.contact << ',' << joint.rim << ',' << joint.share << ','
-                    << joint.lead << ',' << joint.confidence << ',' << joint.decided << '\n';
-                if (!joint.carries) continue;
-                ++carry;
-                right += good ? 1 : 0;
-                decided += joint.decided ? 1 : 0;
-                decided_right += joint.decided && good ? 1 : 0;
-                strangers += joint.decided && (a >= belong || b >= belong) ? 1 : 0;
-            }
+            const Stopwatch watch;
+            const auto rotations = place(pot, placement);
+            counts.seconds += watch.seconds().processor;
+            judge(pot, placement, rotations, kind.name, number, counts, csv);
         }
-        std::cout << "| " << kind.name
-                  << format(" | %zu, %zu of %zu | %zu of %zu | %zu | %zu | %zu | %.0f | %.1f | %.1f |\n", placed, well, all,
-                            right, carry, decided, decided_right, strangers,
-                            100.0 * static_cast<double>(together) / static_cast<double>(own), overlap, seconds / options.pots)
-                  << std::flush;
+        table.row("{} | {}, {} of {} | {} of {} | {} | {} | {} | {:.0f} | {:.1f} | {:.1f}", kind.name, counts.placed, counts.well,
+                  counts.all, counts.right, counts.carry, counts.decided, counts.decided_right, counts.strangers,
+                  percentage(counts.together, counts.own), counts.overlap, counts.seconds / options.pots);
     }
-    write_file(Path(options.output) / "broken-pots.csv", csv.str());
+    csv.write(Path(options.output) / "broken-pots.csv");
 }
+
+const Registration registered("broken-pots", "made vessels, broken: turns by breaks", broken_pots);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -3,7 +3,6 @@
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +16,8 @@ using Eigen::Vector3d;
 
 constexpr double bend = 45;  ///< mm; distance of the supports' heads behind the legs' axes
 constexpr double bend_from = 540, bend_to = 655;
-constexpr double arm_from = -200;  ///< the arms change in front of this x
-constexpr double longer = 0.18;    ///< relative elongation of the arm
-constexpr double held = 0.01;  ///< weight of closeness in the thesis's method, which does not state what fixes the other vertices
+constexpr double arm_from = -200;   ///< the arms change in front of this x
+constexpr double longer = 0.18;     ///< relative elongation of the arm
 constexpr double angle_limit = 10;  ///< degrees (section 5.2.2)
 constexpr double our_weight = 200;
 
@@ -30,7 +28,7 @@ double smooth_step(double from, double to, double x) {
 
 double along_arm(double x) { return std::max(0.0, x - arm_from); }
 
-Point bent(const Point& p) {
+Vector3d bent(const Vector3d& p) {
     const double back = bend * smooth_step(bend_from, bend_to, p.z()) * along_arm(p.x()) / (150 - arm_from);
     return {p.x() - back, p.y(), p.z()};
 }
@@ -87,8 +85,8 @@ void stretch_arm(Chair& chair) {
     const auto moved = [](const Point& p) { return Vector3d(longer * along_arm(p.x()), 0, 0); };
     const Annotation &arm = subject.part("left arm"), &support = subject.part("left support");
     for (const Index v : vertices_of(subject.mesh, arm)) chair.edited[v] = point_of(eigen(rest[v]) + moved(rest[v]));
-    const Vector3d foot = mean_of(rest, joint_of(subject.mesh, support, &subject.part("seat")));
-    const Vector3d head = mean_of(rest, joint_of(subject.mesh, support, &arm)), head_now = head + moved(point_of(head));
+    const Vector3d foot = centre_of(rest, joint_of(subject.mesh, support, &subject.part("seat")));
+    const Vector3d head = centre_of(rest, joint_of(subject.mesh, support, &arm)), head_now = head + moved(point_of(head));
     const Vector3d was = head - foot, is = head_now - foot;
     const Eigen::Matrix3d rotation = rotation_between(was, is).toRotationMatrix();
     for (const Index v : vertices_of(subject.mesh, support)) {
@@ -113,8 +111,7 @@ Chair make_chair(const Path& data, std::uint64_t vertices) {
 }
 
 AxisDeviation deviation(const Chair& chair, const std::vector<Point>& points) {
-    Mesh mesh = chair.subject.mesh;
-    for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+    const Mesh mesh = with_points(chair.subject.mesh, points);
     const Axis leg = find_axis(mesh, chair.subject.part("front left leg").faces);
     if (!leg.found) fail_input("chair", "the leg has no axis any more: " + leg.reason, "look at the picture");
     std::vector<Vector3d> means(static_cast<std::size_t>(chair.count), Vector3d::Zero());
@@ -136,13 +133,13 @@ AxisDeviation deviation(const Chair& chair, const std::vector<Point>& points) {
 
 Constraints thesis_constraints(const Chair& chair, const std::vector<Index>& constrained) {
     Constraints list;
-    add_closeness(list, chair.subject, chair.edited, held);
-    add_laplacians(list, chair.subject, vertices_of(chair.subject.mesh, chair.subject.part("left arm")), "Laplacian", 1);
+    add_closeness(list, chair.subject, chair.edited, closeness_weight);
+    add_laplacians(list, chair.subject, chair.subject.vertices("left arm"), 1);
     ConstraintParameters parameters;
     parameters.direction = chair.direction;
     parameters.point = chair.point;
-    list.push_back(make_constraint("CoAxiality", {constrained.begin(), constrained.end()}, 1, parameters,
-                                   columns(points_of(chair.subject.mesh))));
+    list.push_back(
+        make_constraint("CoAxiality", {constrained.begin(), constrained.end()}, 1, parameters, columns_of(chair.subject.mesh)));
     return list;
 }
 

@@ -1,14 +1,9 @@
 #include "class_leave_one_out.h"
 
-#include "report.h"
-
-#include "ostraka/core/stopwatch.h"
 #include "ostraka/shape_classes/unlikeness.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iostream>
 #include <limits>
 
 namespace ostraka::experiments {
@@ -20,19 +15,12 @@ const std::array<const char*, 3> known_of_parts{"no annotations", "annotations o
 
 using Counts = std::map<std::string, std::map<std::string, int>>;
 
-void print(const Counts& table, const std::vector<std::string>& columns) {
-    std::cout << "| |";
-    for (const std::string& name : columns) std::cout << ' ' << name << " |";
-    std::cout << "\n|---|";
-    for (std::size_t k = 0; k < columns.size(); ++k) std::cout << "--:|";
-    std::cout << '\n';
-    for (const auto& [class_name, row] : table) {
-        std::cout << "| " << class_name << " |";
-        for (const std::string& name : columns) {
-            const auto found = row.find(name);
-            std::cout << ' ' << (found == row.end() ? "" : std::to_string(found->second)) << " |";
-        }
-        std::cout << '\n';
+void print(const Counts& counts, const std::vector<std::string>& columns) {
+    Table table(fmt::format(" | {}", fmt::join(columns, " | ")));
+    for (const auto& [class_name, row] : counts) {
+        std::string cells = class_name;
+        for (const std::string& name : columns) cells += " | " + (row.contains(name) ? std::to_string(row.at(name)) : "");
+        table.add(cells);
     }
 }
 
@@ -64,29 +52,24 @@ void print_curve(const std::vector<Asked>& points, const char* title, const std:
         found->second = std::min(found->second, point.unlike);
     }
     std::sort(own.begin(), own.end());
-    std::cout << "\nAccepted against recognised, " << title
-              << ":\n\n| recognised % | limit | accepted by a class % | by any % |\n"
-              << "|--:|--:|--:|--:|\n";
+    fmt::print("\nAccepted against recognised, {}:\n\n", title);
+    Table table("recognised % | limit | accepted by a class % | by any %");
     for (const int per_cent : {50, 60, 70, 75, 80, 85, 90, 95}) {
         const std::size_t k = (own.size() * static_cast<std::size_t>(per_cent) + 99) / 100;
         const double limit = own[std::max<std::size_t>(1, k) - 1];
         if (!std::isfinite(limit)) break;
         const auto share = [&](const auto& list, const auto& value) {
-            return format("%.1f", 100.0 *
-                                      static_cast<double>(std::count_if(list.begin(), list.end(),
-                                                                        [&](const auto& one) { return value(one) <= limit; })) /
-                                      static_cast<double>(list.size()));
+            const auto accepted = std::count_if(list.begin(), list.end(), [&](const auto& one) { return value(one) <= limit; });
+            return percentage(static_cast<std::size_t>(accepted), list.size());
         };
-        std::cout << "| " << per_cent << " | " << format("%.2f", limit) << " | " << share(others, [](double x) { return x; })
-                  << " | " << share(nearest, [](const auto& x) { return x.second; }) << " |\n";
+        table.row("{} | {:.2f} | {:.1f} | {:.1f}", per_cent, limit, share(others, [](double x) { return x; }),
+                  share(nearest, [](const auto& x) { return x.second; }));
     }
 }
 
-}  // namespace
+std::string share_of(std::size_t part, std::size_t all) { return all == 0 ? "-" : fmt::format("{:.1f}", percentage(part, all)); }
 
-std::string share_of(std::size_t part, std::size_t all) {
-    return all == 0 ? "-" : format("%.1f", 100.0 * static_cast<double>(part) / static_cast<double>(all));
-}
+}  // namespace
 
 void Rates::add(const std::vector<ClassAnswer>& list, const std::string& of, const std::set<std::string>& only) {
     ++objects;
@@ -110,50 +93,48 @@ std::string Rates::text() const {
     return share_of(recognised, objects) + ", " + share_of(accepted, asked) + ", " + share_of(open, objects);
 }
 
-LeaveOneOut::LeaveOneOut(const std::vector<ClassObject>& objects, const ClassMembershipOptions& options) : objects_(objects) {
+LeaveOneOut::LeaveOneOut(const std::vector<ClassObject>& objects, const FitSettings& settings)
+    : objects_(objects), settings_(settings) {
     for (std::size_t i = 0; i < objects.size(); ++i) objects_of_class_[objects[i].class_name].push_back(i);
     how_.correspondence = CorrespondenceChoice::fitted;
-    how_.fit.tries = options.tries;
-    how_.fit.fit.search_radius = options.search_radius;
+    how_.fit.tries = settings.tries;
+    how_.fit.fit.search_radius = settings.search_radius;
     how_.fit.fit.levels = 5;
     how_.fit.fit.steps = 2;
     how_.fit.alignment.samples = 400;
-}
-
-void LeaveOneOut::fit(const ClassMembershipOptions& options) {
-    std::ofstream csv(Path(options.output) / "quantities.csv");
-    csv << "template,object,annotations,kind,id,name,value\n";
+    Rows csv("template,object,annotations,kind,id,name,value");
     std::vector<double> seconds;
-    constexpr std::size_t most_strangers = 6;  // max number per class
     for (const auto& [class_name, list] : objects_of_class_)
         for (std::size_t first = 0; first < std::min<std::size_t>(2, list.size()); ++first) {
             if (first > 0 && !objects_[list.front()].asked) break;
             Source& source = sources_.emplace_back();
             source.class_name = class_name;
             source.object = list[first];
-            const ClassObject& from = objects_[source.object];
-            source.mesh = of_vertices(from.member.mesh, options.template_vertices);
-            if (!from.labels.empty()) source.parts = parts_on(source.mesh, from.original, from.labels);
-            for (std::size_t i = 0; i < objects_.size(); ++i) {
-                // The second source needs out-of-class objects only for its limits; a third of them is enough.
-                const bool own = objects_[i].class_name == class_name;
-                if (i == source.object || (first > 0 && !own && i % 3 != 0)) continue;
-                if (!own && !objects_[i].asked && i - objects_of_class_.at(objects_[i].class_name).front() >= most_strangers)
-                    continue;
-                const Stopwatch watch;
-                const WholeObject bare{objects_[i].member.name, objects_[i].member.mesh, {}};
-                source.fits[i] = fit_member(source.mesh, {}, bare, how_.fit);
-                seconds.push_back(watch.seconds().processor);
-                measure(source, i);
-                for (int arm = 0; arm < 3; ++arm)
-                    for (const ClassQuantity& one : source.measured.at(static_cast<std::size_t>(arm))[i].quantities)
-                        if (one.value)
-                            csv << from.member.name << ',' << bare.name << ',' << arm << ',' << to_string(one.kind) << ','
-                                << one.id << ',' << one.name << ',' << format("%.6g", *one.value) << '\n';
-                csv << std::flush;
-            }
+            fit(source, first > 0, csv, seconds);
         }
-    std::cout << seconds.size() << " fits, " << format("%.2f", upper_median(seconds)) << " s each (median)\n";
+    csv.write(Path(settings_.output) / "quantities.csv");
+    fmt::print("{} fits, {:.2f} s each (median)\n", seconds.size(), upper_median(seconds));
+}
+
+void LeaveOneOut::fit(Source& source, bool second, Rows& csv, std::vector<double>& seconds) {
+    constexpr std::size_t max_strangers = 6;  // of each class
+    const ClassObject& from = objects_[source.object];
+    source.mesh = simplified(from.member.mesh, settings_.template_vertices);
+    if (!from.labels.empty()) source.parts = parts_on(source.mesh, from.original, from.labels);
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+        const ClassObject& object = objects_[i];
+        // The second source needs out-of-class objects only for its limits; a third of them is enough.
+        const bool own = object.class_name == source.class_name;
+        if (i == source.object || (second && !own && i % 3 != 0)) continue;
+        if (!own && !object.asked && i - objects_of_class_.at(object.class_name).front() >= max_strangers) continue;
+        const Stopwatch watch;
+        source.fits[i] = fit_member(source.mesh, {}, {object.member.name, object.member.mesh, {}}, how_.fit);
+        seconds.push_back(watch.seconds().processor);
+        measure(source, i);
+        for (std::size_t arm = 0; arm < 3; ++arm)
+            for (const ClassQuantity& one : source.measured.at(arm)[i].quantities)
+                if (one.value) csv(from.member.name, object.member.name, arm, to_string(one.kind), one.id, one.name, *one.value);
+    }
 }
 
 void LeaveOneOut::measure(Source& source, std::size_t i) {
@@ -223,12 +204,11 @@ std::vector<ClassAnswer> LeaveOneOut::answers_of(const Classes& known, std::size
     return list;
 }
 
-void LeaveOneOut::ask(std::size_t arm, const Way& way, const ClassMembershipOptions& options) const {
+void LeaveOneOut::ask(std::size_t arm, const Way& way) const {
     Counts nearest, decided;
     std::map<std::string, int> sums;
     std::size_t near = 0, own_refused = 0, own_recognised = 0, accepted = 0, asked = 0, open = 0;
-    std::ofstream answers(Path(options.output) / ("answers-" + std::to_string(arm) + way.file() + ".csv"));
-    answers << "object,class,verdict,score,unlike,off,against,first reason\n";
+    Rows answers("object,class,verdict,score,unlike,off,against,first reason");
     std::vector<Asked> curve;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
         const ClassObject& object = objects_[i];
@@ -238,10 +218,9 @@ void LeaveOneOut::ask(std::size_t arm, const Way& way, const ClassMembershipOpti
         for (const ClassAnswer& one : list) {
             const bool member = one.verdict == Membership::member;
             const auto reasons = one.reasons();
-            answers << object.member.name << ',' << one.name << ',' << to_string(one.verdict) << ',' << format("%.4f", one.score)
-                    << ',' << format("%.4f", one.unlike.value_or(-1)) << ','
-                    << format("%.4f", one.fit.residuals ? one.fit.residuals->off() : 0) << ',' << one.against.size() << ",\""
-                    << (reasons.empty() ? one.undecided : reasons.front()) << "\"\n";
+            answers(object.member.name, one.name, to_string(one.verdict), one.score, one.unlike.value_or(-1),
+                    one.fit.residuals ? one.fit.residuals->off() : 0, one.against.size(),
+                    reasons.empty() ? one.undecided : reasons.front());
             curve.push_back({object.class_name, i, one.name, unlike_where_nothing_else_speaks(one)});
             if (one.name == object.class_name) {
                 own_refused += one.verdict == Membership::other ? 1 : 0;
@@ -264,14 +243,16 @@ void LeaveOneOut::ask(std::size_t arm, const Way& way, const ClassMembershipOpti
         ++sums[best == object.class_name ? "right" : answer.best >= 0 ? "wrong" : best];
     }
     const std::size_t n = objects_.size();
-    std::cout << "\n## " << known_of_parts.at(arm) << way.text() << "\n\nNearest class: " << near << " of " << n << " right.\n\n";
+    answers.write(Path(settings_.output) / fmt::format("answers-{}{}.csv", arm, way.file()));
+    fmt::print("\n## {}{}\n\nNearest class: {} of {} right.\n\n", known_of_parts.at(arm), way.text(), near, n);
     std::vector<std::string> columns;
     for (const auto& [class_name, list] : objects_of_class_) columns.push_back(class_name);
     print(nearest, columns);
-    std::cout << "\nAnswers: " << sums["right"] << " right, " << sums["wrong"] << " wrong, " << sums["none"] << " none, "
-              << sums["undecided"] << " undecided. Its own class recognises " << own_recognised << " of " << n
-              << " objects and refuses " << own_refused << "; another one accepts one " << accepted << " times in " << asked
-              << "; without its own class " << open << " of " << n << " objects are accepted by one or more.\n\n";
+    fmt::print(
+        "\nAnswers: {} right, {} wrong, {} none, {} undecided. Its own class recognises {} of {} objects and refuses {}; another "
+        "one "
+        "accepts one {} times in {}; without its own class {} of {} objects are accepted by one or more.\n\n",
+        sums["right"], sums["wrong"], sums["none"], sums["undecided"], own_recognised, n, own_refused, accepted, asked, open, n);
     columns.emplace_back("none");
     columns.emplace_back("undecided");
     print(decided, columns);
@@ -284,9 +265,11 @@ void LeaveOneOut::ask(std::size_t arm, const Way& way, const ClassMembershipOpti
 
 void LeaveOneOut::ask_at_rates(std::size_t arm, bool shared, const std::vector<std::size_t>& members,
                                const std::vector<double>& rates) const {
-    std::cout << "\n## Limits by strangers, " << known_of_parts.at(arm) << Way{.shared = shared}.text()
-              << "\n\n| members | accept % | recognised % | refused % | accepted by a class % | by any % | tuned on: "
-                 "recognised, by a class, by any | others |\n|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+    fmt::print("\n## Limits by strangers, {}{}\n\n", known_of_parts.at(arm), Way{.shared = shared}.text());
+    Table table(
+        "members | accept % | recognised % | refused % | accepted by a class % | by any % | tuned on: recognised, by a class, by "
+        "any "
+        "| others");
     const std::set<std::string> half = first_half(), others = rest(half);
     for (const std::size_t count : members) {
         Way way;
@@ -308,11 +291,9 @@ void LeaveOneOut::ask_at_rates(std::size_t arm, bool shared, const std::vector<s
         }
         for (std::size_t r = 0; r < rates.size(); ++r) {
             const Rates& all = found[r][0];
-            std::cout << "| " << (count < every ? std::to_string(count) : "all") << " | " << format("%.0f", 100 * rates[r])
-                      << " | " << share_of(all.recognised, all.objects) << " | " << share_of(all.refused, all.objects) << " | "
-                      << share_of(all.accepted, all.asked) << " | " << share_of(all.open, all.objects) << " | "
-                      << found[r][1].text() << " | " << found[r][2].text() << " |\n"
-                      << std::flush;
+            table.row("{} | {:.0f} | {} | {} | {} | {} | {} | {}", count < every ? std::to_string(count) : "all", 100 * rates[r],
+                      share_of(all.recognised, all.objects), share_of(all.refused, all.objects),
+                      share_of(all.accepted, all.asked), share_of(all.open, all.objects), found[r][1].text(), found[r][2].text());
         }
     }
 }
@@ -326,8 +307,8 @@ void LeaveOneOut::ask_made(const std::vector<ClassObject>& made, std::size_t arm
         classes.push_back(learnt_from(source, arm, objects_.size(), {}));
     }
     moderate_thresholds(classes);
-    std::cout << "\n## Made strangers, " << known_of_parts.at(arm)
-              << "\n\n| | answer | accepted by | undecided | nearest | unlike it | off it % |\n|---|---|--:|--:|---|--:|--:|\n";
+    fmt::print("\n## Made strangers, {}\n\n", known_of_parts.at(arm));
+    Table table(" | answer | accepted by | undecided | nearest | unlike it | off it %");
     for (const ClassObject& object : made) {
         std::vector<ClassAnswer> list;
         int members = 0, open = 0;
@@ -339,9 +320,8 @@ void LeaveOneOut::ask_made(const std::vector<ClassObject>& made, std::size_t arm
         }
         const Classification answer = decide(object.member.name, std::move(list));
         const ClassAnswer& near = answer.answers[static_cast<std::size_t>(answer.nearest)];
-        std::cout << "| " << object.member.name << " | " << to_string(answer.verdict) << " | " << members << " | " << open
-                  << " | " << near.name << " | " << format("%.2f", near.unlike.value_or(-1)) << " | "
-                  << format("%.0f", 100 * near.fit.residuals->off()) << " |\n";
+        table.row("{} | {} | {} | {} | {} | {:.2f} | {:.0f}", object.member.name, to_string(answer.verdict), members, open,
+                  near.name, near.unlike.value_or(-1), 100 * near.fit.residuals->off());
     }
 }
 

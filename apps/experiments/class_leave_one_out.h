@@ -3,17 +3,25 @@
 #pragma once
 
 #include "class_objects.h"
-#include "classes.h"
+#include "harness.h"
+#include "scenes.h"
 
 #include "ostraka/shape_classes/classify.h"
 
 #include <array>
 #include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 namespace ostraka::experiments {
+
+/// Settings of the fits of templates to objects.
+struct FitSettings {
+    std::string output = "experiments-output/classes";
+    std::uint64_t template_vertices = 1000, object_vertices = 3000;
+    int tries = 1;
+    double search_radius = 0.1;
+    void describe(OptionList& visit) { visit("output", output, "output folder"); }
+};
 
 inline constexpr std::size_t every = 1000;  ///< number of members: all available
 
@@ -46,17 +54,14 @@ struct Rates {
     /// Percentages of objects recognised by their own class, accepted by another one, and by any other one.
     [[nodiscard]] std::string text() const;
 };
-/// Percentage.
-std::string share_of(std::size_t part, std::size_t all);
-
 class LeaveOneOut {
 public:
-    LeaveOneOut(const std::vector<ClassObject>& objects, const ClassMembershipOptions& options);
+    /// Fits the templates. The first training object of each class provides its template; for that object itself, the second
+    /// does.
+    LeaveOneOut(const std::vector<ClassObject>& objects, const FitSettings& settings);
 
-    /// The first training object of each class provides its template; for that object itself, the second does.
-    void fit(const ClassMembershipOptions& options);
     /// Classifies every object with classes learnt without it.
-    void ask(std::size_t arm, const Way& way, const ClassMembershipOptions& options) const;
+    void ask(std::size_t arm, const Way& way) const;
     /// Recognition and acceptance rates for increasing permitted shares of accepted out-of-class objects, by number of members.
     void ask_at_rates(std::size_t arm, bool shared, const std::vector<std::size_t>& members,
                       const std::vector<double>& rates) const;
@@ -80,6 +85,7 @@ private:
         std::vector<ShapeClass> learnt;
     };
 
+    void fit(Source& source, bool second, Rows& csv, std::vector<double>& seconds);
     void measure(Source& source, std::size_t i);
     [[nodiscard]] Classes classes_for(std::size_t object, std::size_t arm, const Way& way) const;
     [[nodiscard]] std::vector<ClassAnswer> answers_of(const Classes& known, std::size_t object, std::size_t arm,
@@ -91,6 +97,7 @@ private:
     [[nodiscard]] std::set<std::string> rest(const std::set<std::string>& half) const;
 
     const std::vector<ClassObject>& objects_;
+    const FitSettings settings_;
     std::map<std::string, std::vector<std::size_t>> objects_of_class_;
     std::vector<Source> sources_;
     LearnOptions how_;

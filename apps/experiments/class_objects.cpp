@@ -5,7 +5,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/remesh/simplify.h"
 #include "ostraka/stats/scores.h"
 
 #include <algorithm>
@@ -94,15 +93,6 @@ std::vector<ClassObject> read_class_objects(const std::string& folder, std::size
     }
     if (objects.empty()) fail_input(folder, "has no <class>/<number>.off", "unpack the archive of models there");
     return objects;
-}
-
-Mesh of_vertices(const Mesh& mesh, std::uint64_t vertices) {
-    Mesh small = mesh;
-    if (mesh.number_of_vertices() <= vertices) return small;
-    SimplifyOptions options;
-    options.vertices = vertices;
-    static_cast<void>(simplify(small, options));
-    return small;
 }
 
 }  // namespace ostraka::experiments

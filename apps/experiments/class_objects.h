@@ -25,8 +25,6 @@ std::vector<ClassObject> read_class_objects(const std::string& folder, std::size
 std::vector<std::int32_t> typical_labels(const Path& folder, const Mesh& mesh);
 /// Transfers the regions of a labelled mesh to another mesh of the same object.
 AnnotationSet parts_on(const Mesh& mesh, const Mesh& labelled, const std::vector<std::int32_t>& labels);
-/// A copy with at most `vertices` vertices.
-Mesh of_vertices(const Mesh& mesh, std::uint64_t vertices);
 
 /// Seven out-of-class objects: knots, a torus, a ball, a rod, a disc and a star.
 std::vector<ClassObject> made_strangers();

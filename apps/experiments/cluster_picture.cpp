@@ -1,5 +1,5 @@
 // Figure 3.7 of the thesis: clusters of arbitrary form, as found by DBSCAN.
-#include "experiments.h"
+#include "harness.h"
 
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
@@ -16,6 +16,11 @@
 namespace ostraka::experiments {
 
 namespace {
+
+struct ClusterPictureOptions {
+    std::string output;
+    void describe(OptionList& visit) { visit("output", output, "folder for the plot and its table").positional().required(); }
+};
 
 struct Form {
     std::string name;
@@ -39,8 +44,6 @@ const std::vector<Form> forms{{"ring", 220, [](Random& draw) { return on_arc(dra
                               {"scattered", 25, [](Random& draw) {
                                    return std::array{draw.uniform(-1.6, 4.8), draw.uniform(-1.6, 1.6)};
                                }}};
-
-}  // namespace
 
 void cluster_picture(const ClusterPictureOptions& options) {
     const Path folder(options.output);
@@ -73,5 +76,10 @@ void cluster_picture(const ClusterPictureOptions& options) {
     write_plot(folder / "clusters.svg", plot);
     std::cout << table.markdown();
 }
+
+const Registration registered("dbscan", "points of several forms and the clusters found among them (figure 3.7)",
+                              cluster_picture);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,9 +1,10 @@
 #include "convergence.h"
 
-#include "ostraka/core/error.h"
+#include "harness.h"
+
+#include "ostraka/report/plot.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace ostraka::experiments {
 
@@ -11,95 +12,88 @@ namespace {
 
 /// Below this share of the initial value, the remaining objective is rounding error.
 constexpr double rounding = 1e-12;
+/// Share of the objective above the best at which a run counts as converged.
+constexpr double enough = 1e-3;
 
-/// When the remaining objective falls to `share` of its value at iteration `from`, or to rounding error.
-std::optional<IterationReached> reached(const SolveSummary& summary, std::size_t from, double best, double share) {
-    const double enough = std::max(share * (summary.objective[from] - best), rounding * (summary.objective.front() - best));
+struct Run {
+    std::string name;
+    SolveSummary summary;
+};
+
+/// The first iteration at which the objective above the best falls to a share of its value at iteration `from`, or to rounding
+/// error.
+std::optional<std::size_t> reached(const SolveSummary& summary, std::size_t from, double best) {
+    if (from >= summary.objective.size()) return {};
+    const double limit = std::max(enough * (summary.objective[from] - best), rounding * (summary.objective.front() - best));
     for (std::size_t i = from; i < summary.objective.size(); ++i)
-        if (summary.objective[i] - best <= enough) return IterationReached{static_cast<int>(i), summary.seconds[i]};
+        if (summary.objective[i] - best <= limit) return i;
     return {};
 }
 
+/// (objective - best) / (start - best); 0 beyond the last iteration.
 double left_of(const SolveSummary& summary, std::size_t i, double best) {
     const double whole = summary.objective.front() - best;
-    return whole > 0 ? (summary.objective[i] - best) / whole : 0;
+    return whole > 0 && i < summary.objective.size() ? (summary.objective[i] - best) / whole : 0;
 }
 
-std::string text_of(const std::optional<IterationReached>& place, int iterations) {
-    char text[64];
-    if (place) std::snprintf(text, sizeof text, "%d (%.3g s)", place->iterations, place->seconds);
-    else std::snprintf(text, sizeof text, "not in %d", iterations);
-    return text;
+void add(const Problem& problem, const Run& run, double best, Table& table, Rows& csv) {
+    const SolveSummary& summary = run.summary;
+    const double setup = summary.times.symbolic + summary.times.factor, seconds = summary.seconds.back();
+    const double first = left_of(summary, 1, best), last = left_of(summary, summary.objective.size() - 1, best);
+    const auto of_start = reached(summary, 0, best), of_first = reached(summary, 1, best);
+    const auto text = [&](const std::optional<std::size_t>& i) {
+        return i ? fmt::format("{} ({:.3g} s)", *i, summary.seconds[*i]) : fmt::format("not in {}", summary.iterations);
+    };
+    const auto cell = [](const std::optional<std::size_t>& i) { return i ? Rows::cell(*i) : ""; };
+    const auto time = [&](const std::optional<std::size_t>& i) { return i ? Rows::cell(summary.seconds[*i]) : ""; };
+    table.row("{} | {:.3g} | {} | {:.3g} | {:.2g} | {:.2g} | {} | {} | {}", run.name, setup, summary.iterations, seconds, first,
+              last, text(of_start), text(of_first), summary.refused);
+    csv(problem.name, run.name, setup, summary.iterations, seconds, first, last, cell(of_start), time(of_start), cell(of_first),
+        time(of_first), summary.refused);
+}
+
+Plot plot_of(const std::string& title, const std::vector<Run>& runs, double best) {
+    Plot plot{title, {"iterations", false, 0.0, {}}, {"(objective - best) / (start - best)", true, {}, {}}, {}};
+    for (const Run& run : runs) {
+        PlotSeries series{run.name, {}, run.summary.objective.size() <= 60, false};
+        for (std::size_t i = 0; i < run.summary.objective.size(); ++i)
+            if (const double left = left_of(run.summary, i, best); left > rounding)
+                series.points.push_back({static_cast<double>(i), left});
+        plot.series.push_back(std::move(series));
+    }
+    return plot;
 }
 
 }  // namespace
 
-double best_objective(const std::vector<SolveRun>& runs, double known) {
-    for (const SolveRun& run : runs)
-        for (const double objective : run.summary.objective) known = std::min(known, objective);
-    return known;
-}
-
-Convergence convergence(const SolveRun& run, double best, double share) {
-    const SolveSummary& summary = run.summary;
-    if (summary.objective.empty()) fail_usage("the run '" + run.name + "' has no objectives");
-    Convergence result;
-    result.name = run.name;
-    result.iterations = summary.iterations;
-    result.setup = summary.times.symbolic + summary.times.factor;
-    result.seconds = summary.seconds.back();
-    result.left = left_of(summary, summary.objective.size() - 1, best);
-    result.of_start = reached(summary, 0, best, share);
-    if (summary.objective.size() > 1) {
-        result.first_step = left_of(summary, 1, best);
-        result.of_first_step = reached(summary, 1, best, share);
-    }
-    result.refused = summary.refused;
-    return result;
-}
-
-std::string convergence_header() {
-    return "| run | set-up s | iterations | s | left after the first | left at the end | to 1e-3 of the start | to 1e-3 of what "
-           "the "
-           "first step leaves | refused |\n|---|---|---|---|---|---|---|---|---|\n";
-}
-
-std::string convergence_row(const Convergence& run) {
-    char text[160];
-    std::snprintf(text, sizeof text, " | %.3g | %d | %.3g | %.2g | %.2g | ", run.setup, run.iterations, run.seconds,
-                  run.first_step, run.left);
-    return "| " + run.name + text + text_of(run.of_start, run.iterations) + " | " + text_of(run.of_first_step, run.iterations) +
-           " | " + std::to_string(run.refused) + " |\n";
-}
-
-std::string convergence_csv_header() {
-    return "problem,run,setup_s,iterations,s,left_after_first,left_at_end,iterations_of_start,s_of_start,"
-           "iterations_of_first_step,s_of_first_step,refused\n";
-}
-
-std::string convergence_csv(const std::string& problem, const Convergence& run) {
-    char text[160];
-    std::snprintf(text, sizeof text, ",%.6g,%d,%.6g,%.6g,%.6g,", run.setup, run.iterations, run.seconds, run.first_step,
-                  run.left);
-    std::string line = '"' + problem + "\",\"" + run.name + '"' + text;
-    for (const auto& place : {run.of_start, run.of_first_step}) {
-        if (place) std::snprintf(text, sizeof text, "%d,%.6g,", place->iterations, place->seconds);
-        line += place ? text : ",,";
-    }
-    return line + std::to_string(run.refused) + '\n';
-}
-
-Plot convergence_plot(const std::string& title, const std::vector<SolveRun>& runs, double best) {
-    Plot plot{title, {"iterations", false, 0.0, {}}, {"(objective - best) / (start - best)", true, {}, {}}, {}};
-    for (const SolveRun& run : runs) {
-        PlotSeries series{run.name, {}, run.summary.objective.size() <= 60, false};
-        for (std::size_t i = 0; i < run.summary.objective.size(); ++i) {
-            const double left = left_of(run.summary, i, best);
-            if (left > rounding) series.points.push_back({static_cast<double>(i), left});
+std::string compare_convergence(const Path& folder, const std::vector<Problem>& problems, int iterations,
+                                const std::vector<int>& windows, int longer) {
+    if (iterations == 0) return {};
+    std::string text;
+    Rows csv(
+        "problem,run,setup_s,iterations,s,left_after_first,left_at_end,iterations_of_start,s_of_start,iterations_of_first_step,"
+        "s_of_first_step,refused");
+    for (const Problem& problem : problems) {
+        double best = problem.solve(longer * iterations, windows.back()).objective.back();
+        std::vector<Run> runs;
+        for (const int window : windows) {
+            runs.push_back(
+                {window == 0 ? "plain" : fmt::format("accelerated, window {}", window), problem.solve(iterations, window)});
+            const std::vector<double>& objective = runs.back().summary.objective;
+            best = std::min(best, *std::min_element(objective.begin(), objective.end()));
         }
-        plot.series.push_back(std::move(series));
+        fmt::print("\n{}:\n\n", problem.title);
+        Table table(
+            "run | set-up s | iterations | s | left after the first | left at the end | to 1e-3 of the start | to 1e-3 of what "
+            "the "
+            "first step leaves | refused");
+        for (const Run& run : runs) add(problem, run, best, table, csv);
+        text += problem.title + ":\n\n" + table.text() + "\n";
+        write_plot(folder / ("convergence-" + problem.name + ".svg"), plot_of(problem.title, runs, best));
     }
-    return plot;
+    write_file(folder / "convergence.md", text);
+    csv.write(folder / "convergence.csv");
+    return text;
 }
 
 }  // namespace ostraka::experiments

@@ -1,30 +1,20 @@
 // Fits templates to other members of their class with known correspondence: errors of the vertices for each rule of finding
 // their counterparts.
-#include "experiments.h"
-
-#include "report.h"
+#include "harness.h"
+#include "scenes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/reconstruction/reconstruct.h"
-#include "ostraka/remesh/simplify.h"
-#include "ostraka/stats/random.h"
 #include "ostraka/synthetic/fragments.h"
 #include "ostraka/synthetic/make_mesh.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <functional>
-#include <iostream>
-#include <limits>
 #include <map>
 
 namespace ostraka::experiments {
@@ -32,6 +22,24 @@ namespace ostraka::experiments {
 namespace {
 
 using Eigen::Vector3d;
+
+struct CounterpartOptions {
+    std::string output = "experiments-output/counterparts";
+    std::vector<std::string> objects{"statuette", "hand", "teapot", "vase", "chair"}, pairs, cases;
+    std::vector<std::string> ways{"nearest", "surface", "one-to-one", "sliding"};
+    std::uint64_t vertices = 3000, seed = 1;
+    double strength = 0.2;
+    void describe(OptionList& visit) {
+        visit("objects", objects, "names of synthetic objects");
+        visit("pairs", pairs, "TEMPLATE=MEMBER: mesh files in correspondence");
+        visit("cases", cases, "cases by name or number, from 1; empty: all");
+        visit("ways", ways, "nearest, or values of 'ostraka fit --counterparts'");
+        visit("vertices", vertices, "number of vertices of the template; more if the object needs them");
+        visit("seed", seed, "random seed of the other member and its fragments");
+        visit("strength", strength, "standard deviation of the logarithm of the size of parts");
+        visit("output", output, "output folder");
+    }
+};
 
 /// Two members of a class: the template with the true position of each vertex on the other, and a mesh of the other.
 struct Members {
@@ -42,11 +50,6 @@ struct Members {
     Mesh other;
     std::vector<int> other_labels;
 };
-
-Mesh moved_by(Mesh mesh, const std::function<Point(const Point&)>& warp) {
-    for (const Vertex v : mesh.vertices()) mesh.point(v) = warp(mesh.point(v));
-    return mesh;
-}
 
 /// Number of edges whose faces form an angle of more than 120 degrees.
 std::size_t count_folds(const Mesh& mesh) {
@@ -85,17 +88,17 @@ public:
             part.centre /= std::max<double>(1, static_cast<double>(places.size()));
             part.tree = PointTree(places);
             part.scale = std::exp(strength * random.normal());
-            part.shift = 0.1 * strength * diagonal_ * Vector3d(random.normal(), random.normal(), random.normal());
+            part.shift = 0.1 * strength * diagonal_ * normal_vector(random);
             if (!places.empty()) parts_.push_back(std::move(part));
         }
     }
 
-    Point operator()(const Point& place) const {
-        const Vector3d p = eigen(place);
+    Vector3d operator()(const Vector3d& p) const {
         Vector3d sum = Vector3d::Zero();
         double weights = 0;
         for (const Part& part : parts_) {
-            const double off = std::sqrt(part.tree.nearest(place).squared) / (fade * diagonal_), weight = std::exp(-off * off);
+            const double off = std::sqrt(part.tree.nearest(point_of(p)).squared) / (fade * diagonal_),
+                         weight = std::exp(-off * off);
             sum += weight * ((part.scale - 1) * (p - part.centre) + part.shift);
             weights += weight;
         }
@@ -103,7 +106,7 @@ public:
         const double height = box_.sizes().z(), up = 2 * q.z() / height;
         q.head<2>() *= std::exp(taper_ * up);
         q.head<2>() += 0.5 * height * up * up * bend_;
-        return point_of(Vector3d(sides_.cwiseProduct(q)));
+        return sides_.cwiseProduct(q);
     }
 
 private:
@@ -121,7 +124,7 @@ private:
     std::vector<Part> parts_;
 };
 
-Members make_members(const std::string& name, const CounterpartExperiment& options, bool same_mesh) {
+Members make_members(const std::string& name, const CounterpartOptions& options, bool same_mesh) {
     const SyntheticObject& object = synthetic_object(name);
     MakeOptions how;
     how.vertices = std::max<std::uint64_t>(options.vertices, object.minimum_vertices);
@@ -137,9 +140,9 @@ Members make_members(const std::string& name, const CounterpartExperiment& optio
                         made.mesh,
                         {made.face_labels.begin(), made.face_labels.end()},
                         {},
-                        moved_by(again.mesh, std::cref(warp)),
+                        warped(again.mesh, warp),
                         {again.face_labels.begin(), again.face_labels.end()}};
-        const Mesh truth = moved_by(made.mesh, std::cref(warp));
+        const Mesh truth = warped(made.mesh, warp);
         if (!sound(truth, made.mesh) || !sound(members.other, again.mesh)) continue;
         members.truth = ostraka::points_of(truth);
         return members;
@@ -155,52 +158,25 @@ std::vector<int> cells(const Mesh& mesh, const std::vector<Point>& centres) {
     return labels;
 }
 
-/// Farthest-point sampling of vertices, starting with the one farthest from the centre.
-std::vector<Index> spread_out(const Mesh& mesh, const std::vector<Index>& among, std::size_t count) {
-    std::vector<double> off(among.size(), std::numeric_limits<double>::infinity());
-    Vector3d middle = Vector3d::Zero();
-    for (const Point& p : mesh.points()) middle += eigen(p) / static_cast<double>(mesh.number_of_vertices());
-    std::vector<Index> chosen;
-    Vector3d last = middle;
-    while (chosen.size() < std::min(count, among.size())) {
-        std::size_t farthest = 0;
-        for (std::size_t i = 0; i < among.size(); ++i) {
-            const double d = (eigen(mesh.point(Vertex(among[i]))) - last).norm();
-            off[i] = chosen.empty() ? d : std::min(off[i], d);
-            if (off[i] > off[farthest]) farthest = i;
-        }
-        if (chosen.empty()) std::fill(off.begin(), off.end(), std::numeric_limits<double>::infinity());
-        chosen.push_back(among[farthest]);
-        last = eigen(mesh.point(Vertex(among[farthest])));
-    }
-    return chosen;
-}
-
 /// Reads meshes in correspondence: the template is the first, simplified; the other is the second.
-Members read_members(const std::string& pair, const CounterpartExperiment& options) {
-    const auto split = pair.find('=');
-    if (split == std::string::npos) fail_usage("'" + pair + "' is no pair of mesh files", "write TEMPLATE=MEMBER");
-    const Mesh first = read_mesh(pair.substr(0, split)).mesh, second = read_mesh(pair.substr(split + 1)).mesh;
+Members read_members(const std::string& pair, const CounterpartOptions& options) {
+    const auto [first_file, second_file] = split_pair(pair);
+    const Mesh first = read_mesh(first_file).mesh, second = read_mesh(second_file).mesh;
     if (first.number_of_vertices() != second.number_of_vertices() || first.number_of_faces() != second.number_of_faces())
         fail_input(pair, "are not in correspondence: their vertices or faces are not as many");
-    Members members{std::filesystem::path(pair.substr(split + 1)).stem().string(), first, {}, {}, second, {}};
-    std::vector<Index> all;
-    for (const Vertex v : first.vertices()) all.push_back(v.idx());
+    Members members{Path(second_file).stem().string(),
+                    simplified(first, options.vertices),
+                    {},
+                    {},
+                    simplified(second, options.vertices * 5 / 4),
+                    {}};
     std::vector<Point> centres;
-    for (const Index v : spread_out(first, all, 10)) centres.push_back(first.point(Vertex(v)));
+    for (const Index v : spread_out(first, all_vertices(first), 10)) centres.push_back(first.point(Vertex(v)));
     const std::vector<int> labels = cells(first, centres);
-    SimplifyOptions how;
-    how.vertices = options.vertices;
-    simplify(members.shape, how);
-    how.vertices = options.vertices * 5 / 4;
-    simplify(members.other, how);
     const SurfaceSearch on_first(first), on_second(second);
     for (const Vertex v : members.shape.vertices()) {
         const SurfaceHit hit = on_first.closest(members.shape.point(v));
-        const auto c = corners(second, Face(hit.face));
-        Vector3d sum = Vector3d::Zero();
-        for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] * eigen(second.point(c[k]));
-        members.truth.push_back(point_of(sum));
+        members.truth.push_back(point_at(second, hit.face, hit.barycentric));
     }
     for (const Face f : members.shape.faces())
         members.labels.push_back(labels[on_first.closest(centroid(members.shape, f)).face]);
@@ -250,13 +226,8 @@ AnnotationSet annotate(const std::vector<int>& labels, const std::vector<Index>&
         if (!region.faces.empty()) set.annotations.push_back(std::move(region));
     }
     for (std::size_t i = 0; i < landmarks.size(); ++i) {
-        if (landmarks[i] == no_index || skipped(i)) continue;
-        Annotation point;
-        point.id = 1000 + static_cast<int>(i);
-        point.tag = "landmark " + std::to_string(i);
-        point.type = AnnotationType::point;
-        point.points = {landmarks[i]};
-        set.annotations.push_back(std::move(point));
+        if (landmarks[i] != no_index && !skipped(i))
+            set.annotations.push_back(landmark(1000 + static_cast<int>(i), "landmark " + std::to_string(i), landmarks[i]));
     }
     return set;
 }
@@ -290,9 +261,7 @@ Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
     breaking.noise = what.noise;
     breaking.seed = seed;
     Random random(seed, 99);
-    std::vector<Index> all;
-    for (const Vertex v : members.other.vertices()) all.push_back(v.idx());
-    const Point at = members.other.point(Vertex(all[random.below(all.size())]));
+    const Point at = members.other.point(Vertex(static_cast<Index>(random.below(members.other.number_of_vertices()))));
     const BrokenPiece piece = break_off(members.other, at, breaking);
     std::vector<bool> keep(piece.mesh.number_of_faces(), true);
     for (int hole = 0; what.holes > 0 && hole < 5; ++hole) {
@@ -308,9 +277,8 @@ Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
         larger.scale = what.scale;
         scene.to_piece = larger.after(scene.to_piece);
     }
-    std::vector<Index> marks = spread_out(members.shape, joints(members.shape, members.labels), 8), whole;
-    for (const Vertex v : members.shape.vertices()) whole.push_back(v.idx());
-    const std::vector<Index> free_marks = spread_out(members.shape, whole, 12);
+    std::vector<Index> marks = spread_out(members.shape, joints(members.shape, members.labels), 8);
+    const std::vector<Index> free_marks = spread_out(members.shape, all_vertices(members.shape), 12);
     marks.insert(marks.end(), free_marks.begin(), free_marks.end());
     const PointTree tree(ostraka::points_of(left.mesh));
     const double edge = mean_edge_length(left.mesh);
@@ -371,31 +339,25 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
     row.rigid /= count;
     row.seen /= std::max(1.0, seen);
     row.missing /= std::max(1.0, count - seen);
-    Mesh fitted = members.shape;
-    for (const Vertex v : fitted.vertices()) fitted.point(v) = result.points[v];
+    const Mesh fitted = with_points(members.shape, result.points);
     row.folds = count_folds(fitted);
     row.crossings = self_intersections(to_soup(fitted)).pairs.size();
     return row;
 }
 
-/// A row of the table and of the file.
-std::string judge(const Members& members, const Case& what, const CounterpartExperiment& options) {
+/// Adds a row to the table, and one for each way to the file.
+void judge(const Members& members, const Case& what, const CounterpartOptions& options, Table& table, Rows& csv) {
     const Scene scene = make_scene(members, what, options.seed);
-    std::cout << "| " << members.name << " | " << what.name << " |";
-    std::string rows;
+    std::string cells = members.name + " | " + what.name;
     for (const std::string& way : options.ways) {
         const Result row = run(members, scene, way);
-        if (row.placed)
-            std::cout << format(" %.3f (%.3f; %.2f s; %zu, %zu) |", 100 * row.all, 100 * row.seen, row.seconds, row.folds,
-                                row.crossings)
-                      << std::flush;
-        else std::cout << " not placed |" << std::flush;
-        rows += members.name + ",\"" + what.name + "\"," + way +
-                format(",%d,%.6g,%.6g,%.6g,%.6g,%zu,%zu,%.4g\n", row.placed ? 1 : 0, row.all, row.seen, row.missing, row.rigid,
-                       row.folds, row.crossings, row.seconds);
+        cells += row.placed ? fmt::format(" | {:.3f} ({:.3f}; {:.2f} s; {}, {})", 100 * row.all, 100 * row.seen, row.seconds,
+                                          row.folds, row.crossings)
+                            : " | not placed";
+        csv(members.name, what.name, way, row.placed, row.all, row.seen, row.missing, row.rigid, row.folds, row.crossings,
+            row.seconds);
     }
-    std::cout << '\n';
-    return rows;
+    table.add(cells);
 }
 
 bool wanted(const Case& what, std::size_t number, const std::vector<std::string>& list) {
@@ -403,17 +365,12 @@ bool wanted(const Case& what, std::size_t number, const std::vector<std::string>
     return list.empty() || std::any_of(list.begin(), list.end(), names);
 }
 
-}  // namespace
-
-void counterparts(const CounterpartExperiment& options) {
-    std::filesystem::create_directories(options.output);
-    std::string csv = "object,case,counterparts,placed,all,seen,missing,rigid,folds,crossings,seconds\n";
-    std::cout << "Mean distance of vertices from their true places, % of the diagonal (where observed; seconds of the processor; "
-                 "edges folded, pairs of faces that cross).\n\n| object | case |";
-    for (const std::string& way : options.ways) std::cout << ' ' << way << " |";
-    std::cout << "\n|---|---|";
-    for (std::size_t i = 0; i < options.ways.size(); ++i) std::cout << "---|";
-    std::cout << '\n';
+void counterparts(const CounterpartOptions& options) {
+    Rows csv("object,case,counterparts,placed,all,seen,missing,rigid,folds,crossings,seconds");
+    fmt::print(
+        "Mean distance of vertices from their true places, % of the diagonal (where observed; seconds of the processor; edges "
+        "folded, pairs of faces that cross).\n\n");
+    Table table(fmt::format("object | case | {}", fmt::join(options.ways, " | ")));
     std::vector<std::string> names = options.objects;
     names.insert(names.end(), options.pairs.begin(), options.pairs.end());
     for (const std::string& name : names) {
@@ -424,10 +381,15 @@ void counterparts(const CounterpartExperiment& options) {
             if (!wanted(what, c + 1, options.cases) || (pair && what.same_mesh)) continue;
             if (!members.contains(what.same_mesh))
                 members.emplace(what.same_mesh, pair ? read_members(name, options) : make_members(name, options, what.same_mesh));
-            csv += judge(members.at(what.same_mesh), what, options);
+            judge(members.at(what.same_mesh), what, options, table, csv);
         }
     }
-    write_file(Path(options.output) / "counterparts.csv", csv);
+    csv.write(Path(options.output) / "counterparts.csv");
 }
+
+const Registration registered("counterparts", "templates fitted to other members: how far vertices end from their true places",
+                              counterparts);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

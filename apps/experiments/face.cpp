@@ -1,8 +1,6 @@
 // Figure 5.17 of the thesis: proportions of a face.
-#include "experiments.h"
 #include "proportion.h"
 
-#include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/heads.h"
@@ -10,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <set>
 
 namespace ostraka::experiments {
@@ -18,6 +15,15 @@ namespace ostraka::experiments {
 namespace {
 
 using Eigen::Vector3d;
+
+struct FaceOptions : SemanticOptions {
+    std::string mesh, recipe;
+    void describe(OptionList& visit) {
+        SemanticOptions::describe(visit);
+        visit("mesh", mesh, "mesh file of a face; without it a synthetic head");
+        visit("recipe", recipe, "recipe of its eyes and nose").required();
+    }
+};
 
 /// A synthetic head, in mm, x forwards and z upwards, used if no scan is given: mean proportions of the synthetic heads (others
 /// are drawn by head_archetype), with a longer nose and narrower eyes, so that the nose is 3 to 4 times as long as an eye is
@@ -44,10 +50,10 @@ void lower_eye(const Annotation& eye, double factor, std::vector<Point>& points)
     const Vector3d bottom = eigen(points[measure.points[0]]), top = eigen(points[measure.points[1]]);
     const Vector3d middle = (bottom + top) / 2, up = (top - bottom).normalized();
     const double height = (top - bottom).norm();
-    for (Point& p : points) {
-        const Vector3d d = eigen(p) - middle;
-        p = point_of(eigen(p) + (factor - 1) * falloff(d.norm(), 0.9 * height, 1.2 * height) * up.dot(d) * up);
-    }
+    points = warped(std::move(points), [&](const Vector3d& p) {
+        const Vector3d d = p - middle;
+        return Vector3d(p + (factor - 1) * falloff(d.norm(), 0.9 * height, 1.2 * height) * up.dot(d) * up);
+    });
 }
 
 /// Lengthens the nose by a factor, starting from its root.
@@ -56,18 +62,18 @@ void lengthen_nose(const Annotation& nose, double factor, std::vector<Point>& po
     const Vector3d root = eigen(points[measure.points[0]]), tip = eigen(points[measure.points[1]]),
                    along = (tip - root).normalized();
     const double whole = (tip - root).norm();
-    for (Point& p : points) {
-        const Vector3d d = eigen(p) - root;
+    points = warped(std::move(points), [&](const Vector3d& p) {
+        const Vector3d d = p - root;
         const double t = std::max(0.0, along.dot(d)), beside = (d - std::min(t, whole) * along).norm();
-        p = point_of(eigen(p) + (factor - 1) * falloff(beside, 0.25 * whole, 0.34 * whole) * t * along);
-    }
+        return Vector3d(p + (factor - 1) * falloff(beside, 0.25 * whole, 0.34 * whole) * t * along);
+    });
 }
 
 /// The vertices outside the given parts.
 std::vector<Index> outside(const Subject& subject, const std::vector<Ratio>& ratios) {
     std::vector<bool> rest(subject.mesh.number_of_vertices(), true);
     for (const Ratio& ratio : ratios)
-        for (const Index v : vertices_of(subject.mesh, subject.part(ratio.part))) rest[v] = false;
+        for (const Index v : subject.vertices(ratio.part)) rest[v] = false;
     return flagged(rest);
 }
 
@@ -81,9 +87,7 @@ std::vector<Index> faces_at(const Subject& subject, const std::vector<Ratio>& ra
     return {list.begin(), list.end()};
 }
 
-}  // namespace
-
-void face_proportions(const SemanticOptions& options) {
+void face_proportions(const FaceOptions& options) {
     const Path folder(options.output);
     SyntheticMesh made;
     if (options.mesh.empty()) made = made_head(options.vertices == 0 ? 25000 : options.vertices);
@@ -102,50 +106,48 @@ void face_proportions(const SemanticOptions& options) {
         "eyes", "nose longer, the eyes follow", {{"left eye", "nose", 0.25, 0.33}, {"right eye", "nose", 0.25, 0.33}}, rest};
     lengthen_nose(face.part("nose"), 1.4, eyes.edited);
 
-    TextTable table({"case", "run", "iterations", "s", "first / second", "wanted", "first", "second",
-                     "the part moves, mean (most)", "the rest moves, mean (most)", "stretch at its border"});
+    TextTable table = trial_table({"case", "first / second", "wanted", "first", "second", "the part moves, mean (most)",
+                                   "the rest moves, mean (most)", "stretch at its border"});
     std::vector<Problem> problems;
-    const Outcome before{"rest", "rest", rest, {}, 0, 0, {}};
-    write_outcome(folder, face, before);
     for (const Case& c : {nose, eyes}) {
-        std::vector<Outcome> outcomes{before, {"edited, unconstrained", c.name + "-unconstrained", c.edited, {}, 0, 0, {}}};
-        for (const auto& [name, file, solve] :
-             {std::tuple{"thesis, 5 iterations", "thesis-5", five}, {"thesis, converged", "thesis-converged", many}})
-            outcomes.push_back(solved_from(face, c.edited, thesis_proportions(face, c.edited, c.ratios, false), solve, name,
-                                           c.name + "-" + file));
-        for (const auto& [name, file, hard, solve] : {std::tuple{"ours, 5 iterations", "soft-5", false, five},
-                                                      {"ours, converged", "soft-converged", false, many},
-                                                      {"ours, hard", "hard", true, DeformOptions().solve}})
-            outcomes.push_back(
-                deformed_from(face, c.edited, proportion_graph(face, c.ratios, hard), solving(solve), name, c.name + "-" + file));
-        const std::vector<Index> others = outside(face, c.ratios), part = vertices_of(face.mesh, face.part(c.ratios[0].part));
-        const std::vector<Index> border = faces_at(face, c.ratios);
-        for (const Outcome& outcome : outcomes) {
-            if (outcome.file != "rest") write_outcome(folder, face, outcome, distortions(face.mesh, c.edited, outcome.points));
-            const Ratio& ratio = c.ratios.front();
-            const bool solved = outcome.summary.iterations > 0;
-            const std::string wanted = digits(ratio.min, 2) + " to " + digits(ratio.max, 2);
-            table.add({c.title, outcome.name, iterations_of(outcome), solved ? digits(outcome.seconds, 2) : "",
-                       digits(value_of(face, ratio, outcome.points), 4), wanted,
-                       digits(length(measure_of(face.part(ratio.part)), outcome.points), 3),
-                       digits(length(measure_of(face.part(ratio.reference)), outcome.points), 3),
-                       solved ? both(moved(part, c.edited, outcome.points), 3) : "",
-                       solved ? both(moved(others, c.edited, outcome.points), 4) : "",
-                       solved ? digits(mean_over(face.mesh, border, distortions(face.mesh, c.edited, outcome.points)), 4) : ""});
-        }
-        problems.push_back(
-            {c.name + "-thesis", "Proportions of a face, " + c.title + ", the thesis's constraints",
-             [&face, c](const SolveOptions& solve) {
-                 return solved_from(face, c.edited, thesis_proportions(face, c.edited, c.ratios, false), solve, "", "").summary;
-             }});
-        problems.push_back(
-            {c.name + "-ours", "Proportions of a face, " + c.title + ", ours", [&face, c](const SolveOptions& solve) {
-                 return deformed_from(face, c.edited, proportion_graph(face, c.ratios, false), solving(solve), "", "").summary;
-             }});
+        Trials trials(face, c.edited);
+        trials.given("rest", "rest", rest);
+        trials.given("edited, unconstrained", c.name + "-unconstrained", c.edited);
+        const auto thesis = [&face, c] { return thesis_proportions(face, c.edited, c.ratios, false); };
+        trials.thesis("thesis, 5 iterations", c.name + "-thesis-5", thesis(), five);
+        trials.thesis("thesis, converged", c.name + "-thesis-converged", thesis(), many);
+        RelationGraph soft = proportion_graph(face, c.ratios, false);
+        trials.deformed("ours, 5 iterations", c.name + "-soft-5", soft, {.solve = five});
+        trials.deformed("ours, converged", c.name + "-soft-converged", soft, {.solve = many});
+        trials.deformed("ours, hard", c.name + "-hard", proportion_graph(face, c.ratios, true), {});
+        const Ratio& ratio = c.ratios.front();
+        const std::vector<Index> others = outside(face, c.ratios), border = faces_at(face, c.ratios);
+        const auto stretch = [&](const Outcome& outcome) { return distortions(face.mesh, c.edited, outcome.points); };
+        const auto cells = [&](const Outcome& outcome) -> std::vector<std::string> {
+            const auto length_of = [&](const std::string& part) {
+                return fixed(length(measure_of(face.part(part)), outcome.points), 3);
+            };
+            return {c.title,
+                    fixed(value_of(face, ratio, outcome.points), 4),
+                    fixed(ratio.min, 2) + " to " + fixed(ratio.max, 2),
+                    length_of(ratio.part),
+                    length_of(ratio.reference),
+                    outcome.if_solved(moved_text(face.vertices(ratio.part), c.edited, outcome.points, 3)),
+                    outcome.if_solved(moved_text(others, c.edited, outcome.points, 4)),
+                    outcome.if_solved(fixed(mean_over(face.mesh, border, stretch(outcome)), 4))};
+        };
+        trials.write(folder, table, cells, stretch);
+        problems.push_back(thesis_problem(c.name + "-thesis", "Proportions of a face, " + c.title + ", the thesis's constraints",
+                                          face, c.edited, thesis));
+        problems.push_back(deform_problem(c.name + "-ours", "Proportions of a face, " + c.title + ", ours", face, c.edited,
+                                          std::move(soft), {}));
     }
-    table.write(folder, "table");
-    std::cout << table.markdown();
+    write_table(table, folder, "table");
     compare_convergence(folder, problems, options.convergence);
 }
+
+const Registration registered("face-proportions", "nose and eyes of a face (figure 5.17)", face_proportions);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

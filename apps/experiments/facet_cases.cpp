@@ -1,13 +1,12 @@
 #include "facet_cases.h"
 
+#include "boxes.h"
+#include "scenes.h"
+#include "shatter.h"
+
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/point_cloud/point_cloud.h"
-#include "ostraka/remesh/simplify.h"
-#include "ostraka/stats/random.h"
-#include "shatter.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +44,7 @@ void as_cloud(FacetCase& sherd, Random& random) {
         order.emplace_back(std::array{std::lround(p.x() / spacing), std::lround(p.y() / spacing), std::lround(p.z() / spacing)},
                            points.size());
         points.push_back(p);
-        const Vector3d tilted = eigen(normal) + 0.08 * Vector3d(random.normal(), random.normal(), random.normal());
+        const Vector3d tilted = eigen(normal) + 0.08 * normal_vector(random);
         normals.push_back(vector_of(tilted.normalized()));
     }
     std::stable_sort(order.begin(), order.end());
@@ -64,7 +63,7 @@ void as_cloud(FacetCase& sherd, Random& random) {
 /// Simplifies the scan, like small scans in archives.
 void as_simplified(FacetCase& sherd, Random& random) {
     const auto vertices = static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform())));
-    Sherd small = simplified({std::move(sherd.mesh), std::move(sherd.broken)}, vertices);
+    Sherd small = ostraka::simplified({std::move(sherd.mesh), std::move(sherd.broken)}, vertices);
     sherd.mesh = std::move(small.mesh);
     sherd.broken = std::move(small.broken);
 }
@@ -151,6 +150,46 @@ std::vector<FacetCase> made_cases(const std::string& source) {
                 // The points are too sparse for the piece: keep its mesh.
             }
         }
+    }
+    return cases;
+}
+
+/// Scanned fragments in assembled layout: fracture is what lies close to and faces another fragment.
+std::vector<FacetCase> scanned_cases(const std::string& folder) {
+    FragmentLayout layout = read_layout(folder, FacetChoice::known);
+    std::vector<FacetCase> cases;
+    std::vector<SurfaceSearch> searches;
+    for (Fragment& fragment : layout.fragments)
+        cases.push_back({layout.name, fragment.name, std::move(fragment.mesh), {}, true, {}});
+    for (const FacetCase& one : cases) searches.emplace_back(one.mesh);
+    // Simulated pieces coincide, scanned ones have gaps, and those of the scanned vessel large ones.
+    const bool vessel = layout.name.find("vessel") != std::string::npos;
+    const double diagonal = layout.diagonal;
+    const auto [max_gap, max_overlap] = layout.copied ? std::pair(1e-4 * diagonal, 1e-4 * diagonal)
+                                        : vessel      ? std::pair(0.05 * diagonal, 0.0)
+                                                      : std::pair(std::max(2 * layout.edge, 0.015 * diagonal), 0.015 * diagonal);
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+        // In front of a face of another fragment, or slightly behind it where scans overlap.
+        const auto broken_within = [&, gap = max_gap, overlap = max_overlap](double factor) {
+            const double far = factor * gap, behind = factor * overlap;
+            return facing(cases[k].mesh, others_than(k, searches), std::max(far, behind),
+                          [&](const SurfaceHit& hit, const Point& place, const Vector& normal) {
+                              const double front = (hit.point - place) * normal;
+                              if (front > far || front < -behind) return false;
+                              return std::abs(front) >= 0.6 * hit.distance || hit.distance < 0.15 * far;
+                          });
+        };
+        cases[k].broken = broken_within(1);
+        if (layout.copied || vessel) continue;
+        // Layouts of scans are approximate: a face near another fragment, but not within the gap, may still be fracture.
+        const std::vector<bool> perhaps = broken_within(3);
+        for (std::size_t f = 0; f < perhaps.size(); ++f) cases[k].known.push_back(cases[k].broken[f] || !perhaps[f]);
+    }
+    // Coinciding vertices do not matter here, but unrealistically sharp edges do.
+    for (std::size_t k = 0; layout.copied && k < cases.size(); ++k) {
+        Random random(k, 179);
+        const double noise = 0.03 * mean_edge_length(cases[k].mesh);
+        cases[k].mesh = warped(cases[k].mesh, [&](const Vector3d& p) { return Vector3d(p + noise * normal_vector(random)); });
     }
     return cases;
 }

@@ -31,8 +31,6 @@ std::vector<FacetCase> facet_cases(const std::string& source);
 /// A name shared by all sources of one object, however it is broken or scanned: they are left out together.
 std::string object_of_source(const std::string& source);
 
-/// Cases of a folder of scanned fragments.
-std::vector<FacetCase> scanned_cases(const std::string& folder);
 /// `bare`: the surface is not altered.
 Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed, bool bare);
 /// Rounds all edges, as by long use or by the filter of a scan.

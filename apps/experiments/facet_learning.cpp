@@ -1,8 +1,9 @@
 #include "facet_learning.h"
 
+#include "harness.h"
+
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <tuple>
 
@@ -61,9 +62,9 @@ bool is_known(const FacetCase& one, Face f) { return one.known.empty() || one.kn
 
 SeenFragment seen_fragment(FacetCase given) {
     SeenFragment result;
-    const std::clock_t begin = std::clock();
+    const Stopwatch watch;
     result.evidence = facet_evidence(given.mesh);
-    result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    result.seconds = watch.seconds().processor;
     const FacetGraph& graph = result.evidence.graph;
     result.broken.assign(graph.count(), 0);
     for (const Face f : given.mesh.faces())

@@ -1,15 +1,14 @@
 // Whole objects to break, with many kinds of surfaces.
 #include "facet_cases.h"
+#include "scenes.h"
+#include "shatter.h"
+
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/io/repair.h"
 #include "ostraka/remesh/remesh.h"
-#include "ostraka/remesh/simplify.h"
-#include "ostraka/stats/random.h"
 #include "ostraka/synthetic/heads.h"
 #include "ostraka/synthetic/make_mesh.h"
-#include "shatter.h"
 
 #include <CGAL/Polygon_mesh_processing/clip.h>
 #include <CGAL/boost/graph/helpers.h>
@@ -23,16 +22,16 @@ using Eigen::Vector3d;
 
 Mesh rounded(const Mesh& mesh, int steps) {
     Mesh result = mesh;
-    std::vector<Vector3d> next(mesh.number_of_vertices());
+    std::vector<Point> next(mesh.number_of_vertices());
     for (int step = 0; step < steps; ++step) {
         for (const Vertex v : result.vertices()) {
             Vector3d mean = Vector3d::Zero();
             double count = 0;
             for (const Halfedge h : result.halfedges_around_target(result.halfedge(v)))
                 mean += eigen(result.point(result.source(h))), ++count;
-            next[v] = 0.5 * eigen(result.point(v)) + 0.5 * mean / count;
+            next[v] = point_of(0.5 * eigen(result.point(v)) + 0.5 * mean / count);
         }
-        for (const Vertex v : result.vertices()) result.point(v) = point_of(next[v]);
+        result = with_points(result, next);
     }
     return result;
 }
@@ -40,9 +39,7 @@ Mesh rounded(const Mesh& mesh, int steps) {
 namespace {
 
 Mesh stretched(const Mesh& mesh, const Vector3d& factors) {
-    Mesh result = mesh;
-    for (const Vertex v : result.vertices()) result.point(v) = point_of(eigen(mesh.point(v)).cwiseProduct(factors));
-    return result;
+    return warped(mesh, [&](const Vector3d& p) { return p.cwiseProduct(factors); });
 }
 
 /// Varies the surface: carved or worn at large scale, grainy at small scale, or unchanged.
@@ -58,7 +55,7 @@ Mesh skinned(const Mesh& mesh, Random& random, double most) {
 /// Adds a flat base, as on standing objects; remeshed, since the base has few faces.
 Mesh based(const Mesh& mesh, Random& random) {
     namespace PMP = CGAL::Polygon_mesh_processing;
-    const Vector3d up = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const Vector3d up = normal_vector(random).normalized();
     double low = 1e300, high = -1e300;
     for (const Vertex v : mesh.vertices()) {
         low = std::min(low, up.dot(eigen(mesh.point(v))));
@@ -82,9 +79,7 @@ Mesh object_of_file(const std::string& file, std::uint64_t seed, bool bare) {
     mending.fill_holes_size = 1;
     Mesh mesh = repair(triangulate(read_polygons(file)).soup, {}, mending).mesh;
     if (!CGAL::is_closed(mesh)) fail_input(file, "is open", "leave it out");
-    SimplifyOptions how;
-    how.vertices = static_cast<std::uint64_t>(std::lround(3000 * std::pow(8, random.uniform())));
-    if (how.vertices < mesh.number_of_vertices()) simplify(mesh, how);
+    mesh = simplified(std::move(mesh), static_cast<std::uint64_t>(std::lround(3000 * std::pow(8, random.uniform()))));
     if (random.uniform() < 0.5)
         mesh = stretched(mesh, {random.uniform(0.6, 1.2), random.uniform(0.6, 1.2), random.uniform(0.6, 1.2)});
     if (random.uniform() < 0.3) mesh = rounded(mesh, 1 + static_cast<int>(random.below(10)));
@@ -111,7 +106,7 @@ Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_
     options.vertices = 4000 + random.below(16000);
     options.seed = 1 + random.below(1000);
     if (kind == "made") {
-        Mesh mesh = make_mesh(synthetic_object(name), options).mesh;
+        Mesh mesh = made_mesh(name, options.vertices, options.seed);
         if (random.uniform() < 0.5) mesh = rounded(mesh, 1 + static_cast<int>(random.below(12)));
         return bare ? mesh : skinned(mesh, random, 0.002);
     }
@@ -122,7 +117,7 @@ Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_
     head.long_hair = random.uniform() < 0.5;
     head.seed = seed;
     const Mesh mesh = body == "head" ? make_mesh(*head_object(head_archetype(head)), options).mesh
-                                     : make_mesh(synthetic_object(body), options).mesh;
+                                     : made_mesh(body, options.vertices, options.seed);
     const Vector3d factors(random.uniform(0.4, 1), random.uniform(0.5, 1.2), random.uniform(0.6, 1.5));
     const int steps = static_cast<int>(random.uniform() < 0.6 ? 1 + random.below(25) : 0);
     return skinned(rounded(stretched(mesh, factors), steps), random, 0.01);

@@ -1,25 +1,44 @@
 // Classification of fracture and intact surface: trains the model, and evaluates it on held-out objects and scanned fragments.
-#include "coloured_mesh.h"
-#include "experiments.h"
-#include "facet_cases.h"
 #include "facet_learning.h"
-#include "report.h"
+#include "harness.h"
+#include "scenes.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/fracture/facets.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <sstream>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct FacetOptions {
+    int objects = 20;
+    std::uint64_t seed = 1;
+    BoostOptions boosting;
+    std::string model, pictures;
+    std::vector<std::string> meshes, scanned, judged;
+    bool each = false;
+    void describe(OptionList& visit) {
+        visit("objects", objects, "number of training objects of each kind", Range{4, 1000});
+        visit("seed", seed, "random seed of objects and fractures");
+        visit("trees", boosting.trees, "number of trees of the model", Range{1, 10000});
+        visit("depth", boosting.depth, "depth of its trees", Range{1, 16});
+        visit("model", model, "model file to train and write (data/facets.model.json); else the built-in model is evaluated");
+        visit("meshes", meshes, "folders of meshes of whole objects that are broken for training too");
+        visit("scanned", scanned, "folders of fragments in assembled layout for training too");
+        visit(
+            "judge", judged,
+            "sources for evaluation: pot:SEED, stone:SEED, made:NAME:SEED, mesh:FILE:SEED or a folder of fragments in assembled "
+            "layout");
+        visit("pictures", pictures, "folder for coloured meshes of the evaluated fragments");
+        visit("each", each, "one row per fragment");
+    }
+};
 
 /// Areas by true and predicted class, and the calibration of probabilities.
 struct Score {
@@ -57,9 +76,9 @@ struct Score {
 /// Score of one fragment.
 Score score(const SeenFragment& one, const std::vector<double>& log_odds) {
     Score result;
-    const std::clock_t begin = std::clock();
+    const Stopwatch watch;
     const Facets found = find_facets(one.given.mesh, one.evidence, log_odds);
-    result.seconds = one.seconds + static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    result.seconds = one.seconds + watch.seconds().processor;
     const Mesh& mesh = one.given.mesh;
     for (const Face f : mesh.faces()) {
         if (!is_known(one.given, f)) continue;
@@ -77,18 +96,14 @@ Score score(const SeenFragment& one, const std::vector<double>& log_odds) {
     return result;
 }
 
-void print(const std::string& name, const Score& s) {
-    std::cout << format("| %s | %zu | %.1f | %.1f | %.1f | %.1f | %.1f | %zu | %zu, %zu | %.3f | %.2f |\n", name.c_str(),
-                        s.fragments, 100 * (s.area[1][0] + s.area[1][1]) / s.all(), 100 * s.agreement(), 100 * s.alike / s.all(),
-                        100 * s.recall(), 100 * s.precision(), s.passed, s.whole, s.unclear, s.calibration_error(),
-                        s.seconds / s.faces * 1e5)
-              << std::flush;
-}
+const std::string columns =
+    "object | fragments | broken % | agreement % | alone % | recall % | precision % | agree by 90 % | called whole, unclear | "
+    "calibration error | s for 100 000 faces";
 
-void print_head() {
-    std::cout << "\n| object | fragments | broken % | agreement % | alone % | recall % | precision % | agree by 90 % | called "
-                 "whole, unclear "
-                 "| calibration error | s for 100 000 faces |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+void add_row(Table& table, const std::string& name, const Score& s) {
+    table.row("{} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} | {}, {} | {:.3f} | {:.2f}", name, s.fragments,
+              100 * (s.area[1][0] + s.area[1][1]) / s.all(), 100 * s.agreement(), 100 * s.alike / s.all(), 100 * s.recall(),
+              100 * s.precision(), s.passed, s.whole, s.unclear, s.calibration_error(), s.seconds / s.faces * 1e5);
 }
 
 void write_model(const Path& file, const FacetModel& model, const std::string& recipe) {
@@ -121,7 +136,7 @@ void pictures(const SeenFragment& one, const std::vector<double>& log_odds, cons
     write("found", [&](Face f) { return found.of_face[f] == Facet::fracture ? 1.0 : 0.0; });
 }
 
-std::vector<std::string> own_sources(const FacetExperiment& options) {
+std::vector<std::string> own_sources(const FacetOptions& options) {
     std::vector<std::string> sources;
     const auto add = [&](const std::string& one) { sources.push_back(one); };
     const std::array<const char*, 10> names{"box",     "vase",   "cylinder", "hand",  "statuette",
@@ -178,7 +193,8 @@ std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std:
 }
 
 void by_object(const std::vector<SeenFragment>& all, const std::vector<Score>& scores, bool grouped) {
-    print_head();
+    fmt::print("\n");
+    Table table(columns);
     std::map<std::string, double> known;  // objects of a group have equal weight, whatever their size and unit
     for (std::size_t k = 0; k < all.size(); ++k) known[all[k].given.object] += scores[k].all();
     std::map<std::string, Score> groups;
@@ -195,53 +211,59 @@ void by_object(const std::vector<SeenFragment>& all, const std::vector<Score>& s
         groups[group].add(share);
         total.add(share);
     }
-    for (const auto& [name, one] : groups) print(name, one);
-    print("all", total);
-    std::cout << "\n| probability | share of the area % | broken % |\n|---|---|---|\n";
+    for (const auto& [name, one] : groups) add_row(table, name, one);
+    add_row(table, "all", total);
+    fmt::print("\n");
+    Table calibration("probability | share of the area % | broken %");
     for (const auto& [area, expected, broken] : total.bins)
-        std::cout << format("| %.2f | %.1f | %.1f |\n", expected / std::max(1e-300, area), 100 * area / total.all(),
-                            100 * broken / std::max(1e-300, area));
+        calibration.row("{:.2f} | {:.1f} | {:.1f}", expected / std::max(1e-300, area), 100 * area / total.all(),
+                        100 * broken / std::max(1e-300, area));
 }
 
-}  // namespace
+FacetModel train(const FacetOptions& options) {
+    constexpr std::size_t folds = 5;
+    const Stopwatch watch;
+    std::vector<std::string> sources = own_sources(options);
+    sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
+    const std::vector<SeenFragment> all = all_seen(sources, folds, true);
+    fmt::print("{} fragments in {:.0f} s\n", all.size(), watch.seconds().wall);
+    // Calibrated and evaluated by trees trained without the object.
+    const LearntFacets learnt = learn_facets(all, folds, options.boosting);
+    std::vector<Score> scores;
+    for (std::size_t k = 0; k < all.size(); ++k) scores.push_back(score(all[k], learnt.log_odds[k]));
+    fmt::print("left out, calibrated by {:.3f} + {:.3f} x; {:.0f} s\n", learnt.model.shift, learnt.model.slope,
+               watch.seconds().wall);
+    by_object(all, scores, true);
+    std::string recipe = fmt::format("ostraka_experiments facets --objects {} --seed {} --trees {} --depth {}", options.objects,
+                                     options.seed, options.boosting.trees, options.boosting.depth);
+    if (!options.meshes.empty()) recipe += fmt::format(" --meshes {}", fmt::join(options.meshes, ","));
+    if (!options.scanned.empty()) recipe += fmt::format(" --scanned {}", fmt::join(options.scanned, ","));
+    write_model(options.model, learnt.model, recipe + " --model FILE");
+    return learnt.model;
+}
 
-void facets(const FacetExperiment& options) {
-    FacetModel model;
-    if (options.model.empty()) {
-        model = facet_model();
-    } else {
-        constexpr std::size_t folds = 5;
-        const Stopwatch watch;
-        std::vector<std::string> sources = own_sources(options);
-        sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
-        const std::vector<SeenFragment> all = all_seen(sources, folds, true);
-        std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
-        // Calibrated and evaluated by trees trained without the object.
-        const LearntFacets learnt = learn_facets(all, folds, options.boosting);
-        model = learnt.model;
-        std::vector<Score> scores;
-        for (std::size_t k = 0; k < all.size(); ++k) scores.push_back(score(all[k], learnt.log_odds[k]));
-        std::cout << format("left out, calibrated by %.3f + %.3f x; %.0f s\n", model.shift, model.slope, watch.seconds().wall);
-        by_object(all, scores, true);
-        std::string recipe =
-            format("ostraka_experiments facets --objects %d --seed %llu --trees %d --depth %d", options.objects,
-                   static_cast<unsigned long long>(options.seed), options.boosting.trees, options.boosting.depth);
-        for (std::size_t k = 0; k < options.meshes.size(); ++k) recipe += (k == 0 ? " --meshes " : ",") + options.meshes[k];
-        for (std::size_t k = 0; k < options.scanned.size(); ++k) recipe += (k == 0 ? " --scanned " : ",") + options.scanned[k];
-        write_model(options.model, model, recipe + " --model FILE");
-    }
+/// Classifies fracture and intact surface, evaluated on held-out objects and on others.
+void facets(const FacetOptions& options) {
+    const FacetModel model = options.model.empty() ? facet_model() : train(options);
     if (options.judged.empty()) return;
     std::vector<SeenFragment> all;
     std::vector<Score> scores;
+    std::optional<Table> table;
+    if (options.each) table.emplace(columns);
     for (const std::string& source : options.judged)
         for (SeenFragment& one : all_seen({source}, 1, false)) {
             const std::vector<double> log_odds = model.log_odds(one.evidence);
             scores.push_back(score(one, log_odds));
             if (!options.pictures.empty()) pictures(one, log_odds, options.pictures);
-            if (options.each) print(one.given.object + " " + one.given.name, scores.back());
+            if (table) add_row(*table, one.given.object + " " + one.given.name, scores.back());
             all.push_back(std::move(one));
         }
     by_object(all, scores, false);
 }
+
+const Registration registered("facets",
+                              "breaks told from intact surface: the model made, judged on objects left out and on scans", facets);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,11 +1,11 @@
 // Detection rate of planted proportions, and false detections, in many synthetic populations.
+#include "harness.h"
+
 #include "ostraka/collection/proportions.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 #include "ostraka/stats/random.h"
-
-#include "experiments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,43 +15,80 @@ namespace ostraka::experiments {
 
 namespace {
 
-struct Scenario {
-    std::string name;
-    SyntheticMeasuresOptions made;
-};
-
-/// Result of one population.
-struct Found {
-    std::size_t planted = 0, hit = 0, wrong = 0;
-};
-
-Found find(const SyntheticMeasuresOptions& options, const ProportionOptions& study) {
-    const SyntheticMeasures made = make_measures(options);
-    Found found;
-    for (const RatioRow& ratio : study_proportions(made.table, study).ratios) {
-        const int a = made.groups[ratio.numerator], b = made.groups[ratio.denominator];
-        const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
-        found.planted += planted ? 1 : 0;
-        found.hit += planted && called ? 1 : 0;
-        found.wrong += !planted && called ? 1 : 0;
+struct FixedProportionsOptions {
+    std::string output = "experiments-output/proportions";
+    int seeds = 100;
+    void describe(OptionList& visit) {
+        visit("output", output, "folder for table and plot").positional();
+        visit("seeds", seeds, "number of populations of each kind", Range{1, 100000});
     }
-    return found;
-}
+};
 
-std::vector<Found> over_seeds(const SyntheticMeasuresOptions& made, int seeds) {
-    std::vector<Found> list(static_cast<std::size_t>(seeds));
-    ProportionOptions study;
+struct Scenario {
+    const char* name;
+    void (*change)(SyntheticMeasuresOptions& made);
+    bool planted = true;
+};
+
+const std::vector<Scenario> scenarios{
+    {"two ratios, common size 15 %", [](auto&) {}},
+    {"two ratios, no common size", [](auto& m) { m.size_deviation = 0; }},
+    {"two ratios, common size 40 %", [](auto& m) { m.size_deviation = 0.4; }},
+    {"one ratio", [](auto& m) { m.groups = 1; }},
+    {"three measures together", [](auto& m) { m.groups = 1, m.group_size = 3; }},
+    {"two groups of three", [](auto& m) { m.groups = 2, m.group_size = 3; }},
+    {"15 % each measure, 21 % ratios", [](auto& m) { m.ratio_deviation = 0.15 * std::sqrt(2.0); }},
+    {"four measures, one ratio", [](auto& m) { m.measures = 4, m.groups = 1; }},
+    {"four measures, two ratios", [](auto& m) { m.measures = 4; }},
+    {"four measures, three together", [](auto& m) { m.measures = 4, m.groups = 1, m.group_size = 3; }},
+    {"five measures, one ratio", [](auto& m) { m.measures = 5, m.groups = 1; }},
+    {"twenty measures, five ratios", [](auto& m) { m.measures = 20, m.groups = 5; }},
+    {"measures follow the size unequally", [](auto& m) { m.spread = 0.5; }},
+    {"a tenth of the values missing", [](auto& m) { m.missing = 0.1; }},
+    {"a third of the values missing", [](auto& m) { m.missing = 0.33; }},
+    {"twenty objects", [](auto& m) { m.objects = 20; }},
+    {"ten objects", [](auto& m) { m.objects = 10; }},
+    {"planted 6 %", [](auto& m) { m.planted_deviation = 0.06; }},
+    {"planted 9 %", [](auto& m) { m.planted_deviation = 0.09; }},
+    {"none planted, common size 15 %", [](auto& m) { m.groups = 0; }, false},
+    {"none planted, no common size", [](auto& m) { m.groups = 0, m.size_deviation = 0; }, false},
+    {"none planted, four measures", [](auto& m) { m.groups = 0, m.measures = 4; }, false},
+    {"none planted, twenty measures", [](auto& m) { m.groups = 0, m.measures = 20; }, false},
+    {"none planted, unequal measures", [](auto& m) { m.groups = 0, m.spread = 0.5; }, false},
+    {"none planted, four unequal measures", [](auto& m) { m.groups = 0, m.measures = 4, m.spread = 0.5; }, false},
+    {"none planted, a third missing", [](auto& m) { m.groups = 0, m.missing = 0.33; }, false},
+    {"none planted, ten objects", [](auto& m) { m.groups = 0, m.objects = 10; }, false}};
+
+/// Sums over populations.
+struct Detections {
+    double planted = 0, hit = 0, wrong = 0, wrong_share = 0, any_wrong = 0;
+};
+
+Detections over_seeds(SyntheticMeasuresOptions made, int seeds) {
+    std::vector<Detections> list(static_cast<std::size_t>(seeds));
     parallel_for(
         list.size(),
         [&](std::size_t s) {
             SyntheticMeasuresOptions options = made;
-            options.seed = s + 1;
-            ProportionOptions seeded = study;
-            seeded.seed = s + 1;
-            list[s] = find(options, seeded);
+            ProportionOptions study;
+            options.seed = study.seed = s + 1;
+            const SyntheticMeasures measures = make_measures(options);
+            for (const RatioRow& ratio : study_proportions(measures.table, study).ratios) {
+                const int a = measures.groups[ratio.numerator], b = measures.groups[ratio.denominator];
+                const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
+                list[s].planted += planted;
+                list[s].hit += planted && called;
+                list[s].wrong += !planted && called;
+            }
         },
         1);
-    return list;
+    Detections sum;
+    for (const Detections& one : list) {
+        sum.planted += one.planted, sum.hit += one.hit, sum.wrong += one.wrong;
+        sum.wrong_share += one.wrong == 0 ? 0 : one.wrong / (one.hit + one.wrong);
+        sum.any_wrong += one.wrong > 0;
+    }
+    return sum;
 }
 
 /// Share of intervals that contain the true coefficient of variation, which follows from the planted deviation of the
@@ -81,61 +118,17 @@ double coverage(int seeds, double deviation) {
     return static_cast<double>(std::count(inside.begin(), inside.end(), 1)) / seeds;
 }
 
-}  // namespace
-
 void fixed_proportions(const FixedProportionsOptions& options) {
-    std::vector<Scenario> scenarios;
-    SyntheticMeasuresOptions base;
-    const auto add = [&](const std::string& name, const auto& change) {
-        Scenario scenario{name, base};
-        change(scenario.made);
-        scenarios.push_back(scenario);
-    };
-    add("two ratios, common size 15 %", [](auto&) {});
-    add("two ratios, no common size", [](auto& m) { m.size_deviation = 0; });
-    add("two ratios, common size 40 %", [](auto& m) { m.size_deviation = 0.4; });
-    add("one ratio", [](auto& m) { m.groups = 1; });
-    add("three measures together", [](auto& m) { m.groups = 1, m.group_size = 3; });
-    add("two groups of three", [](auto& m) { m.groups = 2, m.group_size = 3; });
-    add("15 % each measure, 21 % ratios", [](auto& m) { m.ratio_deviation = 0.15 * std::sqrt(2.0); });
-    add("four measures, one ratio", [](auto& m) { m.measures = 4, m.groups = 1; });
-    add("four measures, two ratios", [](auto& m) { m.measures = 4; });
-    add("four measures, three together", [](auto& m) { m.measures = 4, m.groups = 1, m.group_size = 3; });
-    add("five measures, one ratio", [](auto& m) { m.measures = 5, m.groups = 1; });
-    add("twenty measures, five ratios", [](auto& m) { m.measures = 20, m.groups = 5; });
-    add("measures follow the size unequally", [](auto& m) { m.spread = 0.5; });
-    add("a tenth of the values missing", [](auto& m) { m.missing = 0.1; });
-    add("a third of the values missing", [](auto& m) { m.missing = 0.33; });
-    add("twenty objects", [](auto& m) { m.objects = 20; });
-    add("ten objects", [](auto& m) { m.objects = 10; });
-    add("planted 6 %", [](auto& m) { m.planted_deviation = 0.06; });
-    add("planted 9 %", [](auto& m) { m.planted_deviation = 0.09; });
-    const std::size_t with = scenarios.size();
-    add("none planted, common size 15 %", [](auto& m) { m.groups = 0; });
-    add("none planted, no common size", [](auto& m) { m.groups = 0, m.size_deviation = 0; });
-    add("none planted, four measures", [](auto& m) { m.groups = 0, m.measures = 4; });
-    add("none planted, twenty measures", [](auto& m) { m.groups = 0, m.measures = 20; });
-    add("none planted, unequal measures", [](auto& m) { m.groups = 0, m.spread = 0.5; });
-    add("none planted, four unequal measures", [](auto& m) { m.groups = 0, m.measures = 4, m.spread = 0.5; });
-    add("none planted, a third missing", [](auto& m) { m.groups = 0, m.missing = 0.33; });
-    add("none planted, ten objects", [](auto& m) { m.groups = 0, m.objects = 10; });
-
     TextTable table(
         {"population", "ratios", "planted", "recall", "false discoveries", "false a population", "populations with one"});
-    for (std::size_t s = 0; s < scenarios.size(); ++s) {
-        const SyntheticMeasuresOptions& made = scenarios[s].made;
-        const std::vector<Found> list = over_seeds(made, options.seeds);
-        double planted = 0, hit = 0, wrong = 0, share = 0, any = 0;
-        for (const Found& found : list) {
-            planted += static_cast<double>(found.planted);
-            hit += static_cast<double>(found.hit);
-            wrong += static_cast<double>(found.wrong);
-            share += found.wrong == 0 ? 0 : static_cast<double>(found.wrong) / static_cast<double>(found.hit + found.wrong);
-            any += found.wrong > 0 ? 1 : 0;
-        }
-        const double n = options.seeds;
-        table.add({scenarios[s].name, std::to_string(made.measures * (made.measures - 1) / 2), fixed(planted / n, 0),
-                   s < with ? fixed(hit / planted, 3) : "-", percent(share / n), fixed(wrong / n, 2), percent(any / n, 0)});
+    const double n = options.seeds;
+    for (const Scenario& scenario : scenarios) {
+        SyntheticMeasuresOptions made;
+        scenario.change(made);
+        const Detections sum = over_seeds(made, options.seeds);
+        table.add({scenario.name, std::to_string(made.measures * (made.measures - 1) / 2), fixed(sum.planted / n, 0),
+                   scenario.planted ? fixed(sum.hit / sum.planted, 3) : "-", percent(sum.wrong_share / n),
+                   fixed(sum.wrong / n, 2), percent(sum.any_wrong / n, 0)});
     }
 
     // The variation that can be detected, for three numbers of objects.
@@ -149,16 +142,11 @@ void fixed_proportions(const FixedProportionsOptions& options) {
             SyntheticMeasuresOptions made;
             made.objects = objects;
             made.planted_deviation = deviation;
-            double planted = 0, hit = 0;
-            for (const Found& found : over_seeds(made, options.seeds)) {
-                planted += static_cast<double>(found.planted);
-                hit += static_cast<double>(found.hit);
-            }
-            series.points.push_back({100 * deviation, hit / planted});
+            const Detections sum = over_seeds(made, options.seeds);
+            series.points.push_back({100 * deviation, sum.hit / sum.planted});
         }
         power.series.push_back(series);
     }
-    std::filesystem::create_directories(options.output);
     table.write(options.output, "recovery",
                 "Planted proportions found, over " + std::to_string(options.seeds) + " populations each");
     write_plot(Path(options.output) / "power.svg", power);
@@ -167,5 +155,9 @@ void fixed_proportions(const FixedProportionsOptions& options) {
               << percent(coverage(5 * options.seeds, 0.03)) << " (3 %) and " << percent(coverage(5 * options.seeds, 0.15))
               << " (15 %) of " << 5 * options.seeds << " populations\n";
 }
+
+const Registration registered("proportions", "planted proportions found in made populations, and false ones", fixed_proportions);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

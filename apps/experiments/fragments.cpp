@@ -1,23 +1,20 @@
 // Fits fragments broken off deformed copies of a template: errors of pose, observed part and missing part.
-#include "ostraka/synthetic/fragments.h"
+#include "harness.h"
+#include "scenes.h"
+
 #include "ostraka/collection/statuette_annotations.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/reconstruction/template_cage.h"
 #include "ostraka/report/table.h"
 #include "ostraka/shape_classes/shape_class.h"
-#include "ostraka/stats/random.h"
 #include "ostraka/stats/scores.h"
-
-#include "experiments.h"
-#include "report.h"
+#include "ostraka/synthetic/fragments.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <optional>
 
 namespace ostraka::experiments {
@@ -26,18 +23,38 @@ namespace {
 
 using Eigen::Vector3d;
 
+struct FragmentOptions {
+    std::string output = "experiments-output/fragments", space = "mesh";
+    std::vector<double> shares{0.1, 0.25, 0.5};
+    int seeds = 4;
+    std::uint64_t vertices = 12000;
+    void describe(OptionList& visit) {
+        visit("output", output, "folder for the table").positional();
+        visit("seeds", seeds, "number of fragments of each kind", Range{1, 1000});
+        visit("shares", shares, "sizes of fragments, as shares of the surface");
+        visit("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
+        visit("space", space, "space of the fit; with another than mesh no class is learnt", Choices{"mesh", "cage", "both"});
+    }
+};
+
+struct VerdictOptions {
+    std::string output = "experiments-output/fragments";
+    std::uint64_t vertices = 12000, seed = 1;
+    int pairs = 200;
+    void describe(OptionList& visit) {
+        visit("output", output, "folder for the table").positional();
+        visit("pairs", pairs, "number of pairs, half of them of one object", Range{4, 100000});
+        visit("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
+        visit("seed", seed, "random seed of members and fractures");
+    }
+};
+
 /// A statuette with landmarks all over, and the canon: constant ratios of the heights of parts.
 struct Canon {
     Statuette statuette;
     AnnotationSet set;
     RelationGraph graph;
 };
-
-int find_tag(const AnnotationSet& set, const std::string& tag) {
-    for (const Annotation& one : set.annotations)
-        if (one.tag == tag) return one.id;
-    return -1;
-}
 
 double add_height(const Mesh& mesh, Annotation& part) {
     Attribute height;
@@ -61,27 +78,23 @@ Canon make_canon(std::uint64_t vertices) {
     canon.set = annotate_statuette(canon.statuette);
     const Mesh& mesh = canon.statuette.mesh;
     constexpr Index landmarks = 60;
-    for (Index i = 0; i < landmarks; ++i) {
-        Annotation point;
-        point.id = free_id(canon.set);
-        point.tag = "place " + std::to_string(i);
-        point.type = AnnotationType::point;
-        point.points = {static_cast<Index>(static_cast<std::uint64_t>(i) * 7919U % mesh.number_of_vertices())};
-        canon.set.annotations.push_back(std::move(point));
-    }
+    for (Index i = 0; i < landmarks; ++i)
+        canon.set.annotations.push_back(
+            landmark(free_id(canon.set), "place " + std::to_string(i),
+                     static_cast<Index>(static_cast<std::uint64_t>(i) * 7919U % mesh.number_of_vertices())));
     std::map<std::string, double> heights;
     const std::vector<std::string> parts{"head", "body", "hat"};
-    for (const std::string& part : parts) heights[part] = add_height(mesh, *canon.set.find(find_tag(canon.set, part)));
+    for (const std::string& part : parts) heights[part] = add_height(mesh, *canon.set.find(tagged(canon.set, part).id));
     for (const auto& [part, reference] : {std::pair("body", "head"), std::pair("hat", "head")}) {
         Relationship one;
         one.id = free_id(canon.graph);
         one.type = "proportion";
-        one.annotations = {find_tag(canon.set, part), find_tag(canon.set, reference)};
+        one.annotations = {tagged(canon.set, part).id, tagged(canon.set, reference).id};
         one.is_constraint = true;
         const double ratio = heights[part] / heights[reference];
         one.weight = 100;
-        one.constraint = format(R"({"measure1": "height", "measure2": "height", "minValue": %.9g, "maxValue": %.9g})",
-                                0.99 * ratio, 1.01 * ratio);
+        one.constraint = fmt::format(R"({{"measure1": "height", "measure2": "height", "minValue": {:.9g}, "maxValue": {:.9g}}})",
+                                     0.99 * ratio, 1.01 * ratio);
         canon.graph.relationships.push_back(std::move(one));
     }
     return canon;
@@ -130,23 +143,17 @@ struct Broken {
 
 Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at,
                      const BreakOptions& options) {
-    const Annotation* middle = canon.set.find(find_tag(canon.set, at));
+    const std::vector<Index>& faces = tagged(canon.set, at).faces;
     Vector3d centre = Vector3d::Zero();
-    for (const Index f : middle->faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(middle->faces.size());
+    for (const Index f : faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(faces.size());
     Broken broken{break_off(whole, point_of(centre), options), {}};
     broken.fragment.name = name;
     broken.fragment.mesh = broken.piece.mesh;
     std::map<Index, Index> of_piece;
     for (Index i = 0; i < broken.piece.vertices.size(); ++i) of_piece.emplace(broken.piece.vertices[i], i);
-    for (const Annotation& one : canon.set.annotations) {
-        if (one.type != AnnotationType::point || !of_piece.contains(one.points.front())) continue;
-        Annotation point;
-        point.id = one.id;
-        point.tag = one.tag;
-        point.type = one.type;
-        point.points = {of_piece.at(one.points.front())};
-        broken.fragment.annotations.annotations.push_back(std::move(point));
-    }
+    for (const Annotation& one : canon.set.annotations)
+        if (one.type == AnnotationType::point && of_piece.contains(one.points.front()))
+            broken.fragment.annotations.annotations.push_back(landmark(one.id, one.tag, of_piece.at(one.points.front())));
     return broken;
 }
 
@@ -154,15 +161,13 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
         std::uint64_t seed) {
     const Mesh& mesh = canon.statuette.mesh;
     const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
-    Mesh whole = mesh;
-    for (const Vertex v : whole.vertices()) {
-        Vector3d p = eigen(mesh.point(v));
+    const Mesh whole = warped(mesh, [&](Vector3d p) {
         const double t = p.z() / high;
         if (what.deformation == "stretch") p.z() *= 1 + 0.15 * strength;
         if (what.deformation == "squash") p.z() *= 1 - 0.12 * strength;
         if (what.deformation == "bend") p.x() += 0.12 * strength * high * t * t;
-        whole.point(v) = point_of(p);
-    }
+        return p;
+    });
     const double diagonal = box_diagonal(whole);
     BreakOptions options;
     options.share = what.share;
@@ -189,7 +194,7 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     }
     // Best rigid fit of the whole.
     const Motion best = fit_motion(truth, aligned);
-    row.angle = Eigen::AngleAxisd(best.rotation).angle() * 180 / std::numbers::pi;
+    row.angle = degrees_of(best);
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& p : truth) mean += p / static_cast<double>(truth.size());
     row.shift = (best(mean) - mean).norm() / diagonal;
@@ -224,24 +229,19 @@ enum class Planted { nothing, size, proportion };
 Mesh make_member(const Canon& canon, Random& random, double size, bool other_canon) {
     const Mesh& mesh = canon.statuette.mesh;
     double brim = 0;
-    for (const Index f : canon.set.find(find_tag(canon.set, "head"))->faces)
+    for (const Index f : tagged(canon.set, "head").faces)
         for (const Vertex v : corners(mesh, Face(f))) brim = std::max(brim, mesh.point(v).z());
     const double high = bounding_box(mesh).zmax(), wide = 1 + 0.04 * random.normal(), tall = 1 + 0.03 * random.normal(),
                  bend = 0.02 * random.normal();
-    Mesh member = mesh;
-    for (const Vertex v : member.vertices()) {
-        Vector3d p = eigen(mesh.point(v));
+    return warped(mesh, [&](Vector3d p) {
         if (other_canon) p.z() += 0.5 * std::max(p.z() - brim, 0.0);
         const double t = p.z() / high;
-        p = Vector3d(wide * p.x() + bend * high * t * t, wide * p.y(), tall * p.z());
-        member.point(v) = point_of(size * p);
-    }
-    return member;
+        return Vector3d(size * Vector3d(wide * p.x() + bend * high * t * t, wide * p.y(), tall * p.z()));
+    });
 }
 
-}  // namespace
-
-void verdicts(const FragmentExperiment& options) {
+/// Pairs of fragments of one object, of two sizes, or of another canon: verdicts on their compatibility, and the objections.
+void verdicts(const VerdictOptions& options) {
     const Canon canon = make_canon(options.vertices);
     const int head_canon = canon.graph.relationships[1].id;  // hat against head
     Random random(options.seed);
@@ -300,11 +300,12 @@ void verdicts(const FragmentExperiment& options) {
     summary.add({std::to_string(options.pairs), std::to_string(right), fixed_cell(precision, 3), fixed_cell(recall, 3),
                  fixed_cell(precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0, 3),
                  fixed_cell(roc_curve(evidence, truth).area, 3), std::to_string(rejected),
-                 format("%d of %d", planted_named, correctly_rejected)});
+                 fmt::format("{} of {}", planted_named, correctly_rejected)});
     std::cout << summary.markdown();
 }
 
-void fragments(const FragmentExperiment& options) {
+/// Fits fragments of deformed copies of a synthetic template: errors of pose, observed and missing part, constraints.
+void fragments(const FragmentOptions& options) {
     const Canon canon = make_canon(options.vertices);
     ReconstructOptions how;
     set_option(how.fit, "space", options.space);
@@ -336,7 +337,7 @@ void fragments(const FragmentExperiment& options) {
                     }
                     const double n = std::max(1, placed);
                     table.add({deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(what.erosion),
-                               format("%d of %d", placed, options.seeds), fixed_cell(sum.angle / n, 2),
+                               fmt::format("{} of {}", placed, options.seeds), fixed_cell(sum.angle / n, 2),
                                percent_cell(sum.shift / n, 2), percent_cell(sum.observed / n, 3),
                                percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
                                fixed_cell(sum.missing / sum.rigid, 2), prior ? percent_cell(with_class.missing / n, 2) : "-",
@@ -347,5 +348,10 @@ void fragments(const FragmentExperiment& options) {
     std::cout << table.markdown();
     write_file(Path(options.output) / "fragments.csv", table.csv());
 }
+
+const Registration registered_fragments("fragments", "fragments of deformed copies of a template, fitted", fragments);
+const Registration registered_verdicts("verdicts", "pairs of fragments that belong together, or do not", verdicts);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

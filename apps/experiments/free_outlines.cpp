@@ -1,32 +1,40 @@
-#include "experiments.h"
-
-#include "report.h"
+// Transfers free outlines to other resolutions and meshes and back, and compares them with pointwise projections of the curves.
+#include "harness.h"
+#include "scenes.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/file.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/remesh/refine.h"
-#include "ostraka/remesh/remesh.h"
-#include "ostraka/remesh/simplify.h"
 #include "ostraka/select/recipe.h"
-#include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <iostream>
+#include <deque>
 #include <map>
-#include <sstream>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct FreeOutlineOptions {
+    std::vector<std::string> objects{"made:teapot", "made:statuette", "made:hand"};
+    std::vector<int> sizes{5000, 50000, 100000, 1000000};
+    std::vector<double> shares{0.005, 0.025, 0.1};
+    int discs = 3;
+    std::string csv;
+    void describe(OptionList& visit) {
+        visit("objects", objects, "made:NAME or mesh files");
+        visit("sizes", sizes, "numbers of vertices, in ascending order", Range{100, 1e8});
+        visit("shares", shares, "sizes of the regions, as shares of the surface");
+        visit("discs", discs, "number of regions of each size", Range{1, 1000});
+        visit("csv", csv, "file for the raw rows");
+    }
+};
 
 /// Other curves end at the border of an open mesh and are not projected.
 bool is_closed(const std::vector<Point>& curve) { return curve.front() == curve.back(); }
@@ -37,6 +45,16 @@ double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
         for (std::size_t i = 0; i + 1 < curve.points.size(); ++i)
             sum += distance(position(mesh, curve.points[i]), position(mesh, curve.points[i + 1]));
     return sum;
+}
+
+/// Calls take(index of the segment, point) for points along a curve at distances of at most `step`.
+template <class Take>
+void sample(const std::vector<Point>& points, double step, const Take& take) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Point &a = points[i], &b = points[i + 1];
+        const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
+        for (int k = 0; k < parts; ++k) take(i, a + (static_cast<double>(k) / parts) * (b - a));
+    }
 }
 
 /// A region with queries at positions on its mesh.
@@ -64,12 +82,7 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
         const std::vector<Point> points = positions(from.mesh(), curve.points);
         std::vector<Point> places;
         std::vector<Index> faces;
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            const Point &a = points[i], &b = points[i + 1];
-            const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
-            for (int k = 0; k < parts; ++k)
-                places.push_back(a + (static_cast<double>(k) / parts) * (b - a)), faces.push_back(curve.faces[i]);
-        }
+        sample(points, step, [&](std::size_t i, const Point& p) { places.push_back(p), faces.push_back(curve.faces[i]); });
         std::vector<Point> on(places.size());
         parallel_for(places.size(), [&](std::size_t i) {
             const auto hit = to.closest_compatible(places[i], from.normal(faces[i]), 0, reach);
@@ -104,18 +117,14 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
             if (!(area > 0)) return;
             const int n = near[f] ? 16 : 1;
             const auto corner = corners(mesh, face);
-            for (int u = 0; u < n; ++u)
-                for (int v = 0; u + v < n; ++v)
-                    for (int half = 0; half < (u + v + 1 < n ? 2 : 1); ++half) {
-                        const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / n, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / n;
-                        const Point place =
-                            point_at(mesh.point(corner[0]), mesh.point(corner[1]), mesh.point(corner[2]), {1 - s - t, s, t});
-                        const bool was = came_from_inside(face, place), is = after.holds(face, place);
-                        const double part = area / (n * n);
-                        sums[f][0] += was ? part : 0;
-                        sums[f][1] += was && is ? part : 0;
-                        sums[f][2] += was || is ? part : 0;
-                    }
+            for_each_part(n, [&](const std::array<double, 3>& at) {
+                const Point place = point_at(mesh.point(corner[0]), mesh.point(corner[1]), mesh.point(corner[2]), at);
+                const bool was = came_from_inside(face, place), is = after.holds(face, place);
+                const double part = area / (n * n);
+                sums[f][0] += was ? part : 0;
+                sums[f][1] += was && is ? part : 0;
+                sums[f][2] += was || is ? part : 0;
+            });
         },
         256);
     double both = 0, either = 0;
@@ -149,18 +158,13 @@ LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, co
     for (const SurfaceCurve& curve : curves_on(mesh, forward ? drawn : written)) {
         const std::vector<Point> points = positions(mesh, curve.points);
         std::vector<std::pair<Point, Vector>> places;
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            const Point &a = points[i], &b = points[i + 1];
+        sample(points, step, [&](std::size_t i, const Point& p) {
             const auto [u, v, w] = corners(mesh, Face(curve.faces[i]));
-            const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
-            for (int k = 0; k < parts; ++k) {
-                const Point p = a + (static_cast<double>(k) / parts) * (b - a);
-                const auto weight = nearest_barycentric(mesh.point(u), mesh.point(v), mesh.point(w), p);
-                const Vector n =
-                    weight[0] * vertex_normal(mesh, u) + weight[1] * vertex_normal(mesh, v) + weight[2] * vertex_normal(mesh, w);
-                places.emplace_back(p, n / std::sqrt(n.squared_length()));
-            }
-        }
+            const auto weight = nearest_barycentric(mesh.point(u), mesh.point(v), mesh.point(w), p);
+            const Vector n =
+                weight[0] * vertex_normal(mesh, u) + weight[1] * vertex_normal(mesh, v) + weight[2] * vertex_normal(mesh, w);
+            places.emplace_back(p, n / std::sqrt(n.squared_length()));
+        });
         std::vector<std::optional<Point>> on(places.size());
         std::vector<double> off(places.size(), 0);
         parallel_for(places.size(), [&](std::size_t i) {
@@ -192,26 +196,19 @@ LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, co
     return result;
 }
 
-std::string name_of(std::size_t n) {
-    return n % 1000000 == 0 ? std::to_string(n / 1000000) + "M"
-           : n % 1000 == 0  ? std::to_string(n / 1000) + "K"
-                            : std::to_string(n);
-}
-
 /// A spherical region around a point with the given share of the surface.
 std::optional<Annotation> ball(const Mesh& mesh, const Point& centre, double share, int id) {
     double low = 0, high = box_diagonal(mesh);
     std::optional<Annotation> best;
     for (int round = 0; round < 12; ++round) {
         const double radius = (low + high) / 2;
-        std::ostringstream text;
-        text.precision(17);
-        const std::string at = "[" + digits(centre.x(), 17) + "," + digits(centre.y(), 17) + "," + digits(centre.z(), 17) + "]";
-        text << R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": )" << id
-             << R"(, "tag": "disc", "type": "region", "outline": "free", "select": {"component": {"seed": )" << at
-             << R"(, "of": {"sphere": {"centre": )" << at << R"(, "radius": )" << radius << "}}}}}]}";
+        const std::string recipe = fmt::format(
+            R"({{"format": "ostraka-recipe", "version": 1, "annotations": [{{"id": {3}, "tag": "disc", "type": "region",
+             "outline": "free", "select": {{"component": {{"seed": [{0:.17g}, {1:.17g}, {2:.17g}],
+             "of": {{"sphere": {{"centre": [{0:.17g}, {1:.17g}, {2:.17g}], "radius": {4:.17g}}}}}}}}}}}]}})",
+            centre.x(), centre.y(), centre.z(), id, radius);
         try {
-            AnnotationSet made = apply_recipe(parse_json(text.str(), "ball"), mesh, {}, "ball");
+            AnnotationSet made = apply_recipe(parse_json(recipe, "ball"), mesh, {}, "ball");
             const double area = area_of(mesh, made.annotations.front());
             (area > share * surface_area(mesh) ? high : low) = radius;
             best = std::move(made.annotations.front());
@@ -224,49 +221,117 @@ std::optional<Annotation> ball(const Mesh& mesh, const Point& centre, double sha
     return best;
 }
 
-}  // namespace
+/// The worst values over the regions of one size.
+struct Worst {
+    double perimeter = 0, by_rays = 0, away = 0, area = 0, overlap = 1;
+    std::size_t cells = 0;
+};
 
-void free_outlines(const FreeOutlineOptions& options) {
-    std::ostringstream csv;
-    csv << "object,kind,from,to,region,share,perimeter,laid perimeter,off perimeter %,off perimeter by rays %,mean off by rays "
-           "in edges,most,without ray,area,laid area,off area %,overlap,own "
-           "overlap,places,by ray,"
-           "detours,untangled,seconds\n";
-    struct Worst {
-        double perimeter = 0, by_rays = 0, away = 0, area = 0, overlap = 1;
-        std::size_t cells = 0;
-    };
-    std::map<std::string, Worst> worst;
-    const auto measure = [&](const std::string& object, const std::string& kind, const std::string& from_name,
-                             const SurfaceSearch& from, const std::string& to_name, const SurfaceSearch& to,
-                             const AnnotationSet& set) {
+/// A mesh of a ladder.
+struct Rung {
+    Rung(std::string rung, Mesh surface) : name(std::move(rung)), mesh(std::move(surface)), search(mesh) {}
+    std::string name;
+    Mesh mesh;
+    SurfaceSearch search;
+};
+
+class FreeOutlines {
+public:
+    explicit FreeOutlines(const FreeOutlineOptions& options) : options_(options) {}
+
+    void run() {
+        for (const std::string& source : options_.objects) {
+            const bool made = source.starts_with("made:");
+            const std::string name = made ? source.substr(5) : Path(source).stem().string();
+            const auto max = static_cast<std::uint64_t>(options_.sizes.back());
+            const Mesh full = made ? made_mesh(name, max) : simplified(refined(read_mesh(source).mesh, max), max);
+            std::deque<Rung> decimated, independent;  // coarse to fine
+            Mesh last = full;
+            for (auto size = options_.sizes.rbegin(); size != options_.sizes.rend(); ++size) {
+                const auto n = static_cast<std::uint64_t>(*size);
+                last = simplified(std::move(last), n);
+                last.collect_garbage();
+                const Mesh clean = build_mesh(to_soup(last));
+                decimated.emplace_front(size_name(n), clean);
+                independent.emplace_front(size_name(n), made       ? made_mesh(name, n, 1 + n)
+                                                        : n == max ? clean
+                                                                   : build_mesh(to_soup(remeshed(full, n))));
+            }
+            measure_ladder(name, "decimated", decimated);
+            measure_ladder(name, "independent", independent);
+        }
+        fmt::print("kind, from -> to, share: worst perimeter %, by rays %, mean distance by rays in edges, area %, overlap\n");
+        for (const auto& [cell, worst] : worst_)
+            fmt::print("{}: {:.3g} %, {:.3g} %, {:.3g}, {:.3g} %, {:.6g} ({})\n", cell, worst.perimeter, worst.by_rays,
+                       worst.away, worst.area, worst.overlap, worst.cells);
+        csv_.write(options_.csv);
+    }
+
+private:
+    /// Chains from the coarsest mesh to the finest and back, and from the finest to the coarsest and back.
+    void measure_ladder(const std::string& name, const std::string& kind, const std::deque<Rung>& rungs) {
+        std::vector<const Rung*> way;
+        for (const Rung& rung : rungs) way.push_back(&rung);
+        for (const bool from_fine : {false, true}) {
+            if (from_fine) std::reverse(way.begin(), way.end());
+            const Rung &first = *way.front(), &last = *way.back();
+            const AnnotationSet set = regions_on(first.mesh);
+            fmt::print("{} {} from {}: {} regions\n", name, kind, first.name, set.annotations.size());
+            AnnotationSet now = set;
+            for (std::size_t i = 0; i + 1 < way.size(); ++i) now = carry(name, kind, *way[i], *way[i + 1], now);
+            for (std::size_t i = way.size() - 1; i-- > 0;) now = carry(name, kind, *way[i + 1], *way[i], now);
+            // Directly from the first to the last, and back.
+            const AnnotationSet far = carry(name, kind, first, last, set);
+            carry(name, kind, last, first, far);
+            for (const Annotation& one : set.annotations)
+                if (const Annotation* there = now.find(one.id)) {
+                    const RegionMeasures a = measure_region(first.mesh, one), b = measure_region(first.mesh, *there);
+                    fmt::print("  {}, whole chain and back: perimeter {:.3g} %, area {:.3g} %, places {} -> {}\n", one.tag,
+                               100 * (b.perimeter / a.perimeter - 1), 100 * (b.area / a.area - 1), one.curves.front().size(),
+                               there->curves.front().size());
+                }
+        }
+    }
+
+    [[nodiscard]] AnnotationSet regions_on(const Mesh& mesh) const {
+        AnnotationSet set;
+        for (const double share : options_.shares)
+            for (int k = 0; k < options_.discs; ++k) {
+                const Vertex seed(static_cast<Index>((7919U * static_cast<std::size_t>(k + 1)) % mesh.number_of_vertices()));
+                if (auto region = ball(mesh, mesh.point(seed), share, static_cast<int>(set.annotations.size()))) {
+                    region->tag = fmt::format("disc {:.3g} {}", share, k);
+                    region->id = static_cast<int>(set.annotations.size());
+                    set.annotations.push_back(std::move(*region));
+                }
+            }
+        return set;
+    }
+
+    AnnotationSet carry(const std::string& object, const std::string& kind, const Rung& from, const Rung& to,
+                        const AnnotationSet& set) {
         TransferOptions how;
         how.force = true;
-        const auto start = std::chrono::steady_clock::now();
-        TransferResult moved = transfer(from.mesh(), set, to, how);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const Stopwatch watch;
+        TransferResult moved = transfer(from.mesh, set, to.search, how);
+        const double seconds = watch.seconds().wall;
         for (const Annotation& one : set.annotations) {
             const Annotation* there = moved.annotations.find(one.id);
             if (there == nullptr) {
-                std::cout << object << ' ' << kind << ' ' << from_name << " -> " << to_name << ": " << one.tag << " is lost\n";
+                fmt::print("{} {} {} -> {}: {} is lost\n", object, kind, from.name, to.name, one.tag);
                 continue;
             }
-            const Laid exact = laid(from, one, to, *there);
-            const RegionMeasures now = measure_region(to.mesh(), *there);
             const auto score =
                 std::find_if(moved.scores.begin(), moved.scores.end(), [&](const TransferScore& s) { return s.id == one.id; });
-            const double perimeter = length_of_curves(to.mesh(), *there);
-            const double off_perimeter = 100 * (perimeter / exact.perimeter - 1), off_area = 100 * (now.area / exact.area - 1);
-            const LaidByRays rays = laid_by_rays(from, one, to, *there);
-            const double off_by_rays = 100 * (rays.of_written / rays.perimeter - 1);
-            const double share = area_of(from.mesh(), one) / surface_area(from.mesh());
-            csv << object << ',' << kind << ',' << from_name << ',' << to_name << ',' << one.tag << ',' << digits(share, 3) << ','
-                << perimeter << ',' << exact.perimeter << ',' << digits(off_perimeter, 3) << ',' << digits(off_by_rays, 3) << ','
-                << digits(rays.mean, 3) << ',' << digits(rays.most, 3) << ',' << rays.without_ray << ',' << now.area << ','
-                << exact.area << ',' << digits(off_area, 3) << ',' << digits(exact.overlap, 6) << ','
-                << digits(score->overlap.value_or(0), 6) << ',' << score->vertices << ',' << score->by_ray << ','
-                << score->detours << ',' << score->crossings_resolved << ',' << digits(seconds, 3) << '\n';
-            Worst& cell = worst[kind + ' ' + from_name + " -> " + to_name + " share " + digits(share, 1)];
+            const Laid exact = laid(from.search, one, to.search, *there);
+            const LaidByRays rays = laid_by_rays(from.search, one, to.search, *there);
+            const double perimeter = length_of_curves(to.mesh, *there), area = measure_region(to.mesh, *there).area;
+            const double off_perimeter = 100 * (perimeter / exact.perimeter - 1), off_area = 100 * (area / exact.area - 1),
+                         off_by_rays = 100 * (rays.of_written / rays.perimeter - 1),
+                         share = area_of(from.mesh, one) / surface_area(from.mesh);
+            csv_(object, kind, from.name, to.name, one.tag, share, perimeter, exact.perimeter, off_perimeter, off_by_rays,
+                 rays.mean, rays.most, rays.without_ray, area, exact.area, off_area, exact.overlap, score->overlap.value_or(0),
+                 score->vertices, score->by_ray, score->detours, score->crossings_resolved, seconds);
+            Worst& cell = worst_[fmt::format("{} {} -> {} share {:.1g}", kind, from.name, to.name, share)];
             cell.perimeter = std::max(cell.perimeter, std::abs(off_perimeter));
             cell.by_rays = std::max(cell.by_rays, std::abs(off_by_rays));
             cell.away = std::max(cell.away, rays.mean);
@@ -275,98 +340,19 @@ void free_outlines(const FreeOutlineOptions& options) {
             ++cell.cells;
         }
         return std::move(moved.annotations);
-    };
-    for (const std::string& given : options.objects) {
-        std::map<std::size_t, Mesh> independent, decimated;
-        const bool made = given.starts_with("made:");
-        const std::string name = made ? given.substr(5) : Path(given).stem().string();
-        Mesh full;
-        if (made) {
-            MakeOptions making;
-            making.vertices = options.sizes.back();
-            full = make_mesh(synthetic_object(name), making).mesh;
-        } else {
-            full = read_mesh(given).mesh;
-            RefineOptions refining;
-            refining.scheme = RefineOptions::Scheme::loop;
-            refining.levels = 1;
-            while (full.number_of_vertices() < options.sizes.back()) refine(full, refining);
-            SimplifyOptions down;
-            down.vertices = options.sizes.back();
-            if (full.number_of_vertices() > down.vertices) simplify(full, down);
-        }
-        Mesh last = full;
-        for (auto size = options.sizes.rbegin(); size != options.sizes.rend(); ++size) {
-            SimplifyOptions down;
-            down.vertices = *size;
-            if (last.number_of_vertices() > *size) simplify(last, down);
-            last.collect_garbage();
-            decimated[*size] = build_mesh(to_soup(last));
-            if (*size == options.sizes.back() && !made) {
-                independent[*size] = decimated[*size];
-            } else if (made) {
-                MakeOptions making;
-                making.vertices = *size;
-                making.seed = 1 + *size;
-                independent[*size] = make_mesh(synthetic_object(name), making).mesh;
-            } else {
-                RemeshOptions remeshing;
-                remeshing.vertices = *size;
-                independent[*size] = build_mesh(to_soup(remesh(full, remeshing).mesh));
-            }
-        }
-        for (const auto& [kind, meshes] : {std::pair<std::string, const std::map<std::size_t, Mesh>*>{"decimated", &decimated},
-                                           {"independent", &independent}}) {
-            std::map<std::size_t, SurfaceSearch> searches;
-            for (const auto& [size, mesh] : *meshes) searches.emplace(size, mesh);
-            // Chains from the coarsest mesh to the finest and back, and from the finest to the coarsest and back.
-            for (const bool from_fine : {false, true}) {
-                std::vector<std::size_t> order = options.sizes;
-                if (from_fine) std::reverse(order.begin(), order.end());
-                const Mesh& start = meshes->at(order.front());
-                AnnotationSet set;
-                for (const double share : options.shares)
-                    for (int k = 0; k < options.discs; ++k) {
-                        const Vertex seed(static_cast<Index>((7919 * (k + 1)) % start.number_of_vertices()));
-                        if (auto region = ball(start, start.point(seed), share, static_cast<int>(set.annotations.size()))) {
-                            region->tag = "disc " + digits(share, 3) + " " + std::to_string(k);
-                            region->id = static_cast<int>(set.annotations.size());
-                            set.annotations.push_back(std::move(*region));
-                        }
-                    }
-                std::cout << name << ' ' << kind << " from " << name_of(order.front()) << ": " << set.annotations.size()
-                          << " regions\n"
-                          << std::flush;
-                std::vector<std::size_t> way = order;
-                for (std::size_t i = order.size() - 1; i-- > 0;) way.push_back(order[i]);
-                AnnotationSet now = set;
-                for (std::size_t i = 0; i + 1 < way.size(); ++i)
-                    now = measure(name, kind, name_of(way[i]), searches.at(way[i]), name_of(way[i + 1]), searches.at(way[i + 1]),
-                                  now);
-                // Directly from the first to the last, and back.
-                AnnotationSet far = measure(name, kind, name_of(order.front()), searches.at(order.front()), name_of(order.back()),
-                                            searches.at(order.back()), set);
-                measure(name, kind, name_of(order.back()), searches.at(order.back()), name_of(order.front()),
-                        searches.at(order.front()), far);
-                // Compares the returned annotations with the original ones.
-                for (const Annotation& one : set.annotations)
-                    for (const auto& [what, back] : {std::pair<std::string, const AnnotationSet*>{"whole chain and back", &now}})
-                        if (const Annotation* there = back->find(one.id)) {
-                            const RegionMeasures a = measure_region(start, one), b = measure_region(start, *there);
-                            std::cout << "  " << one.tag << ", " << what << ": perimeter "
-                                      << digits(100 * (b.perimeter / a.perimeter - 1), 3) << " %, area "
-                                      << digits(100 * (b.area / a.area - 1), 3) << " %, places " << one.curves.front().size()
-                                      << " -> " << there->curves.front().size() << '\n';
-                        }
-            }
-        }
     }
-    std::cout << "kind, from -> to, share: worst perimeter %, by rays %, mean distance by rays in edges, area %, overlap\n";
-    for (const auto& [cell, what] : worst)
-        std::cout << cell << ": " << digits(what.perimeter, 3) << " %, " << digits(what.by_rays, 3) << " %, "
-                  << digits(what.away, 3) << ", " << digits(what.area, 3) << " %, " << digits(what.overlap, 6) << " ("
-                  << what.cells << ")\n";
-    if (!options.csv.empty()) write_file(options.csv, csv.str());
-}
+
+    const FreeOutlineOptions& options_;
+    std::map<std::string, Worst> worst_;
+    Rows csv_{
+        "object,kind,from,to,region,share,perimeter,laid perimeter,off perimeter %,off perimeter by rays %,mean off by rays in "
+        "edges,most,without ray,area,laid area,off area %,overlap,own overlap,places,by ray,detours,untangled,seconds"};
+};
+
+const Registration registered(
+    "free-outlines", "free outlines carried to other meshes and back, against the same curves laid there place by place",
+    +[](const FreeOutlineOptions& options) { FreeOutlines(options).run(); });
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,9 +1,7 @@
 // Pairs of fragments of broken objects: accuracy of the pose found, and calibration of its confidence.
 #include "boxes.h"
-#include "breaks.h"
-#include "experiments.h"
-#include "report.h"
 
+#include "ostraka/core/csv.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
@@ -12,15 +10,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
-#include <sstream>
 
 namespace ostraka::experiments {
 
 namespace {
+
+using Features = std::array<double, JoinEvidence::count>;
+
+struct JoinOptions : BoxOptions {
+    JoinOptions() { output = "experiments-output/joins"; }
+    std::vector<std::string> rows;
+    std::string model, recipe, facets = "known";
+    bool adjacent_only = false;
+    void describe(OptionList& visit) {
+        BoxOptions::describe(visit);
+        visit("rows", rows, "joins.csv of earlier runs, as additional training data");
+        visit("model", model, "model file to train and write (data/joins.model.json)");
+        visit("recipe", recipe, "description of the training, stored in the model");
+        visit("facets", facets, "known facets, those that the library finds, or found ones in every second box",
+              Choices{"known", "found", "both"});
+        visit("adjacent-only", adjacent_only, "only pairs that touch");
+    }
+};
 
 /// Result of a pair.
 struct Row {
@@ -29,7 +42,7 @@ struct Row {
     double contact = 0;  ///< truth: share of the smaller fracture surface; 0 for unrelated fragments
     bool stranger = false;
     std::vector<bool> right;  ///< per candidate
-    std::vector<std::array<double, JoinEvidence::count>> features;
+    std::vector<Features> features;
     std::vector<double> log_odds;
     double confidence = 0;
     double seconds = 0;
@@ -81,8 +94,6 @@ Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::ve
     return weights;
 }
 
-using Features = std::array<double, JoinEvidence::count>;
-
 struct Trained {
     BoostedTrees trees;
     Eigen::Vector3d pair;
@@ -112,6 +123,21 @@ BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     return boost(table, truth, weights, how);
 }
 
+/// Negative log odds and truth of the candidates, the most probable first.
+using Scores = std::vector<std::pair<double, bool>>;
+Scores scores_of(const Row& row, const BoostedTrees& trees) {
+    Scores scored;
+    for (std::size_t c = 0; c < row.features.size(); ++c)
+        scored.emplace_back(-trees.log_odds(row_of(row.features[c])), row.right[c]);
+    std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    return scored;
+}
+
+/// What the confidence of a pair depends on: 1, log odds of the first candidate, and its lead.
+Eigen::Vector3d input_of(const Scores& scored) {
+    return {1, -scored[0].first, scored.size() > 1 ? std::min(2.0, scored[1].first - scored[0].first) : 2.0};
+}
+
 /// Trees are trained on all rows; calibration uses trees trained without a pair's object (five folds).
 Trained train(const std::vector<Row>& rows) {
     Trained model;
@@ -129,9 +155,7 @@ Trained train(const std::vector<Row>& rows) {
     std::vector<bool> truth;
     std::vector<double> weights;
     for (const Row& row : rows) {
-        std::vector<std::pair<double, bool>> scored;
         for (std::size_t c = 0; c < row.features.size(); ++c) {
-            scored.emplace_back(-others[fold.at(row.box)].log_odds(row_of(row.features[c])), row.right[c]);
             if (!row.right[c]) continue;
             ++joins;
             for (std::size_t k = 0; k < model.usual.size(); ++k) {
@@ -139,10 +163,9 @@ Trained train(const std::vector<Row>& rows) {
                 model.spread[k] += row.features[c][k] * row.features[c][k];
             }
         }
+        const auto scored = scores_of(row, others[fold.at(row.box)]);
         if (scored.empty()) continue;
-        std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-        const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 2;
-        inputs.emplace_back(1, -scored[0].first, std::min(lead, 2.0));
+        inputs.push_back(input_of(scored));
         truth.push_back(scored[0].second);
         weights.push_back(weight_of(row));
         model.joined += scored[0].second ? 1 : 0;
@@ -158,12 +181,8 @@ Trained train(const std::vector<Row>& rows) {
 
 /// Evaluates a row by a model trained without its object.
 Row judged(Row row, const Trained& model) {
-    std::vector<std::pair<double, bool>> scored;
-    for (std::size_t c = 0; c < row.features.size(); ++c)
-        scored.emplace_back(-model.trees.log_odds(row_of(row.features[c])), row.right[c]);
-    std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    const double lead = scored.size() > 1 ? std::min(2.0, scored[1].first - scored[0].first) : 2;
-    row.confidence = scored.empty() ? 0 : 1 / (1 + std::exp(-model.pair.dot(Eigen::Vector3d(1, -scored[0].first, lead))));
+    const auto scored = scores_of(row, model.trees);
+    row.confidence = scored.empty() ? 0 : 1 / (1 + std::exp(-model.pair.dot(input_of(scored))));
     for (std::size_t c = 0; c < scored.size(); ++c) row.right[c] = scored[c].second;
     return row;
 }
@@ -181,37 +200,33 @@ void write_model(const Path& file, const Trained& model, const std::string& reci
 
 /// Reads the rows written by an earlier run. Throws Error (input) if the file is not such a table.
 std::vector<Row> read_rows(const std::string& file) {
-    std::ifstream in(file);
-    std::string line;
     std::vector<Row> rows;
-    if (!std::getline(in, line)) fail_input(file, "cannot be read", "write it by 'ostraka_experiments joins'");
     constexpr std::size_t before = 10;  // number of leading columns
-    while (std::getline(in, line)) {
-        std::vector<std::string> words;
-        std::istringstream text(line);
-        for (std::string word; std::getline(text, word, ',');) words.push_back(word);
-        if (words.size() != before + JoinEvidence::count)
-            fail_input(file, "has rows of another length than features are told of today", "make it anew");
-        const auto number = [&](std::size_t k) { return std::stod(words[k]); };
+    for (const CsvRow& line : csv_rows(read_file(file), ',', file)) {
+        if (line.line == 1) continue;
+        if (line.cells.size() != before + JoinEvidence::count)
+            fail_input(file, "has rows with another number of features than today's", "make it anew");
+        const auto number = [&](std::size_t k) { return std::stod(line.cells[k]); };
         if (number(6) == 0) {
             Row& row = rows.emplace_back();
-            row.box = words[0];
+            row.box = line.cells[0];
             row.first = static_cast<std::size_t>(number(1)), row.second = static_cast<std::size_t>(number(2));
-            row.other = words[3];
+            row.other = line.cells[3];
             row.contact = number(4);
             row.stranger = number(5) != 0;
             row.confidence = number(9);
         }
         rows.back().right.push_back(number(7) != 0);
         rows.back().log_odds.push_back(number(8));
-        Features features;
-        for (std::size_t k = 0; k < features.size(); ++k) features[k] = number(before + k);
-        rows.back().features.push_back(features);
+        for (std::size_t k = 0; k < JoinEvidence::count; ++k) {
+            if (k == 0) rows.back().features.emplace_back();
+            rows.back().features.back()[k] = number(before + k);
+        }
     }
     return rows;
 }
 
-void report(const std::vector<Row>& rows, const std::string& what, std::ostream& out) {
+void report(const std::vector<Row>& rows, const std::string& name, Table& table) {
     std::size_t sure = 0, sure_right = 0, even = 0, even_right = 0, joins = 0, found = 0, reached = 0, strangers = 0,
                 strangers_sure = 0, strangers_even = 0;
     double error = 0, seconds = 0;
@@ -219,35 +234,31 @@ void report(const std::vector<Row>& rows, const std::string& what, std::ostream&
     for (const Row& row : rows) {
         const bool right = !row.right.empty() && row.right.front();
         seconds += row.seconds;
-        if (row.confidence >= 0.9) ++sure, sure_right += right ? 1 : 0;
-        if (row.confidence >= 0.5) ++even, even_right += right ? 1 : 0;
-        if (row.stranger)
-            ++strangers, strangers_sure += row.confidence > 0.9 ? 1 : 0, strangers_even += row.confidence >= 0.5 ? 1 : 0;
+        if (row.confidence >= 0.9) ++sure, sure_right += right;
+        if (row.confidence >= 0.5) ++even, even_right += right;
+        if (row.stranger) ++strangers, strangers_sure += row.confidence > 0.9, strangers_even += row.confidence >= 0.5;
         if (row.contact > 0.1) {
             ++joins;
-            found += right && row.confidence >= 0.5 ? 1 : 0;
-            reached += std::find(row.right.begin(), row.right.end(), true) != row.right.end() ? 1 : 0;
+            found += right && row.confidence >= 0.5;
+            reached += std::find(row.right.begin(), row.right.end(), true) != row.right.end();
         }
         auto& bin = bins[static_cast<std::size_t>(std::min(9.0, 10 * row.confidence))];
-        ++bin[0], bin[1] += row.confidence, bin[2] += right ? 1 : 0;
+        ++bin[0], bin[1] += row.confidence, bin[2] += right;
     }
     for (const auto& bin : bins) error += std::abs(bin[1] - bin[2]);
-    const auto share = [](std::size_t x, std::size_t y) {
-        return y > 0 ? 100.0 * static_cast<double>(x) / static_cast<double>(y) : 0;
-    };
-    out << format(
-               "| %s | %zu | %zu of %zu (%.1f %%) | %zu of %zu (%.1f %%) | %zu, %zu of %zu | %zu of %zu (%.0f %%), among "
-               "candidates %zu | %.3f | %.2f |\n",
-               what.c_str(), rows.size(), sure_right, sure, share(sure_right, sure), even_right, even, share(even_right, even),
-               strangers_sure, strangers_even, strangers, found, joins, share(found, joins), reached,
-               error / static_cast<double>(std::max<std::size_t>(1, rows.size())),
-               seconds / static_cast<double>(std::max<std::size_t>(1, rows.size())))
-        << std::flush;
+    const auto count = static_cast<double>(std::max<std::size_t>(1, rows.size()));
+    table.row(
+        "{} | {} | {} of {} ({:.1f} %) | {} of {} ({:.1f} %) | {}, {} of {} | {} of {} ({:.0f} %), among candidates {} | {:.3f} "
+        "| "
+        "{:.2f}",
+        name, rows.size(), sure_right, sure, percentage(sure_right, sure), even_right, even, percentage(even_right, even),
+        strangers_sure, strangers_even, strangers, found, joins, percentage(found, joins), reached, error / count,
+        seconds / count);
 }
 
 /// Evaluates each scanned or published object by a model trained without it, and synthetic objects by five-fold
 /// cross-validation.
-void report_left_out(const std::vector<Row>& rows) {
+void report_left_out(const std::vector<Row>& rows, Table& table) {
     std::map<std::string, std::size_t> fold;
     std::size_t made = 0, folds = 5;
     for (const Row& row : rows)
@@ -269,87 +280,99 @@ void report_left_out(const std::vector<Row>& rows) {
                 (f < 5 ? all_made : all_real).push_back(boxes[row.box].back());
             }
     }
-    for (const auto& [name, those] : boxes) report(those, name, std::cout);
-    report(all_made, "made, left out", std::cout);
-    report(all_real, "scanned and published, left out", std::cout);
+    for (const auto& [name, those] : boxes) report(those, name, table);
+    report(all_made, "made, left out", table);
+    report(all_real, "scanned and published, left out", table);
 }
 
-}  // namespace
+/// The fragments of a box that can be compared, as they are and moved at random.
+struct PreparedBox {
+    Box box;
+    std::vector<PreparedBreak> given, moved;
+    std::vector<Motion> motions;
+    std::vector<std::size_t> index;  ///< in the box
+};
 
-void joins(const JoinExperiment& options) {
-    std::vector<Row> all;
-    std::cout
-        << "| box | pairs | right of those at 0.9 | right of those at 0.5 | strangers above 0.9, at 0.5, of | true joins found | "
-           "calibration error | s of processor a pair |\n|---|---|---|---|---|---|---|---|\n";
-    Box before;
-    std::vector<PreparedBreak> prepared_before;
-    std::ostringstream csv;
-    csv << "box,first,second,other,contact,stranger,candidate,right,log_odds,confidence";
-    for (const std::string& name : JoinEvidence::names()) csv << ',' << name;
-    csv << '\n';
-    std::uint64_t seed = options.seed;
-    for (const std::string& source : options.boxes) {
-        Box box;
-        ++seed;
+PreparedBox prepare(Box&& box, std::uint64_t seed) {
+    PreparedBox prepared;
+    prepared.box = std::move(box);
+    Random random(seed, 9);
+    for (std::size_t k = 0; k < prepared.box.fragments.size(); ++k) {
+        const Fragment& fragment = prepared.box.fragments[k];
+        const Motion motion = random_motion(random, 2 * prepared.box.diagonal);
+        Fragment away = fragment;
+        away.mesh = moved(away.mesh, motion);
         try {
-            const bool found = options.facets == "found" || (options.facets == "both" && seed % 2 == 0);
-            box = read_box(source, options.pieces, seed, found ? FacetChoice::found : FacetChoice::known);
+            PreparedBreak here(fragment), there(away);
+            prepared.given.push_back(std::move(here));
+            prepared.moved.push_back(std::move(there));
         } catch (const Error& error) {
-            std::cerr << source << " is left out: " << error.what() << '\n';
+            std::cerr << prepared.box.name << ' ' << fragment.name << " has no part in it: " << error.what() << '\n';
             continue;
         }
-        Random random(seed, 9);
-        std::vector<PreparedBreak> prepared, moved_ones;
-        std::vector<Motion> motions;
-        std::vector<std::size_t> index;
-        for (std::size_t k = 0; k < box.fragments.size(); ++k) {
-            const Motion motion = random_motion(random, 2 * box.diagonal);
-            Fragment there = box.fragments[k];
-            there.mesh = moved(there.mesh, motion);
-            try {
-                PreparedBreak here(box.fragments[k]), away(there);
-                prepared.push_back(std::move(here));
-                moved_ones.push_back(std::move(away));
-            } catch (const Error& error) {
-                std::cerr << box.name << ' ' << box.fragments[k].name << " has no part in it: " << error.what() << '\n';
-                continue;
-            }
-            motions.push_back(motion);
-            index.push_back(k);
-        }
-        std::vector<Row> rows;
-        for (std::size_t i = 0; i < index.size(); ++i)
-            for (std::size_t j = i + 1; j < index.size(); ++j) {
-                if (options.adjacent_only && !(box.contact[index[i]][index[j]] > 0.1)) continue;
-                rows.push_back(try_pair(box, index[i], box, index[j], prepared[i], moved_ones[j], motions[j]));
-            }
-        // Pairs with fragments of the previous box, which are unrelated.
-        constexpr std::size_t met = 5;
-        for (std::size_t i = 0; i < std::min(met, prepared_before.size()); ++i)
-            for (std::size_t j = 0; j < std::min(met, index.size()); ++j)
-                rows.push_back(try_pair(before, i, box, index[j], prepared_before[i], moved_ones[j], motions[j]));
-        report(rows, box.name + box.level, std::cout);
+        prepared.motions.push_back(motion);
+        prepared.index.push_back(k);
+    }
+    return prepared;
+}
+
+/// The pairs of a box, and pairs with fragments of the previous box, which are unrelated.
+std::vector<Row> try_pairs(const PreparedBox& now, const PreparedBox& before, bool adjacent_only) {
+    std::vector<Row> rows;
+    const auto pair = [&](const PreparedBox& with, std::size_t i, std::size_t first, std::size_t j) {
+        rows.push_back(try_pair(with.box, first, now.box, now.index[j], with.given[i], now.moved[j], now.motions[j]));
+    };
+    for (std::size_t i = 0; i < now.index.size(); ++i)
+        for (std::size_t j = i + 1; j < now.index.size(); ++j)
+            if (!adjacent_only || now.box.contact[now.index[i]][now.index[j]] > 0.1) pair(now, i, now.index[i], j);
+    constexpr std::size_t strangers = 5;
+    for (std::size_t i = 0; i < std::min(strangers, before.given.size()); ++i)
+        for (std::size_t j = 0; j < std::min(strangers, now.index.size()); ++j) pair(before, i, i, j);
+    return rows;
+}
+
+/// Registers pairs of fragments of broken objects: accuracy of poses and calibration of the confidence.
+void joins(const JoinOptions& options) {
+    Table table(
+        "box | pairs | right of those at 0.9 | right of those at 0.5 | strangers above 0.9, at 0.5, of | true joins found | "
+        "calibration error | s of processor a pair");
+    std::string columns = "box,first,second,other,contact,stranger,candidate,right,log_odds,confidence";
+    for (const std::string& name : JoinEvidence::names()) columns += ',' + name;
+    Rows csv(columns);
+    std::vector<Row> all;
+    PreparedBox before;
+    const auto facets = [&](std::uint64_t seed) {
+        return options.facets == "found" || (options.facets == "both" && seed % 2 == 0) ? FacetChoice::found : FacetChoice::known;
+    };
+    for_each_box(options, facets, [&](Box&& box, std::uint64_t seed) {
+        PreparedBox now = prepare(std::move(box), seed);
+        const std::vector<Row> rows = try_pairs(now, before, options.adjacent_only);
+        report(rows, now.box.name + now.box.level, table);
         for (const Row& row : rows)
             for (std::size_t c = 0; c < row.right.size(); ++c) {
-                csv << row.box << ',' << row.first << ',' << row.second << ',' << row.other << ',' << row.contact << ','
-                    << row.stranger << ',' << c << ',' << row.right[c] << ',' << row.log_odds[c] << ',' << row.confidence;
-                for (const double x : row.features[c]) csv << ',' << x;
-                csv << '\n';
+                std::vector<std::string> cells{row.box, Rows::cell(row.first), Rows::cell(row.second), row.other};
+                for (const double x :
+                     {row.contact, double(row.stranger), double(c), double(row.right[c]), row.log_odds[c], row.confidence})
+                    cells.push_back(Rows::cell(x));
+                for (const double x : row.features[c]) cells.push_back(Rows::cell(x));
+                csv.add(cells);
             }
         all.insert(all.end(), rows.begin(), rows.end());
-        before = std::move(box);
-        prepared_before = std::move(prepared);
-    }
+        before = std::move(now);
+    });
     if (!options.boxes.empty()) {
-        report(all, "all", std::cout);
-        std::filesystem::create_directories(options.output);
-        write_file(Path(options.output) / "joins.csv", csv.str());
+        report(all, "all", table);
+        csv.write(Path(options.output) / "joins.csv");
     }
     for (const std::string& file : options.rows)
         for (Row& row : read_rows(file)) all.push_back(std::move(row));
     if (options.model.empty()) return;
-    if (!options.rows.empty()) report_left_out(all);
+    if (!options.rows.empty()) report_left_out(all, table);
     write_model(options.model, train(all), options.recipe);
 }
+
+const Registration registered("joins", "pairs of fragments of broken objects: right poses and calibration", joins);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

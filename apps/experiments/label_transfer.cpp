@@ -1,31 +1,31 @@
 // Transfers human part labels (layout of the Princeton segmentation benchmark) to a remeshed version and back.
-#include "experiments.h"
+#include "harness.h"
+#include "scenes.h"
 
-#include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/remesh/remesh.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>
 #include <deque>
 #include <filesystem>
-#include <iostream>
 #include <map>
-#include <sstream>
 
 namespace ostraka::experiments {
 
 namespace {
 
-std::vector<int> read_labels(const Path& file, std::size_t faces) {
-    std::istringstream text(read_file(file));
-    std::vector<int> labels;
-    for (int label = 0; text >> label;) labels.push_back(label);
-    if (labels.size() != faces)
-        fail_input(file.string(), "has " + std::to_string(labels.size()) + " labels for " + std::to_string(faces) + " faces");
-    return labels;
-}
+struct LabelOptions {
+    std::string models, labels, csv;
+    std::uint64_t limit = 0;
+    void describe(OptionList& visit) {
+        visit("models", models, "folder with <class>/<number>.off").positional().required();
+        visit("labels", labels, "folder with <class>/<number>/<number>_0.seg").positional().required();
+        visit("csv", csv, "file for the raw rows");
+        visit("limit", limit, "number of models; 0: all");
+    }
+};
 
 AnnotationSet regions_of(const std::vector<int>& labels) {
     std::map<int, Annotation> regions;
@@ -74,30 +74,27 @@ Painted paint(const Mesh& mesh, const AnnotationSet& set) {
     return painted;
 }
 
-}  // namespace
-
 void label_transfer(const LabelOptions& options) {
     std::vector<Path> models;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(options.models))
         if (entry.path().extension() == ".off") models.push_back(entry.path());
     std::sort(models.begin(), models.end());
     if (options.limit > 0 && models.size() > options.limit) models.resize(options.limit);
-    std::ostringstream csv;
-    csv << "model,factor,kept,bare,twice\n";
+    Rows csv("model,factor,kept,bare,twice");
     std::map<double, std::vector<std::pair<double, std::string>>> kept_of;
+    TransferOptions transferring;
+    transferring.overlap = false;
     for (const Path& model : models) {
-        const std::string number = model.stem().string(), group = model.parent_path().filename().string();
+        const std::string number = model.stem().string(), group = model.parent_path().filename().string(),
+                          name = group + "/" + number;
         const Mesh mesh = read_mesh(model).mesh;
         const SurfaceSearch home(mesh);
         const std::vector<int> labels =
             read_labels(Path(options.labels) / group / number / (number + "_0.seg"), mesh.number_of_faces());
         const AnnotationSet set = regions_of(labels);
         for (const double factor : {2.0, 0.25}) {
-            RemeshOptions remeshing;
-            remeshing.vertices = static_cast<std::uint64_t>(factor * static_cast<double>(mesh.number_of_vertices()));
-            const Mesh other = remesh(mesh, remeshing).mesh;
-            TransferOptions transferring;
-            transferring.overlap = false;
+            const Mesh other =
+                remeshed(mesh, static_cast<std::uint64_t>(factor * static_cast<double>(mesh.number_of_vertices())));
             const SurfaceSearch search(other);
             const Painted there = paint(other, transfer(mesh, set, search, transferring).annotations);
             const Painted back = paint(mesh, transfer(other, regions_of(there.labels), home, transferring).annotations);
@@ -105,23 +102,24 @@ void label_transfer(const LabelOptions& options) {
             for (const Face f : mesh.faces())
                 if (back.labels[f] == labels[f]) kept += face_area(mesh, f);
             kept /= surface_area(mesh);
-            kept_of[factor].emplace_back(kept, group + "/" + number);
-            csv << group << '/' << number << ',' << factor << ',' << kept << ',' << there.bare << ',' << there.twice << '\n';
-            std::cerr << group << '/' << number << " x" << factor << " kept " << kept << " bare " << there.bare << " twice "
-                      << there.twice << '\n';
+            kept_of[factor].emplace_back(kept, name);
+            csv(name, factor, kept, there.bare, there.twice);
+            fmt::print(stderr, "{} x{:g} kept {:g} bare {:g} twice {:g}\n", name, factor, kept, there.bare, there.twice);
         }
     }
-    std::cout << "| vertices | models | mean area that keeps its label % | worst % | worst model |\n|---|---|---|---|---|\n";
+    Table table("vertices | models | mean area that keeps its label % | worst % | worst model");
     for (const auto& [factor, list] : kept_of) {
-        double sum = 0;
-        for (const auto& [kept, name] : list) sum += kept;
+        std::vector<double> shares;
+        for (const auto& [kept, name] : list) shares.push_back(kept);
         const auto worst = *std::min_element(list.begin(), list.end());
-        char line[200];
-        std::snprintf(line, sizeof line, "| x %g | %zu | %.3f | %.3f | %s |\n", factor, list.size(),
-                      100 * sum / static_cast<double>(list.size()), 100 * worst.first, worst.second.c_str());
-        std::cout << line;
+        table.row("x {:g} | {} | {:.3f} | {:.3f} | {}", factor, list.size(), 100 * mean_of(shares), 100 * worst.first,
+                  worst.second);
     }
-    if (!options.csv.empty()) write_file(options.csv, csv.str());
+    csv.write(options.csv);
 }
+
+const Registration registered("labels", "part labels carried to a remeshed version and back", label_transfer);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

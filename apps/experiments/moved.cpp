@@ -1,35 +1,39 @@
 // Displacement of each annotation between one shape of a mesh and others.
-#include "experiments.h"
-
-#include "coloured_mesh.h"
-#include "report.h"
+#include "harness.h"
+#include "scenes.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
-#include "ostraka/geom/eigen.h"
-#include "ostraka/geom/rigid_fit.h"
+#include "ostraka/fracture/fragment.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
 
 namespace ostraka::experiments {
 
 namespace {
 
-Motion motion_of(const JsonValue& matrix) {
-    Motion motion;
-    for (rapidjson::SizeType i = 0; i < 3; ++i)
-        for (rapidjson::SizeType j = 0; j < 4; ++j)
-            (j < 3 ? motion.rotation(i, j) : motion.translation(i)) = matrix[i][j].GetDouble();
-    return motion;
-}
+struct MovedOptions {
+    std::string mesh, annotations, output, fit, pose, fragment;
+    std::vector<std::string> shapes;
+    void describe(OptionList& visit) {
+        visit("mesh", mesh, "the shape at rest").positional().required();
+        visit("annotations", annotations, "its annotations").positional().required();
+        visit("shapes", shapes, "mesh files with the same vertices").positional();
+        visit("fit", fit,
+              "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "
+              "and "
+              "the shape at rest is moved to the frame in which the fragment was placed");
+        visit("pose", pose, "file of 'ostraka mesh break --pose-out', if the fragment was moved");
+        visit("fragment", fragment, "mesh file of the fragment: laid.ply shows where it was placed");
+        visit("output", output, "output folder").required();
+    }
+};
 
 /// Pose of the single fragment of a fit, from the fragment's frame.
-Motion laid(const std::string& file) {
+Motion placed(const std::string& file) {
     const Json assembly = read_json(file);
     const auto fragments = list_in(assembly, "fragments");
     const JsonValue* pose = fragments.Size() == 1 ? find_member(fragments[0], "pose") : nullptr;
@@ -38,8 +42,7 @@ Motion laid(const std::string& file) {
 }
 
 /// Writes the fitted shape and the placed fragment as one coloured mesh.
-void write_laid(const Path& file, const Mesh& shape, Mesh fragment, const Motion& motion) {
-    for (const Vertex v : fragment.vertices()) fragment.point(v) = point_of(motion(eigen(fragment.point(v))));
+void write_placed(const Path& file, const Mesh& shape, const Mesh& fragment) {
     Mesh both = shape;
     both.join(fragment);
     MeshExtras extras;
@@ -48,60 +51,59 @@ void write_laid(const Path& file, const Mesh& shape, Mesh fragment, const Motion
     write_mesh(file, both, extras);
 }
 
-}  // namespace
-
-void moved(const MovedOptions& options) {
-    const Path folder(options.output);
-    std::filesystem::create_directories(folder);
+void moved_annotations(const MovedOptions& options) {
+    const Path folder(options.output), fit(options.fit);
     const Mesh mesh = read_mesh(options.mesh).mesh;
     const AnnotationSet set = read_annotations(options.annotations, mesh);
     std::vector<Point> rest = ostraka::points_of(mesh);
     std::vector<std::string> shapes = options.shapes;
+    if (options.fit.empty() == shapes.empty()) fail_usage("the shapes are not clear", "give either mesh files or --fit");
     if (!options.fit.empty()) {
-        const Motion motion = laid((Path(options.fit) / "fit.assembly.json").string());
+        const Motion motion = placed((fit / "fit.assembly.json").string());
         const Motion broken = options.pose.empty() ? Motion() : motion_of(read_json(options.pose));
-        const Motion from_rest = motion.after(broken.inverse());
-        for (Point& p : rest) p = point_of(from_rest(eigen(p)));
-        shapes = {(Path(options.fit) / "completed.ply").string()};
+        rest = warped(rest, motion.after(broken.inverse()));
+        shapes = {(fit / "completed.ply").string()};
         if (!options.fragment.empty())
-            write_laid(folder / "laid.ply", read_mesh(shapes[0]).mesh, read_mesh(options.fragment).mesh, motion);
+            write_placed(folder / "laid.ply", read_mesh(shapes[0]).mesh, moved(read_mesh(options.fragment).mesh, motion));
     }
-    if (shapes.empty()) fail_usage("no shapes are given", "give mesh files, or --fit");
     const double diagonal = box_diagonal(mesh);
-    std::vector<std::vector<double>> ways;
+    std::vector<std::vector<double>> lengths;
+    std::vector<std::string> names;
     double farthest = 0;
-    std::string head = "| annotation |", rule = "|---|", rows = "annotation,shape,mean,max,max_of_diagonal\n";
+    std::string columns = "annotation";
     for (const std::string& file : shapes) {
         const Mesh shape = read_mesh(file).mesh;
         if (shape.number_of_vertices() != mesh.number_of_vertices())
             fail_input(file, "has another number of vertices than " + options.mesh);
-        ways.push_back(displacements(rest, ostraka::points_of(shape)));
-        farthest = std::max(farthest, *std::max_element(ways.back().begin(), ways.back().end()));
-        head += ' ' + Path(file).stem().string() + ": mean (most), % of the diagonal |";
-        rule += "---|";
+        lengths.push_back(displacements(rest, ostraka::points_of(shape)));
+        farthest = std::max(farthest, mean_and_max(lengths.back()).max);
+        names.push_back(Path(file).stem().string());
+        columns += fmt::format(" | {}: mean (most), % of the diagonal", names.back());
     }
-    for (std::size_t i = 0; i < ways.size(); ++i)
-        write_coloured(folder / (Path(shapes[i]).stem().string() + "-moved.ply"), read_mesh(shapes[i]).mesh, ways[i], farthest);
-    std::string body;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        write_coloured(folder / (names[i] + "-moved.ply"), read_mesh(shapes[i]).mesh, lengths[i], farthest);
+    const std::string title = fmt::format("How far vertices move from {}; colours of the meshes from 0 to {:.4g}.\n\n",
+                                          Path(options.mesh).filename().string(), farthest);
+    fmt::print("{}", title);
+    Table table(columns);
+    Rows rows("annotation,shape,mean,max,max_of_diagonal");
     for (const Annotation& annotation : set.annotations) {
         if (annotation.faces.empty()) continue;
         const std::vector<Index> vertices = touched_vertices(mesh, annotation);
-        body += "| " + annotation.tag + " |";
-        for (std::size_t i = 0; i < ways.size(); ++i) {
-            double sum = 0, maximum = 0;
-            for (const Index v : vertices) sum += ways[i][v], maximum = std::max(maximum, ways[i][v]);
-            const double mean = sum / static_cast<double>(vertices.size());
-            body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * maximum / diagonal);
-            rows += '"' + annotation.tag + "\",\"" + Path(shapes[i]).stem().string() +
-                    format("\",%.6g,%.6g,%.6g\n", mean, maximum, maximum / diagonal);
+        std::string cells = annotation.tag;
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            const auto [mean, max] = mean_and_max(lengths[i], vertices);
+            cells += fmt::format(" | {:.3f} ({:.3f})", 100 * mean / diagonal, 100 * max / diagonal);
+            rows(annotation.tag, names[i], mean, max, max / diagonal);
         }
-        body += '\n';
+        table.add(cells);
     }
-    const std::string text = "How far vertices move from " + Path(options.mesh).filename().string() +
-                             format("; colours of the meshes from 0 to %.4g.\n\n", farthest) + head + '\n' + rule + '\n' + body;
-    write_file(folder / "moved.md", text);
-    write_file(folder / "moved.csv", rows);
-    std::cout << text;
+    write_file(folder / "moved.md", title + table.text());
+    rows.write(folder / "moved.csv");
 }
+
+const Registration registered("moved", "how far each annotation moves from one shape of a mesh to others", moved_annotations);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

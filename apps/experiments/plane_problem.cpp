@@ -2,24 +2,11 @@
 
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ostraka::experiments {
-
-Points solver_points(const std::vector<Point>& points) {
-    Points result(3, static_cast<Eigen::Index>(points.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = eigen(points[i]);
-    return result;
-}
-
-Points solver_points(const Mesh& mesh) {
-    std::vector<Point> points;
-    for (const Vertex v : mesh.vertices()) points.push_back(mesh.point(v));
-    return solver_points(points);
-}
 
 std::vector<Point> mesh_points(const Points& points) {
     std::vector<Point> result;

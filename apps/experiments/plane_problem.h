@@ -1,12 +1,11 @@
 // The optimisation problem of figure 4.6 and Table 4.1 of the thesis: a region is flattened, the rest keeps its shape.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "scenes.h"
+
 #include "ostraka/solver/solve.h"
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace ostraka::experiments {
 
@@ -16,8 +15,6 @@ struct PlaneProblem {
     double rest_weight = 1, plane_weight = 1;
 };
 
-Points solver_points(const Mesh& mesh);
-Points solver_points(const std::vector<Point>& points);
 std::vector<Point> mesh_points(const Points& points);
 
 std::vector<std::unique_ptr<Constraint>> plane_constraints(const Mesh& mesh, const Points& rest, const std::vector<Index>& region,

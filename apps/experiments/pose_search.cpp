@@ -1,23 +1,15 @@
 // How often pose search finds the position of a broken piece, and how often its verdict is correct.
-#include "experiments.h"
-#include "report.h"
+#include "harness.h"
+#include "scenes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/geom/eigen.h"
-#include "ostraka/io/mesh_file.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/registration/pose_search.h"
-#include "ostraka/stats/random.h"
 #include "ostraka/synthetic/fragments.h"
-#include "ostraka/synthetic/make_mesh.h"
 
 #include <cmath>
-#include <iostream>
 #include <map>
 #include <numbers>
-#include <optional>
-#include <sstream>
 
 namespace ostraka::experiments {
 
@@ -25,15 +17,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-Mesh read_or_make(const std::string& name, std::uint64_t vertices, std::uint64_t seed) {
-    if (name.starts_with("made:")) {
-        MakeOptions options;
-        options.vertices = vertices;
-        options.seed = seed;
-        return make_mesh(synthetic_object(name.substr(5)), options).mesh;
+struct PoseSearchExperiment {
+    std::vector<std::string> wholes, members, strangers;
+    std::vector<double> shares{0.1, 0.25, 0.5}, noises{0.001, 0.005};
+    double erosion = 0.005;
+    int pieces = 10;
+    std::uint64_t vertices = 25000;
+    PoseSearchOptions search;
+    std::string csv;
+    void describe(OptionList& visit) {
+        visit("whole", wholes, "mesh files, or made:NAME: pieces of the same object");
+        visit("member", members, "TEMPLATE=MEMBER: pieces of another member of the class, in the same frame");
+        visit("stranger", strangers, "TEMPLATE=OTHER: pieces of unrelated objects");
+        visit("shares", shares, "sizes of pieces, as shares of the surface");
+        visit("noises", noises, "standard deviations of noise, as shares of the diagonal");
+        visit("erosion", erosion, "width of the worn rim, as a share of the diagonal");
+        visit("pieces", pieces, "number of pieces of each kind", Range{1, 1e6});
+        visit("vertices", vertices, "number of vertices of synthetic objects");
+        visit("min-scale", search.min_scale, "min scale of the template");
+        visit("max-scale", search.max_scale, "max scale of the template");
+        visit("csv", csv, "file for the raw rows");
     }
-    return read_mesh(name).mesh;
-}
+};
 
 struct Case {
     std::string name, whole, from;  ///< the whole, and the object from which the piece is broken
@@ -41,12 +46,10 @@ struct Case {
 };
 constexpr const char* kind_words[]{"same", "member", "stranger"};
 
-void add_pairs(std::vector<Case>& cases, const std::vector<std::string>& pairs, Case::Kind kind, const std::string& usage) {
+void add_pairs(std::vector<Case>& cases, const std::vector<std::string>& pairs, Case::Kind kind) {
     for (const std::string& pair : pairs) {
-        const auto at = pair.find('=');
-        if (at == std::string::npos)
-            fail_usage(std::string("--") + kind_words[static_cast<int>(kind)] + " is '" + pair + "'", "give " + usage);
-        cases.push_back({pair, pair.substr(0, at), pair.substr(at + 1), kind});
+        const auto [whole, from] = split_pair(pair);
+        cases.push_back({pair, whole, from, kind});
     }
 }
 
@@ -60,33 +63,21 @@ PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& mid
     // Slippable motions of the shape do not count: the rotation about an axis, if there is one.
     const Motion between = found.after(truth.inverse());
     const Vector3d there = truth(middle);
-    PoseError error{Eigen::AngleAxisd(between.rotation).angle() * 180 / std::numbers::pi,
-                    100 * (between(there) - there).norm() / diagonal};
+    PoseError error{degrees_of(between), 100 * (between(there) - there).norm() / diagonal};
     if (slippable.kind != SlippableKind::none && slippable.contains(between, there, 5 * std::numbers::pi / 180, 0.02 * diagonal))
         error = {0, 0};
     return error;
 }
 
-Vector3d middle_of(const Mesh& mesh) {
-    Vector3d middle = Vector3d::Zero();
-    double area = 0;
-    for (const Face f : mesh.faces()) {
-        const double a = face_area(mesh, f);
-        middle += a * eigen(centroid(mesh, f));
-        area += a;
-    }
-    return middle / area;
-}
-
 struct Count {
-    int all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
+    std::size_t all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
     double seconds = 0;
 };
 
 /// Registers the pieces of one case to its whole.
 class CaseTrial {
 public:
-    CaseTrial(const Case& one, const PoseSearchExperiment& options, std::ostream& csv)
+    CaseTrial(const Case& one, const PoseSearchExperiment& options, Rows& csv)
         : case_(one),
           options_(options),
           csv_(csv),
@@ -96,16 +87,16 @@ public:
         if (one.kind == Case::Kind::stranger) {
             // Scaled to the size of the whole, so that size does not reveal it.
             const double ratio = std::sqrt(surface_area(whole_) / surface_area(other_));
-            for (const Vertex v : other_.vertices()) other_.point(v) = point_of(ratio * eigen(other_.point(v)));
+            other_ = warped(std::move(other_), [&](const Vector3d& p) { return ratio * p; });
         }
         const Stopwatch building;
         search_.emplace(surface_, options.search);
-        std::cerr << one.name << ": prepared in " << building.seconds().processor << " s\n";
+        fmt::print(stderr, "{}: prepared in {:g} s\n", one.name, building.seconds().processor);
     }
 
     /// Counts nothing if no such piece can be broken off.
     void lay(double share, double noise, std::uint64_t seed, std::map<std::string, Count>& table) const {
-        const std::string row = case_.name + " | " + format("%g", 100 * share) + " | " + format("%g", 100 * noise);
+        const std::string row = fmt::format("{} | {:g} | {:g}", case_.name, 100 * share, 100 * noise);
         if (const auto piece = broken(share, noise, seed)) judge(*piece, share, noise, seed, table[row]);
     }
 
@@ -129,7 +120,7 @@ private:
     /// True position of a piece on the whole.
     [[nodiscard]] Motion truth_of(const BrokenPiece& piece) const {
         if (case_.kind != Case::Kind::member) return piece.pose;
-        if (whole_.number_of_vertices() == other_.number_of_vertices() && options_.corresponding) {
+        if (whole_.number_of_vertices() == other_.number_of_vertices()) {
             std::vector<Vector3d> from, to;
             for (const Vertex v : piece.mesh.vertices()) {
                 from.push_back(eigen(piece.mesh.point(v)));
@@ -145,7 +136,7 @@ private:
     }
 
     void judge(const BrokenPiece& piece, double share, double noise, std::uint64_t seed, Count& count) const {
-        const Vector3d middle = middle_of(piece.mesh);
+        const Vector3d middle = surface_centre(piece.mesh);
         const Motion truth = truth_of(piece);
         const double diagonal = box_diagonal(whole_);
         const Stopwatch watch;
@@ -167,49 +158,48 @@ private:
         count.decided += result.decided ? 1 : 0;
         count.decided_right += result.decided && right ? 1 : 0;
         count.seconds += seconds;
-        csv_ << case_.name << ',' << kind_words[static_cast<int>(case_.kind)] << ',' << share << ',' << noise << ','
-             << options_.erosion << ',' << seed << ',' << error.degrees << ',' << error.percent << ',' << right << ','
-             << (rank >= 0) << ',' << best.score << ',' << best.share << ','
-             << (result.candidates.size() > 1 ? result.candidates[1].score : 0) << ',' << result.margin << ','
-             << result.confidence << ',' << result.decided << ',' << to_string(result.slippable.kind) << ',' << seconds << ','
-             << rank << '\n';
+        csv_(case_.name, kind_words[static_cast<int>(case_.kind)], share, noise, options_.erosion, seed, error.degrees,
+             error.percent, right, rank >= 0, best.score, best.share,
+             result.candidates.size() > 1 ? result.candidates[1].score : 0, result.margin, result.confidence, result.decided,
+             to_string(result.slippable.kind), seconds, rank);
     }
 
     const Case& case_;
     const PoseSearchExperiment& options_;
-    std::ostream& csv_;
+    Rows& csv_;
     Mesh whole_, other_;
     SurfaceSearch surface_;
     std::optional<PoseSearch> search_;
 };
 
-}  // namespace
-
 void pose_search(const PoseSearchExperiment& options) {
     std::vector<Case> cases;
     for (const std::string& name : options.wholes) cases.push_back({name, name, name, Case::Kind::same});
-    add_pairs(cases, options.members, Case::Kind::member, "TEMPLATE=MEMBER");
-    add_pairs(cases, options.strangers, Case::Kind::stranger, "TEMPLATE=OTHER");
-    std::ostringstream csv;
-    csv << "case,kind,share,noise,erosion,seed,degrees,percent,right,found,score,share_on,second,margin,confidence,decided,"
-           "freedom,seconds,rank\n";
-    std::map<std::string, Count> table;
+    add_pairs(cases, options.members, Case::Kind::member);
+    add_pairs(cases, options.strangers, Case::Kind::stranger);
+    Rows csv(
+        "case,kind,share,noise,erosion,seed,degrees,percent,right,found,score,share_on,second,margin,confidence,decided,freedom,"
+        "seconds,rank");
+    std::map<std::string, Count> counts;
     for (const Case& one : cases) {
         const CaseTrial trial(one, options, csv);
         for (const double share : options.shares)
             for (const double noise : options.noises)
-                for (int k = 0; k < options.pieces; ++k) trial.lay(share, noise, static_cast<std::uint64_t>(1 + k), table);
+                for (int k = 0; k < options.pieces; ++k) trial.lay(share, noise, static_cast<std::uint64_t>(1 + k), counts);
     }
-    std::cout << "| piece of | % of the surface | noise % | pieces | right % | among the candidates % | decided % | of these "
-                 "right % | s "
-                 "each |\n|---|---|---|---|---|---|---|---|---|\n";
-    for (const auto& [name, count] : table)
-        std::cout << "| " << name << " | " << count.all << " | "
-                  << format("%.0f | %.0f | %.0f | %s | %.2f |\n", 100.0 * count.right / count.all,
-                            100.0 * count.found / count.all, 100.0 * count.decided / count.all,
-                            count.decided > 0 ? format("%.0f", 100.0 * count.decided_right / count.decided).c_str() : "-",
-                            count.seconds / count.all);
-    if (!options.csv.empty()) write_file(options.csv, csv.str());
+    Table table(
+        "piece of | % of the surface | noise % | pieces | right % | among the candidates % | decided % | of these right % | s "
+        "each");
+    for (const auto& [name, count] : counts)
+        table.row("{} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.2f}", name, count.all, percentage(count.right, count.all),
+                  percentage(count.found, count.all), percentage(count.decided, count.all),
+                  count.decided > 0 ? fmt::format("{:.0f}", percentage(count.decided_right, count.decided)) : "-",
+                  count.seconds / static_cast<double>(count.all));
+    csv.write(options.csv);
 }
+
+const Registration registered("pose-search", "pieces broken off objects, and where a search lays them", pose_search);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

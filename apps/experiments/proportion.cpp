@@ -1,17 +1,13 @@
 #include "proportion.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 
 #include <algorithm>
 #include <set>
 
 namespace ostraka::experiments {
 
-namespace {
 using Eigen::Vector3d;
-constexpr double held = 0.01;  ///< weight of closeness in the thesis's method, which does not state what fixes the other vertices
-}  // namespace
 
 const Measure& measure_of(const Annotation& part) {
     for (const Attribute& attribute : part.attributes)
@@ -32,9 +28,8 @@ double value_of(const Subject& subject, const Ratio& ratio, const std::vector<Po
 
 Constraints thesis_proportions(const Subject& subject, const std::vector<Point>& edited, const std::vector<Ratio>& ratios,
                                bool anchored) {
-    const Points rest = columns(points_of(subject.mesh));
     Constraints list;
-    add_closeness(list, subject, edited, held);
+    add_closeness(list, subject, edited, closeness_weight);
     for (const Ratio& ratio : ratios) {
         const Annotation& part = subject.part(ratio.part);
         const Measure &first = measure_of(part), &second = measure_of(subject.part(ratio.reference));
@@ -42,9 +37,9 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
         std::set<Index> around(joint.begin(), joint.end());
         for (const Index v : joint)
             for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v)))) around.insert(w.idx());
-        add_laplacians(list, subject, {around.begin(), around.end()}, "Laplacian", 1);
-        std::vector<int> ids;
-        for (const Index v : vertices_of(subject.mesh, part)) ids.push_back(static_cast<int>(v));
+        add_laplacians(list, subject, {around.begin(), around.end()}, 1);
+        const std::vector<Index> own = vertices_of(subject.mesh, part);
+        std::vector<int> ids(own.begin(), own.end());
         const auto place = [&](Index v) {
             const auto found = std::find(ids.begin(), ids.end(), static_cast<int>(v));
             if (found != ids.end()) return static_cast<int>(found - ids.begin());
@@ -65,7 +60,7 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
         };
         parameters.direction = vector(first.direction);
         parameters.second_direction = vector(second.direction);
-        list.push_back(make_constraint("Proportion", ids, 1, parameters, rest));
+        list.push_back(make_constraint("Proportion", ids, 1, parameters, columns_of(subject.mesh)));
     }
     return list;
 }
@@ -75,16 +70,10 @@ RelationGraph proportion_graph(const Subject& subject, const std::vector<Ratio>&
     for (const Ratio& ratio : ratios)
         graph.relationships.push_back(constraint(
             static_cast<int>(graph.relationships.size()), "proportion", {subject.id(ratio.part), subject.id(ratio.reference)},
-            R"({"measure1": "length", "measure2": "length", "minValue": )" + std::to_string(ratio.min) + R"(, "maxValue": )" +
-                std::to_string(ratio.max) + (hard ? R"(, "hard": true})" : "}"),
+            fmt::format(R"({{"measure1": "length", "measure2": "length", "minValue": {:f}, "maxValue": {:f}{}}})", ratio.min,
+                        ratio.max, hard ? R"(, "hard": true)" : ""),
             1));
     return graph;
-}
-
-DeformOptions solving(const SolveOptions& solve) {
-    DeformOptions options;
-    options.solve = solve;
-    return options;
 }
 
 }  // namespace ostraka::experiments

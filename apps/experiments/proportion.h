@@ -22,7 +22,6 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
                                bool anchored);
 /// As in this library.
 RelationGraph proportion_graph(const Subject& subject, const std::vector<Ratio>& ratios, bool hard);
-DeformOptions solving(const SolveOptions& solve);
 
 const SolveOptions five{5, 0, 0, 0}, many{2000, 1e-7, 0, 5};
 

@@ -1,20 +1,30 @@
 // Combinations of defects introduced into closed meshes, and the number that repair removes.
-#include "experiments.h"
-#include "report.h"
+#include "harness.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
 #include "ostraka/io/repair.h"
 #include "ostraka/stats/random.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <map>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct DefectOptions {
+    std::vector<std::string> meshes;
+    int combinations = 20;
+    std::uint64_t seed = 1;
+    std::string csv;
+    void describe(OptionList& visit) {
+        visit("meshes", meshes, "closed meshes; others are left out").positional().required();
+        visit("combinations", combinations, "number of combinations of defects per mesh", Range{1, 100000});
+        visit("seed", seed, "random seed of the defects");
+        visit("csv", csv, "file for the raw rows");
+    }
+};
 
 /// The defects; combinations are bit masks.
 constexpr const char* defect_names[]{"equal duplicates", "opposite duplicates", "flips", "cuts", "T-junctions", "jitter"};
@@ -113,24 +123,22 @@ std::string names_of(int defects) {
     return names;
 }
 
-}  // namespace
-
-void repairs(const RepairExperiment& options) {
-    std::string rows = "mesh,defects,triangles,closed,components,components were,volume error,self-intersections,what is left\n";
+void repairs(const DefectOptions& options) {
+    Rows rows("mesh,defects,triangles,closed,components,components were,volume error,self-intersections,what is left");
     std::size_t tried = 0, restored = 0, without_crossings = 0;
-    std::cout << "| mesh | triangles | restored | of | largest error of volume, % | not restored |\n|---|---|---|---|---|---|\n";
+    Table table("mesh | triangles | restored | of | largest error of volume, % | not restored");
     for (std::size_t m = 0; m < options.meshes.size(); ++m) {
         const std::string& file = options.meshes[m];
         const TriangleSoup whole = triangulate(read_polygons(file)).soup;
         const MeshDiagnosis was = diagnose(whole);
         const std::string name = Path(file).filename().string();
         if (!was.closed() || !was.manifold() || !was.oriented()) {
-            std::cout << "| " << name << " | not closed, left out | | | | |\n";
+            table.row("{} | not closed, left out | | | |", name);
             continue;
         }
         std::size_t good = 0;
         double worst = 0;
-        std::string failed;
+        std::vector<std::string> failed;
         for (int i = 0; i < options.combinations; ++i) {
             Random random(options.seed, 1000 * m + static_cast<std::size_t>(i));
             const int defects = 1 + static_cast<int>(random.below(all_defects));
@@ -138,9 +146,8 @@ void repairs(const RepairExperiment& options) {
             MeshDiagnosis is;
             std::string left;
             try {
-                const RepairResult result = repair(with_defects(whole, defects, was.diagonal, random));
-                is = result.after;
-                for (const std::string& defect : is.defects()) left += (left.empty() ? "" : "; ") + defect;
+                is = repair(with_defects(whole, defects, was.diagonal, random)).after;
+                left = fmt::format("{}", fmt::join(is.defects(), "; "));
             } catch (const Error& error) {
                 left = error.what();
             }
@@ -150,21 +157,24 @@ void repairs(const RepairExperiment& options) {
             good += ok;
             without_crossings += ok && is.self_intersections <= was.self_intersections;
             if (ok) worst = std::max(worst, error);
-            else failed += (failed.empty() ? "" : "; ") + names_of(defects);
-            rows += name + ",\"" + names_of(defects) + "\"," + std::to_string(whole.triangles.size()) + ',' +
-                    (is.closed() ? "1" : "0") + ',' + std::to_string(is.components.size()) + ',' +
-                    std::to_string(was.components.size()) + ',' + format("%.3g", error) + ',' +
-                    std::to_string(is.self_intersections) + ",\"" + left + "\"\n";
+            else failed.push_back(names_of(defects));
+            rows(name, names_of(defects), whole.triangles.size(), is.closed(), is.components.size(), was.components.size(), error,
+                 is.self_intersections, left);
         }
         restored += good;
-        std::cout << "| " << name << " | " << whole.triangles.size() << " | " << good << " | " << options.combinations << " | "
-                  << format("%.2g", 100 * worst) << " | " << failed << " |\n"
-                  << std::flush;
+        table.row("{} | {} | {} | {} | {:.2g} | {}", name, whole.triangles.size(), good, options.combinations, 100 * worst,
+                  fmt::join(failed, "; "));
     }
-    std::cout << "\n"
-              << restored << " of " << tried << " restored: closed, oriented, a manifold, of the same components and genus, the "
-              << "volume within 0.1 %; " << without_crossings << " of these without new self-intersections\n";
-    if (!options.csv.empty()) write_file(options.csv, rows);
+    fmt::print(
+        "\n{} of {} restored: closed, oriented, a manifold, of the same components and genus, the volume within 0.1 %; {} of "
+        "these "
+        "without new self-intersections\n",
+        restored, tried, without_crossings);
+    rows.write(options.csv);
 }
+
+const Registration registered("repairs", "combinations of defects on closed meshes, and how many are repaired", repairs);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

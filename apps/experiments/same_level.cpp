@@ -1,16 +1,16 @@
 // Figures 5.3 and 5.4 of the thesis: the flowered teapot is stretched vertically; its flowers keep their shape and level.
-#include "experiments.h"
 #include "semantics.h"
 
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/report/plot.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
+#include <limits>
+#include <map>
 
 namespace ostraka::experiments {
 
@@ -63,10 +63,10 @@ Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
         for (const Index f : pot.set.find(id)->faces) inside[f] = true;
     const std::vector<Point> points = points_of(pot.mesh);
     for (const int id : flowers) {
-        const std::vector<Index> own = vertices_of(pot.mesh, *pot.set.find(id));
-        const Eigen::Vector3d middle = mean_of(points, own);
+        const std::vector<Index> vertices = vertices_of(pot.mesh, *pot.set.find(id));
+        const Eigen::Vector3d middle = centre_of(points, vertices);
         double radius = 0;
-        for (const Index v : own) radius = std::max(radius, (eigen(points[v]) - middle).norm());
+        for (const Index v : vertices) radius = std::max(radius, (eigen(points[v]) - middle).norm());
         for (const Face f : pot.mesh.faces())
             if (!inside[f] && (eigen(centroid(pot.mesh, f)) - middle).norm() <= ring_radius * radius) ring[f] = true;
     }
@@ -77,7 +77,7 @@ Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
 
 /// The vertex nearest to the mean of a flower's vertices in their plane (section 5.2.1).
 Index reference_vertex(const std::vector<Point>& points, const std::vector<Index>& vertices) {
-    const Eigen::Vector3d mean = mean_of(points, vertices);
+    const Eigen::Vector3d mean = centre_of(points, vertices);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Index v : vertices) spread += (eigen(points[v]) - mean) * (eigen(points[v]) - mean).transpose();
     const Eigen::Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
@@ -98,61 +98,65 @@ struct Measures {
 class Teapot {
 public:
     explicit Teapot(const SemanticOptions& options)
-        : options_(options), pot_(synthetic_subject(options.data, "teapot", options.vertices == 0 ? 60000 : options.vertices)) {
+        : options_(options),
+          pot_(synthetic_subject(options.data, "teapot", options.vertices == 0 ? 60000 : options.vertices)),
+          rest_(points_of(pot_.mesh)) {
         for (const Annotation& annotation : pot_.set.annotations)
-            if (annotation.tag.rfind("flower ", 0) == 0) flowers_.push_back(annotation.id);
+            if (annotation.tag.starts_with("flower ")) flowers_.push_back(annotation.id);
         if (flowers_.size() != 5)
             fail_input((Path(options.data) / "teapot.recipe.json").string(), "has not five flowers", "use the project's own");
-        edited_ = points_of(pot_.mesh);
-        for (const int id : flowers_) references_[id] = reference_vertex(edited_, vertices_of(pot_.mesh, *pot_.set.find(id)));
-        for (Point& p : edited_) p = {p.x(), p.y(), factor * p.z()};
+        for (const int id : flowers_) references_[id] = reference_vertex(rest_, vertices_of(pot_.mesh, *pot_.set.find(id)));
+        edited_ = warped(rest_, [](Eigen::Vector3d p) { return p.z() *= factor, p; });
         ring_ = ring_of(pot_, flowers_);
-        edited_mesh_ = pot_.mesh;
-        for (const Vertex v : edited_mesh_.vertices()) edited_mesh_.point(v) = edited_[v];
+        edited_mesh_ = with_points(pot_.mesh, edited_);
     }
 
     void run() {
         const Path folder(options_.output);
-        TextTable table({"run", "details", "iterations", "s", "difference of heights mm", "of centroids mm",
-                         "of reference vertices mm", "from a rigid copy mm", "ring: stretch", "ring: off the surface %",
-                         "ring: normals degrees"});
+        const std::vector<Variant> list = variants();
+        Trials trials(pot_, edited_);
+        trials.given("rest", "rest", rest_);
+        trials.given("stretched, unconstrained", "unconstrained", edited_);
+        for (const Variant& variant : list) trials.deformed(variant.name, variant.file, graph(variant), settings(variant));
         const SurfaceSearch surface(edited_mesh_);
         Plot trade{"Flowers kept against their surroundings",
                    {"rms distance of the worst flower from a rigid copy, mm", true, {}, {}},
                    {"mean stretch of the ring", false, 0.0, {}},
                    {}};
-        std::vector<Outcome> outcomes;
-        outcomes.push_back({"rest", "rest", points_of(pot_.mesh), {}, 0, 0, {}});
-        outcomes.push_back({"stretched, unconstrained", "unconstrained", edited_, {}, 0, 0, {}});
-        std::vector<Variant> list = variants();
-        for (const Variant& variant : list) {
-            std::cerr << "  " << variant.name << '\n';
-            outcomes.push_back(deformed_from(pot_, edited_, graph(variant), settings(variant), variant.name, variant.file));
-        }
-        for (std::size_t i = 0; i < outcomes.size(); ++i) {
-            const Outcome& outcome = outcomes[i];
-            std::vector<double> map(pot_.mesh.number_of_faces(), std::numeric_limits<double>::quiet_NaN());
-            const bool solved = i >= 2;  // the first two are the input shapes
-            const Measures m = measure(outcome.points, surface, solved && list[i - 2].tilted, map);
-            write_outcome(folder, pot_, outcome, i == 0 ? std::vector<double>() : map);
-            if (i == 0) continue;
-            table.add({outcome.name, solved ? list[i - 2].details : "", iterations_of(outcome), digits(outcome.seconds, 1),
-                       digits(m.heights, 4), digits(m.centroids, 4), digits(m.references, 4), digits(m.rigid, 4),
-                       digits(m.stretch, 4), digits(m.off, 4), digits(m.turned, 2)});
+        const auto variant_of = [&](const Outcome& outcome) {
+            return std::find_if(list.begin(), list.end(), [&](const Variant& variant) { return variant.name == outcome.name; });
+        };
+        const auto cells = [&](const Outcome& outcome) -> std::vector<std::string> {
+            if (outcome.name == "rest") return {};
+            const auto variant = variant_of(outcome);
+            const bool solved = variant != list.end();
+            const Measures m = measure(outcome.points, surface, solved && variant->tilted);
             // Rows that differ in iterations or in soft and hard constraints form one series.
             const std::string name = outcome.name.substr(0, outcome.name.rfind(", "));
             if (solved && (trade.series.empty() || trade.series.back().name != name)) trade.series.push_back({name, {}});
             if (solved) trade.series.back().points.push_back({m.rigid, m.stretch});
-        }
-        table.write(folder, "table");
+            return {solved ? variant->details : "",
+                    fixed(m.heights, 4),
+                    fixed(m.centroids, 4),
+                    fixed(m.references, 4),
+                    fixed(m.rigid, 4),
+                    fixed(m.stretch, 4),
+                    fixed(m.off, 4),
+                    fixed(m.turned, 2)};
+        };
+        TextTable table =
+            trial_table({"details", "difference of heights mm", "of centroids mm", "of reference vertices mm",
+                         "from a rigid copy mm", "ring: stretch", "ring: off the surface %", "ring: normals degrees"});
+        trials.write(folder, table, cells, [&](const Outcome& outcome) {
+            std::vector<double> map(pot_.mesh.number_of_faces(), std::numeric_limits<double>::quiet_NaN());
+            const std::vector<double> stretch = distortions(pot_.mesh, edited_, outcome.points);
+            for (const Index f : ring_.faces) map[f] = stretch[f];
+            return map;
+        });
+        write_table(table, folder, "table");
         write_plot(folder / "trade-off.svg", trade);
-        std::cout << table.markdown();
         const auto problem = [&](const std::string& name, const std::string& title, const Variant& variant) {
-            return Problem{name, title, [this, variant](const SolveOptions& solve) {
-                               DeformOptions settings = this->settings(variant);
-                               settings.solve = solve;
-                               return deformed_from(pot_, edited_, graph(variant), settings, "", "").summary;
-                           }};
+            return deform_problem(name, title, pot_, edited_, graph(variant), settings(variant));
         };
         compare_convergence(folder,
                             {problem("thesis", "Same level on the teapot, thesis mode, 4 against 4", list.front()),
@@ -176,17 +180,14 @@ private:
         return options;
     }
 
-    /// Also fills `map`: the stretch of the ring's faces.
-    [[nodiscard]] Measures measure(const std::vector<Point>& points, const SurfaceSearch& surface, bool tilted,
-                                   std::vector<double>& map) const {
+    [[nodiscard]] Measures measure(const std::vector<Point>& points, const SurfaceSearch& surface, bool tilted) const {
         Measures result;
         const Eigen::Vector3d up = tilted ? Eigen::Vector3d(std::sin(tilt), 0, std::cos(tilt)) : Eigen::Vector3d(0, 0, 1);
-        Mesh mesh = pot_.mesh;
-        for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
+        const Mesh mesh = with_points(pot_.mesh, points);
         std::vector<double> means, centroids, references;
         for (const int id : flowers_) {
             const auto own = vertices_of(pot_.mesh, *pot_.set.find(id));
-            means.push_back(up.dot(mean_of(points, own)));
+            means.push_back(up.dot(centre_of(points, own)));
             centroids.push_back(up.dot(eigen(area_moments(mesh, pot_.set.find(id)->faces).centroid)));
             references.push_back(up.dot(eigen(points[references_.at(id)])));
             result.rigid = std::max(result.rigid, rigid_distance(pot_, own, points));
@@ -201,7 +202,6 @@ private:
         const std::vector<double> stretch = distortions(pot_.mesh, edited_, points);
         double area = 0, squares = 0;
         for (const Index f : ring_.faces) {
-            map[f] = stretch[f];
             const double weight = face_area(pot_.mesh, Face(f));
             const Vector normal = area_vector(mesh, Face(f));
             const Eigen::Vector3d n = eigen(normal), m = eigen(surface.normal(surface.closest(centroid(mesh, Face(f))).face));
@@ -212,12 +212,13 @@ private:
         for (const Index v : ring_.vertices) squares += std::pow(surface.closest(points[v]).distance, 2);
         result.stretch /= area;
         result.turned /= area;
-        result.off = 100 * std::sqrt(squares / static_cast<double>(ring_.vertices.size())) / pot_.diagonal();
+        result.off = 100 * std::sqrt(squares / static_cast<double>(ring_.vertices.size())) / box_diagonal(pot_.mesh);
         return result;
     }
 
     const SemanticOptions& options_;
     Subject pot_;
+    std::vector<Point> rest_;
     std::vector<int> flowers_;
     std::map<int, Index> references_;
     std::vector<Point> edited_;
@@ -225,8 +226,10 @@ private:
     Ring ring_;
 };
 
-}  // namespace
+const Registration registered(
+    "same-level", "flowers of a stretched teapot (thesis, figures 5.3 and 5.4)",
+    +[](const SemanticOptions& options) { Teapot(options).run(); });
 
-void same_level(const SemanticOptions& options) { Teapot(options).run(); }
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,11 +1,8 @@
 #include "semantics.h"
 
-#include "convergence.h"
-
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/make_mesh.h"
@@ -13,7 +10,6 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <set>
@@ -22,48 +18,31 @@ namespace ostraka::experiments {
 
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// An edit that moves the differing vertices to their target positions.
 Json moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
-    Json edit(rapidjson::kObjectType);
+    Json edit = json_document("edit");
     auto& allocator = edit.GetAllocator();
-    add_member(edit, "format", "ostraka-edit", allocator);
-    add_member(edit, "version", JsonValue(1), allocator);
-    JsonValue vertices(rapidjson::kArrayType), places(rapidjson::kArrayType), steps(rapidjson::kArrayType);
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        if (from[i] == to[i]) continue;
-        JsonValue place(rapidjson::kArrayType);
-        place.PushBack(to[i].x(), allocator).PushBack(to[i].y(), allocator).PushBack(to[i].z(), allocator);
-        vertices.PushBack(static_cast<unsigned>(i), allocator);
-        places.PushBack(place, allocator);
-    }
-    if (!vertices.Empty()) {
-        JsonValue select(rapidjson::kObjectType), step(rapidjson::kObjectType);
-        add_member(select, "vertices", std::move(vertices), allocator);
-        add_member(step, "select", std::move(select), allocator);
-        add_member(step, "moveTo", std::move(places), allocator);
-        steps.PushBack(step, allocator);
-    }
-    add_member(edit, "steps", std::move(steps), allocator);
+    std::vector<Index> vertices;
+    std::vector<std::array<double, 3>> places;
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (from[i] != to[i]) {
+            vertices.push_back(static_cast<Index>(i));
+            places.push_back({to[i].x(), to[i].y(), to[i].z()});
+        }
+    JsonValue steps(rapidjson::kArrayType);
+    if (!vertices.empty())
+        steps.PushBack(json_object(allocator, "select", json_object(allocator, "vertices", vertices), "moveTo", places),
+                       allocator);
+    add_members(edit, allocator, "steps", std::move(steps));
     return edit;
 }
 
 }  // namespace
 
-int Subject::id(const std::string& tag) const {
-    for (const Annotation& annotation : set.annotations)
-        if (annotation.tag == tag) return annotation.id;
-    fail_input(tag, "no annotation has this tag", "see the recipe that the experiment names");
-}
-
 Subject synthetic_subject(const Path& data, const std::string& object, std::uint64_t vertices,
-                          const std::function<Point(const Point&)>& warp) {
+                          const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& warp) {
     SyntheticMesh made = make_mesh(synthetic_object(object), {.vertices = vertices});
-    if (warp)
-        for (const Vertex v : made.mesh.vertices()) made.mesh.point(v) = warp(made.mesh.point(v));
+    if (warp) made.mesh = warped(std::move(made.mesh), warp);
     AnnotationSet set = apply_recipe(data / (object + ".recipe.json"), made.mesh, made.face_labels);
     return {std::move(made.mesh), std::move(set)};
 }
@@ -79,56 +58,105 @@ Relationship constraint(int id, const std::string& type, std::vector<int> member
     return r;
 }
 
-Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
-                      const std::string& name, const std::string& file) {
-    options.conflicts = 0;
-    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
-    const Json edit = moved_to(points_of(subject.mesh), edited);
-    const auto start = std::chrono::steady_clock::now();
-    DeformResult result = deform({subject.mesh, subject.set}, graph, edit, name, options);
-    return {name, file, result.points, result.summary, result.rounds, seconds_since(start), std::move(result.constraints)};
+SolveSummary solve_thesis(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
+                          const SolveOptions& options, std::vector<Point>* points) {
+    MeshSpaceSolver solver(std::move(constraints), columns_of(subject.mesh));
+    Points x = columns_of(edited);
+    SolveSummary summary = solver.solve(x, options);
+    if (points != nullptr)
+        for (Eigen::Index i = 0; i < x.cols(); ++i) points->push_back(point_of(x.col(i)));
+    return summary;
 }
 
-Outcome solved_from(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
-                    const SolveOptions& options, const std::string& name, const std::string& file) {
-    const auto start = std::chrono::steady_clock::now();
-    MeshSpaceSolver solver(std::move(constraints), columns(points_of(subject.mesh)));
-    Points points = columns(edited);
-    Outcome outcome;
-    outcome.name = name;
-    outcome.file = file;
-    outcome.summary = solver.solve(points, options);
-    outcome.seconds = seconds_since(start);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) outcome.points.push_back(point_of(points.col(i)));
-    return outcome;
+DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
+                            DeformOptions options, const std::string& name) {
+    options.conflicts = 0;
+    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
+    return deform({subject.mesh, subject.set}, graph, moved_to(points_of(subject.mesh), edited), name, options);
+}
+
+void Trials::thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options) {
+    Outcome& outcome = outcomes.emplace_back(Outcome{name, file, {}, {}});
+    const Stopwatch watch;
+    outcome.summary = solve_thesis(subject_, edited_, std::move(constraints), options, &outcome.points);
+    outcome.seconds = watch.seconds().wall;
+}
+
+void Trials::deformed(const std::string& name, const std::string& file, const RelationGraph& graph, DeformOptions options) {
+    std::cerr << "  " << name << '\n';
+    const Stopwatch watch;
+    const DeformResult result = solve_deformed(subject_, edited_, graph, std::move(options), name);
+    outcomes.push_back({name, file, result.points, result.summary, result.rounds, watch.seconds().wall});
+}
+
+TextTable trial_table(std::vector<std::string> columns) {
+    columns.insert(columns.begin(), {"run", "iterations", "s"});
+    return TextTable(columns);
+}
+
+void write_table(const TextTable& table, const Path& folder, const std::string& name) {
+    table.write(folder, name);
+    std::cout << table.markdown() << '\n';
+}
+
+void Trials::write(const Path& folder, TextTable& table, const std::function<std::vector<std::string>(const Outcome&)>& cells,
+                   const std::function<std::vector<double>(const Outcome&)>& value_per_face) const {
+    for (const Outcome& outcome : outcomes) {
+        const Mesh mesh = with_points(subject_.mesh, outcome.points);
+        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation(mesh, subject_.set), {.comment = outcome.name});
+        if (&outcome != &outcomes.front()) {
+            const std::vector<double> values = value_per_face(outcome);
+            write_npy(folder / (outcome.file + ".npy"), std::span(values), {values.size()});
+        }
+        const std::vector<std::string> own = cells(outcome);
+        if (own.empty()) continue;
+        const int iterations = outcome.summary.iterations;
+        std::vector<std::string> row{outcome.name,
+                                     outcome.rounds > 0 ? fmt::format("{} rounds", outcome.rounds)
+                                     : iterations > 0   ? std::to_string(iterations)
+                                                        : "",
+                                     outcome.if_solved(fixed(outcome.seconds, 2))};
+        row.insert(row.end(), own.begin(), own.end());
+        table.add(row);
+    }
+}
+
+Problem thesis_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
+                       std::function<Constraints()> constraints) {
+    return {name, title,
+            [&subject, edited = std::move(edited), constraints = std::move(constraints)](int iterations, int window) {
+                return solve_thesis(subject, edited, constraints(), {iterations, 1e-10, 0, window});
+            }};
+}
+
+Problem deform_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
+                       RelationGraph graph, DeformOptions options) {
+    return {name, title,
+            [&subject, edited = std::move(edited), graph = std::make_shared<RelationGraph>(std::move(graph)), options](
+                int iterations, int window) mutable {
+                options.solve = {iterations, 1e-10, 0, window};
+                return solve_deformed(subject, edited, *graph, options).summary;
+            }};
 }
 
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight) {
-    std::vector<int> ids;
-    for (const Vertex v : subject.mesh.vertices()) ids.push_back(static_cast<int>(v.idx()));
+    const std::vector<Index> all = all_vertices(subject.mesh);
     ConstraintParameters parameters;
-    parameters.target = columns(edited);
-    list.push_back(make_constraint("Closeness", ids, weight, parameters, columns(points_of(subject.mesh))));
+    parameters.target = columns_of(edited);
+    list.push_back(make_constraint("Closeness", {all.begin(), all.end()}, weight, parameters, columns_of(subject.mesh)));
 }
 
-void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const std::string& kind,
-                    double weight) {
-    const Points rest = columns(points_of(subject.mesh));
+void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, double weight) {
+    const Points rest = columns_of(subject.mesh);
     for (const Index v : vertices) {
         std::vector<int> ids{static_cast<int>(v)};
         for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v))))
             ids.push_back(static_cast<int>(w.idx()));
-        list.push_back(make_constraint(kind, ids, weight, {}, rest));
+        list.push_back(make_constraint("Laplacian", ids, weight, {}, rest));
     }
 }
 
-Points columns(const std::vector<Point>& list) {
-    Points points(3, static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = eigen(list[i]);
-    return points;
-}
-
-Eigen::Vector3d mean_of(const std::vector<Point>& points, const std::vector<Index>& vertices) {
+Eigen::Vector3d centre_of(const std::vector<Point>& points, const std::vector<Index>& vertices) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Index v : vertices) mean += eigen(points[v]) / static_cast<double>(vertices.size());
     return mean;
@@ -148,12 +176,12 @@ std::vector<Index> joint_of(const Mesh& mesh, const Annotation& part, const Anno
 }
 
 double rigid_distance(const Subject& subject, const std::vector<Index>& vertices, const std::vector<Point>& points) {
-    const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, columns(points_of(subject.mesh)));
-    return std::sqrt(rigid->squared_distance(columns(points)) / static_cast<double>(vertices.size()));
+    const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, columns_of(subject.mesh));
+    return std::sqrt(rigid->squared_distance(columns_of(points)) / static_cast<double>(vertices.size()));
 }
 
-std::vector<std::array<double, 2>> stretches(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to) {
-    std::vector<std::array<double, 2>> values;
+std::vector<double> distortions(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to) {
+    std::vector<double> values;
     for (const Face f : mesh.faces()) {
         const auto [a, b, c] = corners(mesh, f);
         const auto frame = [a = a, b = b, c = c](const std::vector<Point>& p) {
@@ -164,14 +192,8 @@ std::vector<std::array<double, 2>> stretches(const Mesh& mesh, const std::vector
         };
         const Eigen::Matrix2d map = frame(to) * frame(from).inverse();
         const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(map).singularValues();
-        values.push_back({s[0], s[1]});
+        values.push_back(std::max(std::abs(s[0] - 1), std::abs(s[1] - 1)));
     }
-    return values;
-}
-
-std::vector<double> distortions(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to) {
-    std::vector<double> values;
-    for (const auto& [s1, s2] : stretches(mesh, from, to)) values.push_back(std::max(std::abs(s1 - 1), std::abs(s2 - 1)));
     return values;
 }
 
@@ -185,59 +207,10 @@ double mean_over(const Mesh& mesh, const std::vector<Index>& faces, const std::v
     return sum / area;
 }
 
-std::string iterations_of(const Outcome& outcome) {
-    if (outcome.rounds > 0) return std::to_string(outcome.rounds) + " rounds";
-    return outcome.summary.iterations > 0 ? std::to_string(outcome.summary.iterations) : "";
-}
-
-std::array<double, 2> moved(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to) {
-    double mean = 0, maximum = 0;
-    for (const Index v : vertices) {
-        const double distance = std::sqrt(CGAL::squared_distance(from[v], to[v]));
-        mean += distance / static_cast<double>(vertices.size());
-        maximum = std::max(maximum, distance);
-    }
-    return {mean, maximum};
-}
-std::string both(const std::array<double, 2>& mean_and_max, int after_point) {
-    return digits(mean_and_max[0], after_point) + " (" + digits(mean_and_max[1], after_point) + ")";
-}
-
-std::string digits(double value, int after_point) {
-    char text[48];
-    std::snprintf(text, sizeof text, "%.*f", after_point, value);
-    return text;
-}
-
-void write_outcome(const Path& folder, const Subject& subject, const Outcome& outcome, const std::vector<double>& face_values) {
-    Mesh mesh = subject.mesh;
-    for (const Vertex v : mesh.vertices()) mesh.point(v) = outcome.points[v];
-    write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation(mesh, subject.set), {.comment = outcome.name});
-    if (!face_values.empty()) write_npy(folder / (outcome.file + ".npy"), std::span(face_values), {face_values.size()});
-}
-
-void compare_convergence(const Path& folder, const std::vector<Problem>& problems, int iterations) {
-    if (iterations == 0) return;
-    std::string markdown, csv = convergence_csv_header();
-    for (const Problem& problem : problems) {
-        const auto with_window = [&](int window, int count) { return problem.solve({count, 1e-10, 0, window}); };
-        std::vector<SolveRun> runs;
-        runs.push_back({"plain", with_window(0, iterations)});
-        for (const int window : {2, 5})
-            runs.push_back({"accelerated, window " + std::to_string(window), with_window(window, iterations)});
-        const double best = best_objective(runs, with_window(5, 4 * iterations).objective.back());
-        markdown += problem.title + ":\n\n" + convergence_header();
-        for (const SolveRun& run : runs) {
-            const Convergence row = convergence(run, best);
-            markdown += convergence_row(row);
-            csv += convergence_csv(problem.name, row);
-        }
-        markdown += '\n';
-        write_plot(folder / ("convergence-" + problem.name + ".svg"), convergence_plot(problem.title, runs, best));
-    }
-    write_file(folder / "convergence.md", markdown);
-    write_file(folder / "convergence.csv", csv);
-    std::cout << '\n' << markdown;
+std::string moved_text(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to,
+                       int after_point) {
+    const auto [mean, max] = mean_and_max(displacements(from, to), vertices);
+    return fixed(mean, after_point) + " (" + fixed(max, after_point) + ")";
 }
 
 }  // namespace ostraka::experiments

@@ -1,30 +1,42 @@
-// Shared by the experiments on semantic constraints: objects, solution methods, measures of results, tables and files.
+// Shared by the experiments on semantic constraints: objects, methods of solution, measures and files of results.
 #pragma once
 
-#include "ostraka/report/plot.h"
+#include "convergence.h"
+#include "harness.h"
+#include "scenes.h"
+
 #include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
-#include "ostraka/synthetic/synthetic_object.h"
 
 #include <functional>
-#include <string>
-#include <vector>
 
 namespace ostraka::experiments {
+
+struct SemanticOptions {
+    std::string output, data;
+    std::uint64_t vertices = 0;
+    int convergence = 0;
+    void describe(OptionList& visit) {
+        visit("output", output, "folder for tables, plots and meshes").positional().required();
+        visit("vertices", vertices, "number of vertices of synthetic objects; 0: as in the thesis");
+        visit("convergence", convergence, "number of iterations, plain and accelerated, that are compared; 0: none",
+              Range{0, 100000});
+        visit("data", data, "folder of the project's recipes, such as teapot.recipe.json");
+    }
+};
 
 /// An object with its annotations.
 struct Subject {
     Mesh mesh;
     AnnotationSet set;
-    [[nodiscard]] double diagonal() const { return box_diagonal(mesh); }
-    /// The id of the annotation with this tag. Throws Error (input) if there is none.
-    [[nodiscard]] int id(const std::string& tag) const;
-    [[nodiscard]] const Annotation& part(const std::string& tag) const { return *set.find(id(tag)); }
+    [[nodiscard]] const Annotation& part(const std::string& tag) const { return tagged(set, tag); }
+    [[nodiscard]] int id(const std::string& tag) const { return part(tag).id; }
+    [[nodiscard]] std::vector<Index> vertices(const std::string& tag) const { return vertices_of(mesh, part(tag)); }
 };
 
 /// A synthetic object; with `warp`, its points are transformed before it is annotated.
 Subject synthetic_subject(const Path& data, const std::string& object, std::uint64_t vertices,
-                          const std::function<Point(const Point&)>& warp = {});
+                          const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& warp = {});
 
 /// One result of an experiment.
 struct Outcome {
@@ -34,59 +46,73 @@ struct Outcome {
     SolveSummary summary;
     int rounds = 0;
     double seconds = 0;
-    std::vector<ConstraintReport> constraints;
+    [[nodiscard]] bool solved() const { return summary.iterations > 0; }
+    /// The text for a solved outcome, nothing for a given shape.
+    [[nodiscard]] std::string if_solved(const std::string& text) const { return solved() ? text : ""; }
 };
 
 Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight);
 
-/// Runs `deform` without a cage from a shape given point by point; all displaced vertices are handles.
-Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
-                      const std::string& name, const std::string& file);
-
 using Constraints = std::vector<std::unique_ptr<Constraint>>;
-/// Solves constraints directly, like the thesis's prototype, starting from the edited shape.
-Outcome solved_from(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
-                    const SolveOptions& options, const std::string& name, const std::string& file);
+
+/// Trials of one edit of an object: given shapes, the thesis's method and this library's.
+class Trials {
+public:
+    Trials(const Subject& subject, std::vector<Point> edited) : subject_(subject), edited_(std::move(edited)) {}
+
+    void given(const std::string& name, const std::string& file, const std::vector<Point>& points) {
+        outcomes.push_back({name, file, points, {}});
+    }
+    /// Solves constraints directly, like the thesis's prototype, starting from the edited shape.
+    void thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options);
+    /// Runs `deform` without a cage from the edited shape; all displaced vertices are handles.
+    void deformed(const std::string& name, const std::string& file, const RelationGraph& graph, DeformOptions options);
+
+    /// Writes each shape as a PLY with the annotations' colours, and NAME.npy with `value_per_face` of all but the first (NaN:
+    /// none). Adds a row of name, iterations, seconds and cells(outcome) for each outcome that has cells.
+    void write(const Path& folder, TextTable& table, const std::function<std::vector<std::string>(const Outcome&)>& cells,
+               const std::function<std::vector<double>(const Outcome&)>& value_per_face) const;
+
+    std::vector<Outcome> outcomes;
+
+private:
+    const Subject& subject_;
+    std::vector<Point> edited_;
+};
+
+/// A table for trials: the columns after name, iterations and seconds.
+TextTable trial_table(std::vector<std::string> columns);
+/// Prints the table and writes it to FOLDER/NAME.
+void write_table(const TextTable& table, const Path& folder, const std::string& name);
+
+SolveSummary solve_thesis(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
+                          const SolveOptions& options, std::vector<Point>* points = nullptr);
+DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
+                            DeformOptions options, const std::string& name = {});
+/// Problems to compare plain and accelerated iterations by.
+Problem thesis_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
+                       std::function<Constraints()> constraints);
+Problem deform_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
+                       RelationGraph graph, DeformOptions options);
+
+/// Weight of closeness in the thesis's method, which does not state what fixes the other vertices.
+inline constexpr double closeness_weight = 0.01;
 /// Closeness of every vertex to its position in `edited`.
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight);
-/// A Laplacian constraint of type `kind` on each of these vertices and its neighbours.
-void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const std::string& kind,
-                    double weight);
+/// A Laplacian constraint on each of these vertices and its neighbours.
+void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, double weight);
 
-Points columns(const std::vector<Point>& points);
-Eigen::Vector3d mean_of(const std::vector<Point>& points, const std::vector<Index>& vertices);
+Eigen::Vector3d centre_of(const std::vector<Point>& points, const std::vector<Index>& vertices);
 /// Vertices that a region shares with other faces; with `other`, only with faces of that annotation.
 std::vector<Index> joint_of(const Mesh& mesh, const Annotation& part, const Annotation* other = nullptr);
 /// Root mean square distance of vertices from the best rigid copy of their original positions.
 double rigid_distance(const Subject& subject, const std::vector<Index>& vertices, const std::vector<Point>& points);
-
-/// Singular values of the map from each face of one shape to the same face of another, in descending order.
-std::vector<std::array<double, 2>> stretches(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to);
-/// max(|s1 - 1|, |s2 - 1|) per face.
+/// max(|s1 - 1|, |s2 - 1|) per face of the singular values of the map from one shape to another.
 std::vector<double> distortions(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to);
-
 /// Area-weighted mean over some faces of a value per face.
 double mean_over(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<double>& values);
-
-/// Number of iterations or rounds; empty if nothing was solved.
-std::string iterations_of(const Outcome& outcome);
-/// Mean and maximum displacement of vertices between two shapes.
-std::array<double, 2> moved(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to);
-/// "mean (max)".
-std::string both(const std::array<double, 2>& mean_and_max, int after_point);
-
-std::string digits(double value, int after_point);
-
-/// Writes the result as a PLY with the annotations' colours and, if given, one value per face as FILE.npy (NaN: none).
-void write_outcome(const Path& folder, const Subject& subject, const Outcome& outcome,
-                   const std::vector<double>& face_values = {});
-
-/// A problem solved with plain and with accelerated iterations from the same start; the comparison writes a table and a plot to
-/// FOLDER/convergence-NAME.
-struct Problem {
-    std::string name, title;
-    std::function<SolveSummary(const SolveOptions&)> solve;
-};
-void compare_convergence(const Path& folder, const std::vector<Problem>& problems, int iterations);
+/// "mean (max)" of the displacements of vertices between two shapes.
+std::string moved_text(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to,
+                       int after_point);
 
 }  // namespace ostraka::experiments

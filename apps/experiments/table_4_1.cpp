@@ -1,27 +1,42 @@
 // Table 4.1 of the thesis: a region flattened over the vertices of the mesh and through a cage, for increasing resolution.
-#include "experiments.h"
-
 #include "convergence.h"
+#include "harness.h"
 #include "plane_problem.h"
-#include "report.h"
 
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/remesh/refine.h"
-#include "ostraka/remesh/simplify.h"
-#include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/report/plot.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
 #include <map>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct Table41Options {
+    std::string made = "teapot", scan, output = "experiments-output/table-4-1";
+    std::vector<int> sizes{20000, 50000, 70000, 100000, 150000, 200000, 280000, 500000};
+    std::vector<double> direction{0, -1, 0};
+    double share = 0.025;
+    std::uint64_t cage_vertices = 200;
+    int iterations = 50, convergence = 0;
+    void describe(OptionList& visit) {
+        visit("made", made, "name of a synthetic object");
+        visit("scan", scan, "mesh file instead; refined and simplified to each number of vertices");
+        visit("sizes", sizes, "numbers of vertices", Range{100, 1e8});
+        visit("direction", direction, "the region surrounds the vertex that is farthest in this direction");
+        visit("share", share, "area of the region, as a share of the surface", Range{0, 1});
+        visit("cage-vertices", cage_vertices, "number of vertices of the cage", Range{4, 1e6});
+        visit("iterations", iterations, "number of plain iterations that are timed", Range{1, 100000});
+        visit("convergence", convergence,
+              "number of iterations, plain and accelerated, that are compared at the first resolution; 0: none",
+              Range{0, 100000});
+        visit("output", output, "output folder");
+    }
+};
 
 /// Seconds as published (thesis, Table 4.1) and as measured for its prototype: set-up and iterations.
 struct PublishedTimes {
@@ -46,39 +61,6 @@ struct Measured {
     [[nodiscard]] Seconds all() const { return weights + setup + iterate; }
 };
 
-/// The sequence of meshes: synthetic, or a scan refined and simplified.
-class Subject {
-public:
-    explicit Subject(const Table41Options& options) : options_(options) {
-        if (options.scan.empty()) return;
-        finest_ = read_mesh(options.scan).mesh;
-        const std::uint64_t maximum = *std::max_element(options.sizes.begin(), options.sizes.end());
-        RefineOptions refining;
-        refining.scheme = RefineOptions::Scheme::loop;
-        refining.levels = 1;
-        while (finest_.number_of_vertices() < maximum) refine(finest_, refining);
-    }
-    [[nodiscard]] std::string name() const {
-        return options_.scan.empty() ? "made " + options_.made : Path(options_.scan).stem().string();
-    }
-    [[nodiscard]] Mesh at(std::uint64_t vertices) const {
-        if (options_.scan.empty()) {
-            MakeOptions making;
-            making.vertices = vertices;
-            return make_mesh(synthetic_object(options_.made), making).mesh;
-        }
-        Mesh mesh = finest_;
-        SimplifyOptions simplifying;
-        simplifying.vertices = vertices;
-        if (mesh.number_of_vertices() > vertices) simplify(mesh, simplifying);
-        return mesh;
-    }
-
-private:
-    const Table41Options& options_;
-    Mesh finest_;
-};
-
 /// The given share of the surface nearest to the vertex that is farthest along `direction`.
 std::vector<Index> region_of(const Mesh& mesh, const Points& rest, const std::vector<double>& direction, double share) {
     Eigen::Index seed = 0;
@@ -97,14 +79,14 @@ SolveOptions solving(int iterations, int window) {
 }
 
 /// Set-up and solution from rest; `solve` receives the options of a run and stores the mesh vertices in `x`.
-class Problem {
+class FlatteningProblem {
 public:
-    Problem(const Mesh& mesh, const std::vector<Index>& region, const std::string& rest_kind, const Mesh* cage)
-        : rest_(solver_points(mesh)), region_(region) {
+    FlatteningProblem(const Mesh& mesh, const std::vector<Index>& region, const std::string& rest_kind, const Mesh* cage)
+        : rest_(columns_of(mesh)), region_(region) {
         if (cage != nullptr) {
             const Stopwatch watch;
             weights_ = compute_coordinates("mean-value", *cage, mesh).vertex;
-            cage_ = solver_points(*cage);
+            cage_ = columns_of(*cage);
             weighing_ = watch.seconds();
         }
         const Stopwatch watch;
@@ -139,132 +121,124 @@ private:
     Seconds weighing_, setup_;
 };
 
-std::string megabytes(const Measured& m) { return m.megabytes ? format("%.0f", *m.megabytes) : "-"; }
-
 std::string pair_text(const std::optional<std::pair<double, double>>& pair) {
-    return pair ? format("%.3g / %.3g", pair->first, pair->second) : "-";
+    return pair ? fmt::format("{:.3g} / {:.3g}", pair->first, pair->second) : "-";
 }
 
-std::string row(const Measured& mesh, const Measured& cage, bool beside) {
-    std::string text = format("| %zu (%zu) |", mesh.vertices, mesh.region);
-    text += format(" %.3f / %.3f (%d) | %.3f / %.3f | %s |", mesh.setup.wall, mesh.iterate.wall, mesh.summary.iterations,
-                   mesh.setup.processor, mesh.iterate.processor, megabytes(mesh).c_str());
-    text += format(" %.3f + %.3f / %.3f (%d) | %.3f + %.3f / %.3f | %s |", cage.weights.wall, cage.setup.wall, cage.iterate.wall,
-                   cage.summary.iterations, cage.weights.processor, cage.setup.processor, cage.iterate.processor,
-                   megabytes(cage).c_str());
-    text += format(" %.2g, %.2g %% |", 100 * mesh.flat_after / mesh.flat_before, 100 * cage.flat_after / cage.flat_before);
-    const auto known = published.find(mesh.vertices);
-    if (!beside) return text + '\n';
-    if (known == published.end()) return text + " - | - |\n";
-    const PublishedTimes& o = known->second;
-    return text + format(" %.3g, %.3g |", o.thesis_mesh, o.thesis_cage) + ' ' + pair_text(o.prototype_mesh) + ", " +
-           pair_text(o.prototype_cage) + " |\n";
+std::string cells_of(const Measured& mesh, const Measured& cage) {
+    const auto megabytes = [](const Measured& m) { return m.megabytes ? fmt::format("{:.0f}", *m.megabytes) : "-"; };
+    return fmt::format(
+        "{} ({}) | {:.3f} / {:.3f} ({}) | {:.3f} / {:.3f} | {} | {:.3f} + {:.3f} / {:.3f} ({}) | {:.3f} + {:.3f} / {:.3f} | {} | "
+        "{:.2g}, {:.2g} %",
+        mesh.vertices, mesh.region, mesh.setup.wall, mesh.iterate.wall, mesh.summary.iterations, mesh.setup.processor,
+        mesh.iterate.processor, megabytes(mesh), cage.weights.wall, cage.setup.wall, cage.iterate.wall, cage.summary.iterations,
+        cage.weights.processor, cage.setup.processor, cage.iterate.processor, megabytes(cage),
+        100 * mesh.flat_after / mesh.flat_before, 100 * cage.flat_after / cage.flat_before);
 }
 
-std::string csv_row(const std::string& kind, const char* space, const Measured& m) {
-    return kind + ',' + space +
-           format(",%zu,%zu,%.6g,%.6g,%.6g,%.6g,%d,%.6g,%.6g,%s,%.6g,%.6g\n", m.vertices, m.region, m.weights.wall,
-                  m.weights.processor, m.setup.wall, m.setup.processor, m.summary.iterations, m.iterate.wall, m.iterate.processor,
-                  m.megabytes ? format("%.1f", *m.megabytes).c_str() : "", m.flat_before, m.flat_after);
+std::string published_cells(std::size_t vertices) {
+    const auto found = published.find(vertices);
+    if (found == published.end()) return "- | -";
+    const PublishedTimes& times = found->second;
+    return fmt::format("{:.3g}, {:.3g} | {}, {}", times.thesis_mesh, times.thesis_cage, pair_text(times.prototype_mesh),
+                       pair_text(times.prototype_cage));
 }
 
 /// Plain and accelerated runs at one resolution, compared with a long run.
 std::string convergence_tables(const Mesh& mesh, const std::vector<Index>& region, const Mesh& cage, int iterations,
-                               const Path& folder, std::string& csv) {
-    std::string text;
-    for (const char* kind : {"closeness", "laplacian"})
-        for (const Mesh* around : {static_cast<const Mesh*>(nullptr), &cage}) {
-            const std::string name = std::string(kind) + (around == nullptr ? ", mesh" : ", cage");
-            const auto solve = [&](int count, int window) {
-                return Problem(mesh, region, kind, around).run(solving(count, window)).summary;
-            };
-            const double known = solve(7 * iterations, 10).objective.back();
-            std::vector<SolveRun> runs;
-            for (const int window : {0, 2, 5, 10})
-                runs.push_back({window == 0 ? "plain" : format("accelerated, window %d", window), solve(iterations, window)});
-            const double best = best_objective(runs, known);
-            text += "\n" + name + "\n\n" + convergence_header();
-            for (const SolveRun& run : runs) {
-                text += convergence_row(convergence(run, best));
-                csv += convergence_csv(name, convergence(run, best));
-            }
-            write_plot(folder / (std::string("convergence-") + kind + (around == nullptr ? "-mesh" : "-cage") + ".svg"),
-                       convergence_plot(format("%s, %u vertices", name.c_str(), mesh.number_of_vertices()), runs, best));
+                               const Path& folder) {
+    std::vector<Problem> problems;
+    for (const std::string kind : {"closeness", "laplacian"})
+        for (const bool through_cage : {false, true}) {
+            const std::string space = through_cage ? "cage" : "mesh";
+            problems.push_back({kind + "-" + space, fmt::format("{}, {}, {} vertices", kind, space, mesh.number_of_vertices()),
+                                [&, kind, through_cage](int count, int window) {
+                                    FlatteningProblem problem(mesh, region, kind, through_cage ? &cage : nullptr);
+                                    return problem.run(solving(count, window)).summary;
+                                }});
         }
-    return text;
+    return compare_convergence(folder, problems, iterations, {0, 2, 5, 10}, 7);
 }
 
-}  // namespace
-
-void table_4_1(const Table41Options& options) {
-    if (options.direction.size() != 3) fail_usage("the direction needs three numbers", "e.g. --direction 0,-1,0");
-    std::filesystem::create_directories(options.output);
-    const Path folder(options.output);
-    const Subject subject(options);
-    Mesh cage;
-    std::string convergence_text,
-        convergence_rows = convergence_csv_header(),
-        rows =
-            "problem,space,vertices,region,weights_s,weights_processor_s,setup_s,setup_processor_s,iterations,"
-            "iterations_s,iterations_processor_s,peak_MB,flatness_before,flatness_after\n";
-    std::map<std::string, std::string> tables;
-    std::map<std::string, PlotSeries> lines;
-    for (const std::uint64_t size : options.sizes) {
-        const Mesh mesh = subject.at(size);
-        const std::vector<Index> region = region_of(mesh, solver_points(mesh), options.direction, options.share);
-        if (cage.is_empty()) {
-            cage = make_cage(mesh, {.vertices = options.cage_vertices}).cage;
-            if (options.convergence > 0)
-                convergence_text = "\nConvergence at the first resolution\n" +
-                                   convergence_tables(mesh, region, cage, options.convergence, folder, convergence_rows);
-        }
-        for (const std::string kind : {"closeness", "laplacian"}) {
-            std::vector<Measured> both;
-            for (const Mesh* around : {static_cast<const Mesh*>(nullptr), static_cast<const Mesh*>(&cage)}) {
-                const PeakMemory peak;
-                Problem problem(mesh, region, kind, around);
-                both.push_back(problem.run(solving(options.iterations, 0)));
-                both.back().megabytes = peak.megabytes();
-                const char* space = around == nullptr ? "mesh" : "cage";
-                rows += csv_row(kind, space, both.back());
-                PlotSeries& line = lines[kind + ", " + space];
-                line.name = "here: " + kind + ", " + space;
-                line.points.push_back({static_cast<double>(mesh.number_of_vertices()), both.back().all().processor});
-            }
-            tables[kind] += row(both[0], both[1], kind == "closeness");
-            std::cerr << kind << ' ' << row(both[0], both[1], false);
-        }
-    }
-    Plot plot{"A region made plane, " + subject.name() + ": set-up and iterations, processor time",
+void write_seconds(const Path& file, const std::string& name, std::map<std::string, PlotSeries>& lines) {
+    Plot plot{"A region made plane, " + name + ": set-up and iterations, processor time",
               {"vertices", true, {}, {}},
               {"processor seconds", true, {}, {}},
               {}};
-    for (auto& [name, line] : lines) plot.series.push_back(std::move(line));
+    for (auto& [label, line] : lines) plot.series.push_back(std::move(line));
     PlotSeries thesis_mesh{"thesis: ShapeOp", {}, true, true}, thesis_cage{"thesis: cage", {}, true, true},
         prototype{"prototype, set-up too: mesh", {}, true, true};
-    for (const auto& [size, o] : published) {
-        thesis_mesh.points.push_back({static_cast<double>(size), o.thesis_mesh});
-        thesis_cage.points.push_back({static_cast<double>(size), o.thesis_cage});
-        if (o.prototype_mesh)
-            prototype.points.push_back({static_cast<double>(size), o.prototype_mesh->first + o.prototype_mesh->second});
+    for (const auto& [size, times] : published) {
+        const auto x = static_cast<double>(size);
+        thesis_mesh.points.push_back({x, times.thesis_mesh});
+        thesis_cage.points.push_back({x, times.thesis_cage});
+        if (const auto& both = times.prototype_mesh) prototype.points.push_back({x, both->first + both->second});
     }
     for (PlotSeries* line : {&thesis_mesh, &thesis_cage, &prototype}) plot.series.push_back(std::move(*line));
-    write_plot(folder / "seconds.svg", plot);
-
-    const std::string head = format(
-        "\n| vertices (region) | mesh: set-up / %d iterations (done), s | processor s | MB | cage of %u: weights + set-up / "
-        "iterations (done), s | processor s | MB | not flat, %% of rest: mesh, cage |",
-        options.iterations, cage.number_of_vertices());
-    const std::string text = "Table 4.1, " + subject.name() + ": a plane on " + format("%.3g", 100 * options.share) +
-                             " % of the surface.\n\nCloseness on every vertex\n" + head +
-                             " thesis: ShapeOp, cage, s | prototype: mesh set-up / 50, cage set-up / 50, s "
-                             "|\n|---|---|---|---|---|---|---|---|---|---|\n" +
-                             tables["closeness"] + "\nLaplacian displacement on every vertex\n" + head +
-                             "\n|---|---|---|---|---|---|---|---|\n" + tables["laplacian"] + convergence_text;
-    write_file(folder / "table.md", text);
-    write_file(folder / "table.csv", rows);
-    if (options.convergence > 0) write_file(folder / "convergence.csv", convergence_rows);
-    std::cout << text;
+    write_plot(file, plot);
 }
+
+void table_4_1(const Table41Options& options) {
+    if (options.direction.size() != 3) fail_usage("the direction needs three numbers", "e.g. --direction 0,-1,0");
+    const Path folder(options.output);
+    const Mesh finest = options.scan.empty()
+                            ? Mesh()
+                            : refined(read_mesh(options.scan).mesh,
+                                      static_cast<std::uint64_t>(*std::max_element(options.sizes.begin(), options.sizes.end())));
+    const std::string name = options.scan.empty() ? "made " + options.made : Path(options.scan).stem().string();
+    Mesh cage;
+    std::string convergence;
+    Rows rows(
+        "problem,space,vertices,region,weights_s,weights_processor_s,setup_s,setup_processor_s,iterations,iterations_s,"
+        "iterations_processor_s,peak_MB,flatness_before,flatness_after");
+    const std::string columns = fmt::format(
+        "vertices (region) | mesh: set-up / {0} iterations (done), s | processor s | MB | cage of {1}: weights + set-up / "
+        "iterations (done), s | processor s | MB | not flat, % of rest: mesh, cage",
+        options.iterations, options.cage_vertices);
+    std::map<std::string, Table> tables;
+    tables.emplace("closeness",
+                   Table(columns + " | thesis: ShapeOp, cage, s | prototype: mesh set-up / 50, cage set-up / 50, s", false));
+    tables.emplace("laplacian", Table(columns, false));
+    std::map<std::string, PlotSeries> lines;
+    for (const int size : options.sizes) {
+        const auto vertices = static_cast<std::uint64_t>(size);
+        const Mesh mesh = options.scan.empty() ? made_mesh(options.made, vertices) : simplified(finest, vertices);
+        const std::vector<Index> region = region_of(mesh, columns_of(mesh), options.direction, options.share);
+        if (cage.is_empty()) {
+            cage = make_cage(mesh, {.vertices = options.cage_vertices}).cage;
+            convergence = convergence_tables(mesh, region, cage, options.convergence, folder);
+        }
+        for (const std::string kind : {"closeness", "laplacian"}) {
+            std::vector<Measured> both;
+            for (const bool through_cage : {false, true}) {
+                const PeakMemory peak;
+                FlatteningProblem problem(mesh, region, kind, through_cage ? &cage : nullptr);
+                Measured& m = both.emplace_back(problem.run(solving(options.iterations, 0)));
+                m.megabytes = peak.megabytes();
+                const std::string space = through_cage ? "cage" : "mesh";
+                rows(kind, space, m.vertices, m.region, m.weights.wall, m.weights.processor, m.setup.wall, m.setup.processor,
+                     m.summary.iterations, m.iterate.wall, m.iterate.processor, m.megabytes, m.flat_before, m.flat_after);
+                PlotSeries& line = lines[kind + ", " + space];
+                line.name = "here: " + kind + ", " + space;
+                line.points.push_back({static_cast<double>(mesh.number_of_vertices()), m.all().processor});
+            }
+            const std::string cells = cells_of(both[0], both[1]);
+            tables.at(kind).add(kind == "closeness" ? cells + " | " + published_cells(mesh.number_of_vertices()) : cells);
+            fmt::print(stderr, "{} {}\n", kind, cells);
+        }
+    }
+    write_seconds(folder / "seconds.svg", name, lines);
+    const std::string text = fmt::format(
+        "Table 4.1, {}: a plane on {:.3g} % of the surface.\n\nCloseness on every vertex\n\n{}\nLaplacian displacement on every "
+        "vertex\n\n{}\n{}",
+        name, 100 * options.share, tables.at("closeness").text(), tables.at("laplacian").text(), convergence);
+    write_file(folder / "table.md", text);
+    rows.write(folder / "table.csv");
+    fmt::print("{}", text);
+}
+
+const Registration registered("table-4-1", "a region made plane, over the mesh and through a cage: time and memory", table_4_1);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,6 +1,5 @@
 // Classification of the technique of synthetic statuettes, by level, and with simulated scanner effects.
-#include "experiments.h"
-#include "report.h"
+#include "harness.h"
 
 #include "ostraka/collection/technique_study.h"
 #include "ostraka/core/parallel.h"
@@ -8,12 +7,27 @@
 #include "ostraka/report/table.h"
 #include "ostraka/synthetic/statuettes.h"
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct TechniqueExperiment {
+    std::string output;
+    int objects = 100, seeds = 2;
+    std::uint64_t vertices = 5000;
+    bool variants = false;
+    void describe(OptionList& visit) {
+        visit("output", output, "folder for tables and plots").positional().required();
+        visit("objects", objects, "number of statuettes of a population", Range{10, 100000});
+        visit("seeds", seeds, "number of populations of each level", Range{1, 1000});
+        visit("vertices", vertices, "number of vertices of each mesh");
+        visit("variants", variants, "also scan noise, missing interior and holes, at level 3");
+    }
+};
 
 struct Variant {
     std::string name;
@@ -71,25 +85,17 @@ Outcome outcome_of(const PopulationOptions& options) {
     return outcome;
 }
 
-/// Means over the seeds.
-double mean_area(const std::vector<Outcome>& outcomes, const std::string& classifier) {
-    double sum = 0;
-    for (const Outcome& each : outcomes) sum += each.classifiers.at(classifier).roc.area;
-    return sum / static_cast<double>(outcomes.size());
-}
+/// Mean over the populations of a classifier's F1.
 double mean_f1(const std::vector<Outcome>& outcomes, const std::string& classifier) {
-    double sum = 0;
-    for (const Outcome& each : outcomes) sum += each.classifiers.at(classifier).validation.mean_f1;
-    return sum / static_cast<double>(outcomes.size());
+    std::vector<double> values;
+    for (const Outcome& each : outcomes) values.push_back(each.classifiers.at(classifier).validation.mean_f1);
+    return mean_of(values);
 }
 
-const std::vector<std::string>& shown() {
-    static const std::vector<std::string> list{
-        "roundness", "eccentricity",    "both means", "both",         "roundness variance",   "eccentricity variance",
-        "ovality",   "marks",           "coherence",  "straightness", "upright straightness", "wall variation",
-        "outside",   "outside and wall"};
-    return list;
-}
+const std::vector<std::string> shown{
+    "roundness", "eccentricity",    "both means", "both",         "roundness variance",   "eccentricity variance",
+    "ovality",   "marks",           "coherence",  "straightness", "upright straightness", "wall variation",
+    "outside",   "outside and wall"};
 
 void add_rows(TextTable& table, const std::string& name, const std::vector<Outcome>& outcomes) {
     std::vector<std::string> cells{name};
@@ -98,13 +104,13 @@ void add_rows(TextTable& table, const std::string& name, const std::vector<Outco
         objects += each.objects, left_out += each.left_out, slices += each.slices, used += each.used;
     cells.push_back(std::to_string(objects));
     cells.push_back(std::to_string(left_out));
-    cells.push_back(fixed(100.0 * static_cast<double>(used) / static_cast<double>(std::max<std::size_t>(slices, 1)), 1));
-    for (const auto& classifier : shown()) cells.push_back(fixed(mean_f1(outcomes, classifier), 3));
+    cells.push_back(fixed(percentage(used, std::max<std::size_t>(slices, 1)), 1));
+    for (const auto& classifier : shown) cells.push_back(fixed(mean_f1(outcomes, classifier), 3));
     for (const std::string split : {"roundness mean", "first component"}) {
-        double sum = 0;
-        bool all = true;
-        for (const Outcome& each : outcomes) all = all && each.divided.at(split) >= 0, sum += each.divided.at(split);
-        cells.push_back(all ? fixed(sum / static_cast<double>(outcomes.size()), 3) : "no groups");
+        std::vector<double> values;
+        for (const Outcome& each : outcomes) values.push_back(each.divided.at(split));
+        const bool all = *std::min_element(values.begin(), values.end()) >= 0;
+        cells.push_back(all ? fixed(mean_of(values), 3) : "no groups");
     }
     table.add(cells);
 }
@@ -112,18 +118,20 @@ void add_rows(TextTable& table, const std::string& name, const std::vector<Outco
 /// Adds areas under the ROC curves.
 void add_areas(TextTable& table, const std::string& name, const std::vector<Outcome>& outcomes) {
     std::vector<std::string> cells{name};
-    for (const auto& classifier : shown()) cells.push_back(fixed(mean_area(outcomes, classifier), 3));
+    for (const auto& classifier : shown) {
+        std::vector<double> areas;
+        for (const Outcome& each : outcomes) areas.push_back(each.classifiers.at(classifier).roc.area);
+        cells.push_back(fixed(mean_of(areas), 3));
+    }
     table.add(cells);
 }
 
 std::vector<std::string> columns(const std::string& first) {
     std::vector<std::string> list{first, "objects", "left out", "slices used %"};
-    for (const auto& classifier : shown()) list.push_back(classifier);
+    list.insert(list.end(), shown.begin(), shown.end());
     list.insert(list.end(), {"divided by roundness", "divided by first component"});
     return list;
 }
-
-}  // namespace
 
 void technique(const TechniqueExperiment& options) {
     const auto of = [&](PopulationOptions population, int level, int seed) {
@@ -135,7 +143,7 @@ void technique(const TechniqueExperiment& options) {
     };
     const Path folder(options.output);
     std::vector<std::string> area_columns{"level"};
-    area_columns.insert(area_columns.end(), shown().begin(), shown().end());
+    area_columns.insert(area_columns.end(), shown.begin(), shown.end());
     TextTable levels(columns("level")), areas(area_columns);
     std::map<std::string, PlotSeries> curves;
     const std::vector<std::string> drawn{"roundness", "eccentricity", "both", "outside"};
@@ -184,5 +192,11 @@ void technique(const TechniqueExperiment& options) {
     scans.write(folder, "scans", "F1 of wheel-made by what the scanner does, level 3");
     std::cout << scans.markdown();
 }
+
+const Registration registered("technique",
+                              "wheel-made or hand-made: F1 on generated statuettes by level of difficulty (section 3.2.1)",
+                              technique);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

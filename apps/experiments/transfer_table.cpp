@@ -1,79 +1,42 @@
-#include "experiments.h"
+// Table 2.1 of the thesis: regions transferred between resolutions and back, by metric, size and pair of resolutions.
+#include "harness.h"
+#include "scenes.h"
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"
-#include "ostraka/remesh/remesh.h"
-#include "ostraka/remesh/simplify.h"
-#include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/synthetic/synthetic_object.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <iostream>
 #include <map>
-#include <queue>
-#include <sstream>
 
 namespace ostraka::experiments {
 
-std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share) {
-    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
-    distance[seed] = 0;
-    queue.emplace(0.0, seed);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[v]) continue;
-        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) {
-            const Vertex w = mesh.target(h);
-            const double next = d + std::sqrt(CGAL::squared_distance(mesh.point(Vertex(v)), mesh.point(w)));
-            if (next >= distance[w]) continue;
-            distance[w] = next;
-            queue.emplace(next, w);
-        }
-    }
-    std::vector<std::pair<double, Index>> order;
-    for (const Face f : mesh.faces()) {
-        double sum = 0;
-        for (const Vertex v : corners(mesh, f)) sum += distance[v];
-        order.emplace_back(sum, f);
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<Index> faces;
-    const double wanted = share * surface_area(mesh);
-    double area = 0;
-    for (const auto& [d, f] : order) {
-        if (area >= wanted) break;
-        area += face_area(mesh, Face(f));
-        faces.push_back(f);
-    }
-    std::sort(faces.begin(), faces.end());
-    return faces;
-}
-
 namespace {
 
-constexpr double shares[] = {0.005, 0.025, 0.1, 0.3};
+constexpr std::array shares{0.005, 0.025, 0.1, 0.3};
 constexpr int seeds_per_size = 3;
 
-std::string name_of(std::size_t vertices) {
-    if (vertices % 1000000 == 0) return std::to_string(vertices / 1000000) + "M";
-    if (vertices % 1000 == 0) return std::to_string(vertices / 1000) + "K";
-    return std::to_string(vertices);
-}
-
-Mesh simplified(const Mesh& mesh, std::size_t vertices) {
-    Mesh copy = mesh;
-    if (copy.number_of_vertices() <= vertices) return copy;
-    SimplifyOptions options;
-    options.vertices = vertices;
-    simplify(copy, options);
-    return copy;
-}
+struct TableOptions {
+    std::vector<std::string> made{"teapot", "statuette", "hand"}, scans;
+    std::uint64_t full = 2000000;
+    std::vector<int> rungs{50000, 5000, 100000, 1000000};
+    std::string metric, csv;
+    bool no_independent = false, truth_only = false;
+    void describe(OptionList& visit) {
+        visit("made", made, "names of synthetic objects, or none");
+        visit("scan", scans, "mesh files of scans; they are subdivided smoothly to the full resolution");
+        visit("full", full, "number of vertices of the full resolution");
+        visit("rungs", rungs, "other numbers of vertices; the first is the one annotated", Range{100, 1e8});
+        visit("metric", metric, "only metrics whose names contain this");
+        visit("csv", csv, "file for the raw rows");
+        visit("truth-only", truth_only, "only the overlap with the parts of synthetic objects");
+        visit("no-independent", no_independent, "without independently meshed resolutions");
+    }
+};
 
 struct Ladder {
     std::string object;
@@ -81,87 +44,55 @@ struct Ladder {
     std::map<std::string, Mesh> rungs;
 };
 
-class Table {
+class TransferTable {
 public:
-    explicit Table(const TableOptions& options) : options_(options) {}
+    explicit TransferTable(const TableOptions& options) : options_(options) {}
 
     void run() {
-        for (const std::string& name : options_.made) {
-            if (name == "none") continue;
-            const SyntheticObject& object = synthetic_object(name);
-            const auto make = [&](std::size_t n, std::uint64_t seed) {
-                MakeOptions making;
-                making.vertices = n;
-                making.seed = seed;
-                return make_mesh(object, making).mesh;
-            };
-            const Mesh full = make(options_.full, 1);
-            std::map<std::string, Mesh> independent;
-            if (!options_.no_independent) {
-                independent.emplace("full", full);
-                for (const std::size_t n : options_.rungs) independent.emplace(name_of(n), make(n, 1 + n));
+        for (const std::string& name : options_.made)
+            if (name != "none") {
+                const auto mesh_of = [&](std::uint64_t n) { return made_mesh(name, n, n == options_.full ? 1 : 1 + n); };
+                all_kinds(name, mesh_of(options_.full), mesh_of, &synthetic_object(name));
             }
-            all_kinds(name, full, std::move(independent), &object);
-            print();
-        }
         for (const std::string& file : options_.scans) {
-            Mesh full = read_mesh(file).mesh;
-            RefineOptions refining;
-            refining.scheme = RefineOptions::Scheme::loop;
-            refining.levels = 1;
-            while (full.number_of_vertices() < options_.full) refine(full, refining);
-            full = simplified(full, options_.full);
-            std::map<std::string, Mesh> independent;
-            if (!options_.no_independent) {
-                independent.emplace("full", full);
-                for (const std::size_t n : options_.rungs) {
-                    RemeshOptions remeshing;
-                    remeshing.vertices = n;
-                    independent.emplace(name_of(n), remesh(full, remeshing).mesh);
-                }
-            }
-            all_kinds(Path(file).stem().string(), full, std::move(independent), nullptr);
-            print();
+            const Mesh full = simplified(refined(read_mesh(file).mesh, options_.full), options_.full);
+            all_kinds(
+                Path(file).stem().string(), full, [&](std::uint64_t n) { return remeshed(full, n); }, nullptr);
         }
-        std::cout << tables();
+        fmt::print("{}", tables());
     }
 
 private:
-    void all_kinds(const std::string& name, const Mesh& full, std::map<std::string, Mesh> independent,
-                   const SyntheticObject* truth) {
-        std::vector<std::size_t> down = options_.rungs;
-        std::sort(down.rbegin(), down.rend());
-        Ladder decimated{name, "decimated", {}};
-        const Mesh* last = &decimated.rungs.emplace("full", full).first->second;
-        for (const std::size_t n : down) last = &decimated.rungs.emplace(name_of(n), simplified(*last, n)).first->second;
-        std::cerr << name << ": decimated\n";
-        measure(decimated, truth);
-        if (options_.truth_only) {
-            if (!independent.empty() && truth != nullptr) measure({name, "independent", std::move(independent)}, truth);
-            return;
-        }
-        // The subdivision chain starts at the annotated rung.
-        Ladder subdivided{name, "subdivided", {}};
-        const std::string home = name_of(options_.rungs.front());
-        last = &subdivided.rungs.emplace(home, decimated.rungs.at(home)).first->second;
-        std::vector<std::size_t> up = options_.rungs;
+    [[nodiscard]] std::string home() const { return size_name(static_cast<std::size_t>(options_.rungs.front())); }
+
+    template <class MeshOf>
+    void all_kinds(const std::string& name, const Mesh& full, const MeshOf& independent_mesh, const SyntheticObject* truth) {
+        std::vector<std::uint64_t> up(options_.rungs.begin(), options_.rungs.end());
         std::sort(up.begin(), up.end());
-        for (const std::size_t n : up) {
-            if (n <= options_.rungs.front()) continue;
+        Ladder decimated{name, "decimated", {}}, subdivided{name, "subdivided", {}}, independent{name, "independent", {}};
+        if (!options_.no_independent) {
+            independent.rungs.emplace("full", full);
+            for (const std::uint64_t n : up) independent.rungs.emplace(size_name(n), independent_mesh(n));
+        }
+        const Mesh* last = &decimated.rungs.emplace("full", full).first->second;
+        for (auto n = up.rbegin(); n != up.rend(); ++n)
+            last = &decimated.rungs.emplace(size_name(*n), simplified(*last, *n)).first->second;
+        measure(decimated, truth);
+        // The subdivision chain starts at the annotated rung.
+        last = &subdivided.rungs.emplace(home(), decimated.rungs.at(home())).first->second;
+        for (const std::uint64_t n : up) {
+            if (n <= static_cast<std::uint64_t>(options_.rungs.front()) || options_.truth_only) continue;
             Mesh finer = *last;
             RefineOptions refining;
             refining.vertices = n;
             refine(finer, refining);
-            last = &subdivided.rungs.emplace(name_of(n), std::move(finer)).first->second;
+            last = &subdivided.rungs.emplace(size_name(n), std::move(finer)).first->second;
         }
         decimated.rungs.clear();
-        std::cerr << name << ": subdivided\n";
         measure(subdivided, nullptr);
         subdivided.rungs.clear();
-        if (!independent.empty()) {
-            std::cerr << name << ": independent\n";
-            measure({name, "independent", std::move(independent)}, truth);
-        }
+        if (!independent.rungs.empty()) measure(independent, truth);
+        write();
     }
 
     static AnnotationSet discs(const Mesh& mesh) {
@@ -192,13 +123,10 @@ private:
         parallel_for(mesh.number_of_faces(), [&](std::size_t i) {
             const auto [a, b, c] = corners(mesh, Face(static_cast<Index>(i)));
             constexpr int k = 4;
-            for (int u = 0; u < k; ++u)
-                for (int v = 0; u + v < k; ++v)
-                    for (int half = 0; half < (u + v + 1 < k ? 2 : 1); ++half) {
-                        const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / k, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / k;
-                        const Point p = mesh.point(a) + s * (mesh.point(b) - mesh.point(a)) + t * (mesh.point(c) - mesh.point(a));
-                        truth.shares[i][object.part(object.project(p))] += 1.0 / (k * k);
-                    }
+            for_each_part(k, [&, a = a, b = b, c = c](const std::array<double, 3>& at) {
+                const Point p = mesh.point(a) + at[1] * (mesh.point(b) - mesh.point(a)) + at[2] * (mesh.point(c) - mesh.point(a));
+                truth.shares[i][object.part(object.project(p))] += 1.0 / (k * k);
+            });
         });
         for (const Face f : mesh.faces())
             for (const auto& [part, share] : truth.shares[f]) truth.areas[part] += share * face_area(mesh, f);
@@ -207,7 +135,7 @@ private:
 
     /// Transfers parts defined by labels at face centroids, and compares the result with the true parts.
     void measure_truth(const Ladder& ladder, const SyntheticObject& object) {
-        const std::string home = name_of(options_.rungs.front());
+        const std::string home = this->home();
         const Mesh& source = ladder.rungs.at(home);
         const SurfaceSearch source_search(source);
         AnnotationSet set;
@@ -237,8 +165,7 @@ private:
                                   : share >= 0.005 ? "0.5 to 2.5 %"
                                                    : "below 0.5 %";
                 truth_[{ladder.kind, pair, bin, rounding}].push_back(overlap);
-                truth_csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << rounding << ',' << region.tag << ','
-                           << share << ',' << overlap << '\n';
+                truth_csv_(ladder.object, ladder.kind, pair, rounding, region.tag, share, overlap);
             }
         };
         const Truth home_truth = truth_of(source, object);
@@ -260,9 +187,10 @@ private:
     }
 
     void measure(const Ladder& ladder, const SyntheticObject* truth) {
+        fmt::print(stderr, "{}: {}\n", ladder.object, ladder.kind);
         if (truth != nullptr) measure_truth(ladder, *truth);
         if (options_.truth_only) return;
-        const std::string home = name_of(options_.rungs.front());
+        const std::string home = this->home();
         const Mesh& source = ladder.rungs.at(home);
         const AnnotationSet set = discs(source);
         const SurfaceSearch source_search(source);
@@ -282,16 +210,17 @@ private:
                 options.rounding = metric.find("balanced") != std::string::npos ? TransferOptions::Rounding::balanced
                                                                                 : TransferOptions::Rounding::path;
                 if (!options.refine) options.metric = path_metric(metric.substr(0, metric.find(' ')));
-                const auto start = std::chrono::steady_clock::now();
+                const Stopwatch watch;
+                const auto seconds = [](const TransferResult& result) {
+                    return result.times.correspondence + result.times.paths + result.times.regions;
+                };
                 const TransferResult there = transfer(source, set, search, options);
-                double seconds = there.times.correspondence + there.times.paths + there.times.regions;
-                add(ladder, home + " -> " + name, metric, there.scores, seconds, edge);
+                add(ladder, home + " -> " + name, metric, there.scores, seconds(there), edge);
                 TransferOptions returning = options;
                 returning.refine = false;
                 returning.overlap = false;
                 const Mesh& on = there.refined ? there.refined->mesh : target;
                 TransferResult back = transfer(on, there.annotations, source_search, returning);
-                seconds = back.times.correspondence + back.times.paths + back.times.regions;
                 // The round trip is compared with the original region, face by face.
                 for (TransferScore& score : back.scores) {
                     const auto& origin = set.annotations.at(static_cast<std::size_t>(score.id));
@@ -307,9 +236,8 @@ private:
                         score.wrong_side = score.source_area + score.target_area - 2 * area;
                     }
                 }
-                add(ladder, home + " -> " + name + " -> " + home, metric, back.scores, seconds, edge);
-                std::cerr << "  " << home << " <-> " << name << " " << metric << " "
-                          << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() << " s\n";
+                add(ladder, home + " -> " + name + " -> " + home, metric, back.scores, seconds(back), edge);
+                fmt::print(stderr, "  {} <-> {} {} {:g} s\n", home, name, metric, watch.seconds().wall);
             }
         }
     }
@@ -325,7 +253,7 @@ private:
     void add(const Ladder& ladder, const std::string& pair, const std::string& metric, const std::vector<TransferScore>& scores,
              double seconds, double edge) {
         for (const TransferScore& score : scores) {
-            const double share = shares[score.id / seeds_per_size];
+            const double share = shares.at(static_cast<std::size_t>(score.id / seeds_per_size));
             Sum& sum = sums_[{ladder.kind, pair, share, metric}];
             const Distortions d = distortions(score);
             if (score.outcome != TransferOutcome::kept || !score.overlap) {
@@ -346,74 +274,61 @@ private:
             sum.worst_wrong = std::max(sum.worst_wrong, wrong);
             sum.voted += score.voted ? 1 : 0;
             ++sum.count;
-            csv_ << ladder.object << ',' << ladder.kind << ',' << pair << ',' << metric << ',' << share << ',' << seconds << ','
-                 << d.area << ',' << d.perimeter << ',' << d.perimeter_by_area << ',' << d.area_by_perimeter << ','
-                 << d.circularity << ',' << *score.overlap << ',' << wrong << ',' << score.hausdorff.value_or(-1) << '\n';
+            csv_(ladder.object, ladder.kind, pair, metric, share, seconds, d.area, d.perimeter, d.perimeter_by_area,
+                 d.area_by_perimeter, d.circularity, *score.overlap, wrong, score.hausdorff.value_or(-1));
         }
     }
 
-    /// The tables so far, also written to files, so that an interrupted run keeps them.
-    std::string tables() const {
-        std::ostringstream out;
-        out << "Mean distortions in percent over objects and places; time in seconds for all regions of an object; "
-               "wrong side in units of (larger mean edge) x (outline length).\n\n"
-               "| resolutions | S -> T | share % | metric | time | A | P | P/A | A/P | C | average | overlap (worst) | wrong "
-               "side (worst) | n (lost, voted) |\n"
-               "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    [[nodiscard]] std::string tables() const {
+        Table distortion(
+            "resolutions | S -> T | share % | metric | time | A | P | P/A | A/P | C | average | overlap (worst) | wrong side "
+            "(worst) "
+            "| n (lost, voted)",
+            false);
         for (const auto& [key, sum] : sums_) {
             const auto& [kind, pair, share, metric] = key;
-            const int n = std::max(1, sum.count);
-            const auto mean = [n](double x) {
-                char text[32];
-                std::snprintf(text, sizeof text, "%.4f", 100 * x / n);
-                return std::string(text);
-            };
-            char tail[160];
-            std::snprintf(tail, sizeof tail, "%.5f (%.5f) | %.3f (%.3f) | %d (%d, %d) |", sum.overlap / n, sum.worst_overlap,
-                          sum.wrong / n, sum.worst_wrong, sum.count, sum.lost, sum.voted);
-            char time[32];
-            std::snprintf(time, sizeof time, "%.3f", sum.seconds / n * (sizeof shares / sizeof *shares) * seeds_per_size);
-            out << "| " << kind << " | " << pair << " | " << 100 * share << " | " << metric << " | " << time << " | "
-                << mean(sum.area) << " | " << mean(sum.perimeter) << " | " << mean(sum.perimeter_by_area) << " | "
-                << mean(sum.area_by_perimeter) << " | " << mean(sum.circularity) << " | " << mean(sum.mean) << " | " << tail
-                << "\n";
+            const double n = std::max(1, sum.count);
+            distortion.row(
+                "{} | {} | {:g} | {} | {:.3f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.5f} ({:.5f}) | {:.3f} "
+                "({:.3f}) | {} ({}, {})",
+                kind, pair, 100 * share, metric, sum.seconds / n * static_cast<double>(shares.size()) * seeds_per_size,
+                100 * sum.area / n, 100 * sum.perimeter / n, 100 * sum.perimeter_by_area / n, 100 * sum.area_by_perimeter / n,
+                100 * sum.circularity / n, 100 * sum.mean / n, sum.overlap / n, sum.worst_overlap, sum.wrong / n, sum.worst_wrong,
+                sum.count, sum.lost, sum.voted);
         }
-        if (!truth_.empty()) {
-            out << "\nOverlap (intersection over union) with the analytic parts of the made objects.\n\n"
-                   "| resolutions | S -> T | part's share of the area | rounding | parts | mean overlap | worst "
-                   "|\n|---|---|---|---|---|---|---|\n";
-            for (const auto& [key, list] : truth_) {
-                double sum = 0;
-                for (const double x : list) sum += x;
-                char line[200];
-                std::snprintf(line, sizeof line, "| %zu | %.5f | %.5f |", list.size(), sum / static_cast<double>(list.size()),
-                              *std::min_element(list.begin(), list.end()));
-                out << "| " << std::get<0>(key) << " | " << std::get<1>(key) << " | " << std::get<2>(key) << " | "
-                    << std::get<3>(key) << " " << line << "\n";
-            }
-        }
-        return out.str();
+        std::string text =
+            "Mean distortions in percent over objects and places; time in seconds for all regions of an object; wrong side in "
+            "units "
+            "of (larger mean edge) x (outline length).\n\n" +
+            distortion.text();
+        if (truth_.empty()) return text;
+        Table overlap("resolutions | S -> T | part's share of the area | rounding | parts | mean overlap | worst", false);
+        for (const auto& [key, list] : truth_)
+            overlap.row("{} | {} | {} | {} | {} | {:.5f} | {:.5f}", std::get<0>(key), std::get<1>(key), std::get<2>(key),
+                        std::get<3>(key), list.size(), mean_of(list), *std::min_element(list.begin(), list.end()));
+        return text + "\nOverlap (intersection over union) with the analytic parts of the made objects.\n\n" + overlap.text();
     }
 
-    void print() const {
+    /// Called after each object, so that an interrupted run keeps what it has.
+    void write() const {
         if (options_.csv.empty()) return;
         write_file(options_.csv + ".md", tables());
-        if (!truth_.empty())
-            write_file(options_.csv + ".truth.csv", "object,resolutions,pair,rounding,part,share,overlap\n" + truth_csv_.str());
-        write_file(options_.csv,
-                   "object,resolutions,pair,metric,share,seconds,A,P,P/A,A/P,C,overlap,wrong_side,hausdorff\n" + csv_.str());
+        if (!truth_.empty()) truth_csv_.write(options_.csv + ".truth.csv");
+        csv_.write(options_.csv);
     }
 
     const TableOptions& options_;
     std::map<Key, Sum> sums_;
     std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<double>>
         truth_;  ///< kind, pair, size, rounding
-    std::ostringstream truth_csv_;
-    std::ostringstream csv_;
+    Rows truth_csv_{"object,resolutions,pair,rounding,part,share,overlap"};
+    Rows csv_{"object,resolutions,pair,metric,share,seconds,A,P,P/A,A/P,C,overlap,wrong_side,hausdorff"};
 };
 
-}  // namespace
+const Registration registered(
+    "table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)",
+    +[](const TableOptions& options) { TransferTable(options).run(); });
 
-void transfer_table(const TableOptions& options) { Table(options).run(); }
+}  // namespace
 
 }  // namespace ostraka::experiments

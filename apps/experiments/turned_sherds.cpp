@@ -1,24 +1,17 @@
 // Surfaces of revolution from the sherds of synthetic vessels, some of them useless: axis, profile, selection of sherds.
-#include "breaks.h"
-#include "experiments.h"
-#include "report.h"
+#include "sherds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
 #include "ostraka/fracture/facets.h"
-#include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/revolution/surface_of_revolution.h"
-#include "ostraka/synthetic/make_mesh.h"
-#include "shatter.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <numbers>
-#include <sstream>
 
 namespace ostraka::experiments {
 
@@ -79,9 +72,114 @@ double profile_error(const Mesh& whole, const std::vector<Fragment>& truth, cons
     return error;
 }
 
-}  // namespace
+/// The sherds of a vessel in a layout, and other pieces.
+struct LaidSherds {
+    PotOptions shape;
+    Mesh whole;
+    std::vector<Fragment> truth, fragments;
+    std::vector<bool> good;  ///< per fragment: of the vessel, about in its place
+};
 
-void turned_sherds(const BreakExperiment& options) {
+/// Moves a fragment at random about its middle.
+void displace(Fragment& fragment, double angle, double shift, Random& random) {
+    Vector3d middle = Vector3d::Zero();
+    for (const Vertex v : fragment.mesh.vertices()) middle += eigen(fragment.mesh.point(v));
+    middle /= static_cast<double>(fragment.mesh.number_of_vertices());
+    const Vector3d turn = angle * normal_vector(random);
+    Motion motion;
+    if (turn.norm() > 0) motion.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    motion.translation = middle - motion.rotation * middle + shift * normal_vector(random);
+    fragment.mesh = moved(fragment.mesh, motion);
+}
+
+LaidSherds lay_sherds(const Layout& layout, int vessel, std::uint64_t shape_seed) {
+    LaidSherds laid;
+    PotOptions& shape = laid.shape;
+    shape.shape = shape_seed;
+    Random random(shape_seed, 91);
+    shape.height = random.uniform(12, 22), shape.radius = random.uniform(5, 9), shape.wall = random.uniform(0.4, 0.8);
+    laid.whole = make_pot(shape);
+    const double diagonal = box_diagonal(laid.whole);
+    ShatterOptions breaking;
+    breaking.pieces = 8 + vessel % 5;
+    breaking.noise = layout.noise, breaking.erosion = layout.erosion;
+    breaking.seed = 300 + shape_seed;
+    std::vector<Sherd> sherds = shatter(laid.whole, breaking);
+    if (layout.missing > 0)
+        sherds.resize(sherds.size() - static_cast<std::size_t>(layout.missing * static_cast<double>(sherds.size())));
+    const auto add = [&](Mesh mesh, bool good) {
+        laid.fragments.emplace_back();
+        laid.fragments.back().name = std::to_string(laid.fragments.size());
+        laid.fragments.back().mesh = std::move(mesh);
+        laid.good.push_back(good);
+    };
+    for (Sherd& sherd : sherds) add(std::move(sherd.mesh), true);
+    laid.truth = laid.fragments;
+    for (Fragment& one : laid.fragments)
+        displace(one, layout.degrees * std::numbers::pi / 180 / std::sqrt(2.0), layout.shift * diagonal / std::sqrt(2.0), random);
+    for (int k = 0; k < layout.useless; ++k) {
+        const auto which = static_cast<std::size_t>(1 + 2 * k) % laid.truth.size();
+        displace(laid.fragments[which], 1.5, 0.15 * diagonal, random);
+        laid.good[which] = false;
+    }
+    if (layout.stranger) {
+        PotOptions other = shape;
+        other.shape = shape_seed + 5000;
+        other.radius *= 0.7;
+        breaking.seed += 7;
+        add(shatter(make_pot(other), breaking)[1].mesh, false);
+        displace(laid.fragments.back(), 1.5, 0.1 * diagonal, random);
+    }
+    if (layout.tile) {
+        const Mesh tile = made_mesh("box", 3000);
+        const double size = box_diagonal(tile);
+        add(warped(tile,
+                   [&](const Vector3d& p) {
+                       const Vector3d q = p * (0.4 * diagonal / size);
+                       return Vector3d(shape.radius + 0.15 * q.x(), q.y(), q.z() + 0.5 * shape.height);
+                   }),
+            false);
+        displace(laid.fragments.back(), 0.5, 0.02 * diagonal, random);
+    }
+    return laid;
+}
+
+struct Counts {
+    std::size_t made = 0, used = 0, partly = 0, belong = 0, wrong = 0, useless = 0;
+    std::vector<double> degrees, percent, said, walls;
+    double seconds = 0;
+};
+
+void judge(const LaidSherds& laid, RevolutionTemplate& turned, const std::string& layout, Counts& counts, Rows& csv) {
+    std::size_t used = 0, partly = 0, wrong = 0, out = 0;
+    for (std::size_t k = 0; k < laid.fragments.size(); ++k) {
+        const SherdOnProfile& sherd = turned.sherds[k];
+        const bool good = laid.good[k], left_out = sherd.use == SherdUse::left_out;
+        used += good && sherd.use == SherdUse::used;
+        partly += good && sherd.use == SherdUse::partly;
+        out += left_out;
+        wrong += !good && !left_out;
+        ++(good ? counts.belong : counts.useless);
+        if (left_out == good)
+            fmt::print(stderr, "{}, vessel {}, sherd {}{}: {} {} [disagreement {:.1f}, on template {:.2f}, weight {:.2f}]\n",
+                       layout, laid.shape.shape, k + 1, good ? "" : " (of no use)", to_string(sherd.use), sherd.reason,
+                       sherd.disagreement, sherd.on_template, sherd.weight);
+    }
+    ++counts.made;
+    counts.used += used, counts.partly += partly, counts.wrong += wrong;
+    // Aligned with the truth by its own axis, since the layout as a whole may be tilted.
+    const Vector3d up = eigen(turned.axis.direction), at = eigen(turned.axis.point);
+    counts.degrees.push_back(180 / std::numbers::pi * std::acos(std::min(1.0, std::abs(up.z()))));
+    const Vector3d foot = at + up * ((0.5 * laid.shape.height - at.z()) / up.z());
+    counts.percent.push_back(100 * foot.head<2>().norm() / box_diagonal(laid.whole));
+    counts.said.push_back(turned.direction_error);
+    counts.walls.push_back(100 * profile_error(laid.whole, laid.truth, laid.good, turned));
+    csv(layout, laid.shape.shape, laid.fragments.size(), used, partly, out, wrong, counts.degrees.back(), counts.percent.back(),
+        counts.said.back(), counts.walls.back());
+}
+
+/// Synthetic vessels, broken: surfaces of revolution from sherds that are well placed, badly placed, or unrelated.
+void turned_sherds(const SherdOptions& options) {
     const std::vector<Layout> layouts{{"as they lay", 0, 0, 0, 0, 0, false, false, 0},
                                       {"noise 0.1 %, worn 0.2 %", 0.001, 0.002, 0, 0, 0, false, false, 0},
                                       {"the same, tilted 2 degrees, shifted 1 %", 0.001, 0.002, 2, 0.01, 0, false, false, 0},
@@ -89,144 +187,44 @@ void turned_sherds(const BreakExperiment& options) {
                                       {"worn; 3 sherds lie anywhere", 0.001, 0.002, 0, 0, 3, false, false, 0},
                                       {"worn; one of another vessel, a flat tile", 0.001, 0.002, 0, 0, 0, true, true, 0},
                                       {"tilted, shifted; 3 anywhere, stranger, tile", 0.001, 0.002, 2, 0.01, 3, true, true, 0}};
-    std::ostringstream csv;
-    csv << "layout,vessel,sherds,used,partly,left_out,useless_used,axis_degrees,axis_percent,said_degrees,profile_percent\n";
-    std::cout
-        << "| layout | templates made | sherds used, partly used, of those that belong | of no use, used | axis off: degrees, "
-           "% of the diagonal (median, worst) | said: degrees | walls off % of the diagonal (median, worst) | s each "
-           "|\n|---|---|---|---|---|---|---|---|\n";
+    Rows csv("layout,vessel,sherds,used,partly,left_out,useless_used,axis_degrees,axis_percent,said_degrees,profile_percent");
+    Table table(
+        "layout | templates made | sherds used, partly used, of those that belong | of no use, used | axis off: degrees, % of "
+        "the "
+        "diagonal (median, worst) | said: degrees | walls off % of the diagonal (median, worst) | s each");
+    char letter = 'a';
     for (const Layout& layout : layouts) {
-        std::size_t made = 0, used = 0, partly = 0, belong = 0, wrong = 0, useless = 0;
-        std::vector<double> degrees, percent, said, walls;
-        double seconds = 0;
+        Counts counts;
         for (int vessel = 1; vessel <= options.pots; ++vessel) {
-            const auto shape_seed = static_cast<std::uint64_t>(options.first + vessel);
-            PotOptions shape;
-            shape.shape = shape_seed;
-            Random random(shape_seed, 91);
-            shape.height = random.uniform(12, 22), shape.radius = random.uniform(5, 9), shape.wall = random.uniform(0.4, 0.8);
-            const Mesh whole = make_pot(shape);
-            const double diagonal = box_diagonal(whole);
-            ShatterOptions breaking;
-            breaking.pieces = 8 + vessel % 5;
-            breaking.noise = layout.noise, breaking.erosion = layout.erosion;
-            breaking.seed = 300 + shape_seed;
-            std::vector<Sherd> sherds = shatter(whole, breaking);
-            if (layout.missing > 0)
-                sherds.resize(sherds.size() - static_cast<std::size_t>(layout.missing * static_cast<double>(sherds.size())));
-            std::vector<Fragment> fragments;
-            std::vector<bool> good;
-            const auto add = [&](Mesh mesh, bool belongs) {
-                fragments.emplace_back();
-                fragments.back().name = std::to_string(fragments.size());
-                fragments.back().mesh = std::move(mesh);
-                good.push_back(belongs);
-            };
-            for (const Sherd& one : sherds) add(one.mesh, true);
-            const std::vector<Fragment> truth = fragments;
-            const auto place = [&](Fragment& one, double angle, double shift) {
-                Vector3d middle = Vector3d::Zero();
-                for (const Vertex v : one.mesh.vertices()) middle += eigen(one.mesh.point(v));
-                middle /= static_cast<double>(one.mesh.number_of_vertices());
-                const Vector3d turn = angle * Vector3d(random.normal(), random.normal(), random.normal());
-                Motion motion;
-                if (turn.norm() > 0) motion.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-                motion.translation =
-                    middle - motion.rotation * middle + shift * Vector3d(random.normal(), random.normal(), random.normal());
-                one.mesh = moved(one.mesh, motion);
-            };
-            for (Fragment& one : fragments)
-                place(one, layout.degrees * std::numbers::pi / 180 / std::sqrt(2.0), layout.shift * diagonal / std::sqrt(2.0));
-            for (int k = 0; k < layout.useless; ++k) {
-                const auto which = static_cast<std::size_t>(1 + 2 * k) % truth.size();
-                place(fragments[which], 1.5, 0.15 * diagonal);
-                good[which] = false;
-            }
-            if (layout.stranger) {
-                PotOptions other = shape;
-                other.shape = shape_seed + 5000;
-                other.radius *= 0.7;
-                ShatterOptions how = breaking;
-                how.seed += 7;
-                add(shatter(make_pot(other), how)[1].mesh, false);
-                place(fragments.back(), 1.5, 0.1 * diagonal);
-            }
-            if (layout.tile) {
-                MakeOptions how;
-                how.vertices = 3000;
-                Mesh tile = make_mesh(synthetic_object("box"), how).mesh;
-                const double size = box_diagonal(tile);
-                for (const Vertex v : tile.vertices()) {
-                    Vector3d p = eigen(tile.point(v)) * (0.4 * diagonal / size);
-                    p.x() = shape.radius + 0.15 * p.x();
-                    p.z() += 0.5 * shape.height;
-                    tile.point(v) = point_of(p);
-                }
-                add(std::move(tile), false);
-                place(fragments.back(), 0.5, 0.02 * diagonal);
-            }
-            if (options.write) {
-                const Path folder = Path(options.output) / (std::string(1, static_cast<char>('a' + (&layout - layouts.data()))) +
-                                                            std::to_string(vessel));
-                std::filesystem::create_directories(folder);
-                for (const Fragment& one : fragments) write_mesh(folder / (one.name + ".ply"), one.mesh);
-            }
-            std::vector<const Fragment*> pointers;
-            for (const Fragment& one : fragments) pointers.push_back(&one);
+            LaidSherds laid = lay_sherds(layout, vessel, static_cast<std::uint64_t>(options.first + vessel));
+            for (const Fragment& one : laid.fragments)
+                if (options.write)
+                    write_mesh(Path(options.output) / fmt::format("{}{}", letter, vessel) / (one.name + ".ply"), one.mesh);
             const Stopwatch watch;
-            for (Fragment& one : fragments) one.facets = find_facets(one.mesh).of_face;
-            RevolutionTemplate turned;
+            for (Fragment& one : laid.fragments) one.facets = find_facets(one.mesh).of_face;
             try {
-                turned = template_of_revolution(pointers);
+                RevolutionTemplate turned = template_of_revolution(pointers_to(laid.fragments));
+                counts.seconds += watch.seconds().processor;
+                judge(laid, turned, layout.name, counts, csv);
             } catch (const Error& error) {
-                std::cerr << layout.name << ", vessel " << shape_seed << ": " << error.what() << '\n';
-                continue;
+                std::cerr << layout.name << ", vessel " << laid.shape.shape << ": " << error.what() << '\n';
             }
-            seconds += watch.seconds().processor;
-            ++made;
-            std::size_t own_used = 0, own_partly = 0, own_wrong = 0, own_out = 0;
-            for (std::size_t k = 0; k < fragments.size(); ++k) {
-                const SherdUse use = turned.sherds[k].use;
-                if (good[k]) own_used += use == SherdUse::used ? 1 : 0, own_partly += use == SherdUse::partly ? 1 : 0;
-                own_out += use == SherdUse::left_out ? 1 : 0;
-                own_wrong += !good[k] && use != SherdUse::left_out ? 1 : 0;
-                belong += good[k] ? 1 : 0;
-                useless += good[k] ? 0 : 1;
-                if ((use == SherdUse::left_out) == good[k])
-                    std::cerr << layout.name << ", vessel " << shape_seed << ", sherd " << k + 1
-                              << (good[k] ? "" : " (of no use)") << ": " << to_string(use) << " " << turned.sherds[k].reason
-                              << format(" [disagreement %.1f, on template %.2f, weight %.2f]\n", turned.sherds[k].disagreement,
-                                        turned.sherds[k].on_template, turned.sherds[k].weight);
-            }
-            used += own_used, partly += own_partly, wrong += own_wrong;
-            // Aligned with the truth by its own axis, since the layout as a whole may be tilted.
-            const Vector3d up = eigen(turned.axis.direction), at = eigen(turned.axis.point);
-            degrees.push_back(180 / std::numbers::pi * std::acos(std::min(1.0, std::abs(up.z()))));
-            const Vector3d foot = at + up * ((0.5 * shape.height - at.z()) / up.z());
-            percent.push_back(100 * foot.head<2>().norm() / diagonal);
-            said.push_back(turned.direction_error);
-            walls.push_back(100 * profile_error(whole, truth, good, turned));
-            csv << '"' << layout.name << "\"," << shape_seed << ',' << fragments.size() << ',' << own_used << ',' << own_partly
-                << ',' << own_out << ',' << own_wrong << ',' << degrees.back() << ',' << percent.back() << ',' << said.back()
-                << ',' << walls.back() << '\n';
         }
-        const auto middle = [](std::vector<double> values) {
-            if (values.empty()) return 0.0;
-            std::sort(values.begin(), values.end());
-            return values[values.size() / 2];
-        };
-        const auto worst = [](const std::vector<double>& values) {
-            return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
-        };
-        std::cout << "| " << layout.name
-                  << format(
-                         " | %zu of %d | %zu, %zu, of %zu | %zu of %zu | %.2f, %.2f (%.2f, %.2f) | %.2f | %.2f, %.2f | %.1f |\n",
-                         made, options.pots, used, partly, belong, wrong, useless, middle(degrees), middle(percent),
-                         worst(degrees), worst(percent), middle(said), middle(walls), worst(walls),
-                         made > 0 ? seconds / static_cast<double>(made) : 0)
-                  << std::flush;
+        ++letter;
+        const auto middle = [](const std::vector<double>& values) { return values.empty() ? 0.0 : upper_median(values); };
+        const auto worst = [](const std::vector<double>& values) { return mean_and_max(values).max; };
+        table.row("{} | {} of {} | {}, {}, of {} | {} of {} | {:.2f}, {:.2f} ({:.2f}, {:.2f}) | {:.2f} | {:.2f}, {:.2f} | {:.1f}",
+                  layout.name, counts.made, options.pots, counts.used, counts.partly, counts.belong, counts.wrong, counts.useless,
+                  middle(counts.degrees), middle(counts.percent), worst(counts.degrees), worst(counts.percent),
+                  middle(counts.said), middle(counts.walls), worst(counts.walls),
+                  counts.made > 0 ? counts.seconds / static_cast<double>(counts.made) : 0);
     }
-    write_file(Path(options.output) / "turned-sherds.csv", csv.str());
+    csv.write(Path(options.output) / "turned-sherds.csv");
 }
+
+const Registration registered("turned-sherds", "made vessels, broken: templates turned from sherds, some of no use",
+                              turned_sherds);
+
+}  // namespace
 
 }  // namespace ostraka::experiments

@@ -1,0 +1,133 @@
+// What all experiments share: the list of experiments with their options, tables and rows of results, time and memory.
+#pragma once
+
+#include "ostraka/core/file.h"
+#include "ostraka/core/mesh.h"
+#include "ostraka/core/options.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ostraka::experiments {
+
+/// A command of the program. `options` refer to the options struct that `run` reads.
+struct Experiment {
+    std::string name, help;
+    OptionList options;
+    std::function<void()> run;
+};
+
+/// All experiments of the program, in no particular order.
+std::vector<Experiment>& experiments();
+
+/// Adds an experiment to the program: a constant of this type stands below the function that runs it. `Options` lists its
+/// fields in `describe`; texts of lists may be joined by commas.
+struct Registration {
+    template <class Options>
+    Registration(std::string name, std::string help, void (*run)(const Options&)) {
+        const auto options = std::make_shared<Options>();
+        OptionList list;
+        options->describe(list);
+        experiments().push_back({std::move(name), std::move(help), std::move(list), [=] { run(*options); }});
+    }
+};
+
+/// A Markdown table, printed row by row, so that an interrupted run shows what it has.
+class Table {
+public:
+    /// `columns`: names separated by " | ". `printed` false: the table is only collected.
+    explicit Table(const std::string& columns, bool printed = true);
+    template <class... Values>
+    void row(fmt::format_string<Values...> cells, Values&&... values) {
+        add(fmt::format(cells, std::forward<Values>(values)...));
+    }
+    void add(const std::string& cells);
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    void write(const std::string& lines);
+    std::string text_;
+    bool printed_;
+};
+
+/// Rows of a CSV file: numbers with six digits, nothing for missing numbers.
+class Rows {
+public:
+    /// `columns`: names separated by commas.
+    explicit Rows(const std::string& columns) : text_(columns + "\n") {}
+    template <class... Values>
+    void operator()(const Values&... values) {
+        add({cell(values)...});
+    }
+    void add(const std::vector<std::string>& cells);
+    /// Nothing if `file` is empty.
+    void write(const Path& file) const;
+
+    static std::string cell(const std::string& text) { return text; }
+    static std::string cell(double value) { return fmt::format("{:g}", value); }
+    static std::string cell(const std::optional<double>& value) { return value ? cell(*value) : ""; }
+    template <std::integral Whole>
+    static std::string cell(Whole value) {
+        return fmt::format("{:d}", value);
+    }
+
+private:
+    std::string text_;
+};
+
+/// Wall time, and processor time of all threads; the latter is unaffected by other load if there is one thread.
+struct Seconds {
+    double wall = 0, processor = 0;
+    Seconds& operator+=(const Seconds& other) {
+        wall += other.wall;
+        processor += other.processor;
+        return *this;
+    }
+    friend Seconds operator+(Seconds a, const Seconds& b) { return a += b; }
+};
+
+class Stopwatch {
+public:
+    [[nodiscard]] Seconds seconds() const {
+        return {std::chrono::duration<double>(Clock::now() - begin_).count(),
+                static_cast<double>(std::clock() - processor_) / CLOCKS_PER_SEC};
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begin_ = Clock::now();
+    std::clock_t processor_ = std::clock();
+};
+
+/// Peak memory of the process since construction, minus the memory at construction.
+class PeakMemory {
+public:
+    PeakMemory();
+    /// Empty if the system does not report it.
+    [[nodiscard]] std::optional<double> megabytes() const;
+
+private:
+    std::optional<double> before_;
+};
+
+struct MeanAndMax {
+    double mean = 0, max = 0;
+};
+MeanAndMax mean_and_max(const std::vector<double>& values);
+/// Of the values of some vertices.
+MeanAndMax mean_and_max(const std::vector<double>& values, const std::vector<Index>& vertices);
+/// 0 if there are no values.
+inline double mean_of(const std::vector<double>& values) { return mean_and_max(values).mean; }
+/// In per cent; 0 of nothing.
+inline double percentage(std::size_t part, std::size_t all) {
+    return all == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
+}
+
+}  // namespace ostraka::experiments
