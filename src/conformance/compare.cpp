@@ -19,7 +19,7 @@ bool is_free(const Comparison& comparison, const std::string& freedom) {
     return std::find(comparison.freedoms.begin(), comparison.freedoms.end(), freedom) != comparison.freedoms.end();
 }
 
-double scale_of(const Comparison& comparison, const Mesh& mesh) {
+double length_scale(const Comparison& comparison, const Mesh& mesh) {
     return comparison.scale == "diagonal" ? box_diagonal(mesh) : 1;
 }
 
@@ -34,7 +34,7 @@ std::vector<std::array<Index, 3>> triangles_of(const Mesh& mesh) {
 }
 
 std::string surface_difference(const Comparison& comparison, const Mesh& expected, const Mesh& actual) {
-    const double limit = comparison.tolerance * scale_of(comparison, expected);
+    const double limit = comparison.tolerance * length_scale(comparison, expected);
     const auto farthest = [](const Mesh& source, const Mesh& target) {
         const SurfaceSearch search(target);
         double max_distance = 0;
@@ -52,7 +52,7 @@ std::string mesh_difference(const Comparison& comparison, const Mesh& expected, 
     if (expected.number_of_vertices() != actual.number_of_vertices() || expected.number_of_faces() != actual.number_of_faces())
         return fmt::format("{} and {}, expected {} and {}", counted(actual.number_of_vertices(), "vertex"),
                            counted(actual.number_of_faces(), "face"), expected.number_of_vertices(), expected.number_of_faces());
-    const double limit = comparison.tolerance * scale_of(comparison, expected);
+    const double limit = comparison.tolerance * length_scale(comparison, expected);
     std::vector<Index> place(actual.number_of_vertices());  // index of the matching expected vertex
     double max_distance = 0;
     if (is_free(comparison, "vertex order")) {
