@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t broken = static_cast<std::size_t>(Facet::fracture);
+constexpr std::size_t fracture_label = static_cast<std::size_t>(Facet::fracture);
 
 class Finder {
 public:
@@ -52,7 +52,7 @@ private:
         constexpr double even = 0, likely = 0.4;  // added to log odds
         if (label_fractures(even)) label_fractures(likely);
         double intact = 0;
-        for (std::size_t p = 0; p < labels_.size(); ++p) intact += labels_[p] == broken ? 0 : graph_.areas[p];
+        for (std::size_t p = 0; p < labels_.size(); ++p) intact += labels_[p] == fracture_label ? 0 : graph_.areas[p];
         constexpr double little = 0.02;  // share of the area: a fracture is recognised by contrast with intact surface
         if (intact > little * graph_.area) return;
         std::fill(labels_.begin(), labels_.end(), 0);
@@ -67,8 +67,8 @@ private:
             costs[1][p] = graph_.areas[p] * std::log1p(std::exp(-odds));
         }
         labels_ = min_labels(graph_, costs, boundary());
-        for (std::size_t& label : labels_) label = label == 1 ? broken : 0;
-        return std::find(labels_.begin(), labels_.end(), broken) != labels_.end();
+        for (std::size_t& label : labels_) label = label == 1 ? fracture_label : 0;
+        return std::find(labels_.begin(), labels_.end(), fracture_label) != labels_.end();
     }
 
     /// Whether most of the intact surface is a wall with two intact sides.
@@ -79,7 +79,7 @@ private:
             total += graph_.areas[p];
             const Index behind = walls_.behind[p];
             if (!(walls_.opposite[p] > 0.7 && walls_.depth[p] < options_.wall * graph_.size) || behind == no_index ||
-                labels_[behind] == broken)
+                labels_[behind] == fracture_label)
                 continue;
             over_wall += graph_.areas[p];
             depths.emplace_back(walls_.depth[p], graph_.areas[p]);
@@ -94,7 +94,7 @@ private:
     void classify_sides() {
         std::vector<Index> intact;
         for (std::size_t p = 0; p < labels_.size(); ++p)
-            if (labels_[p] != broken) intact.push_back(static_cast<Index>(p));
+            if (labels_[p] != fracture_label) intact.push_back(static_cast<Index>(p));
         outward_.assign(graph_.count(), 1);
         result_.shell = intact.size() < labels_.size() && is_shell(intact);
         if (!result_.shell) {
@@ -109,7 +109,8 @@ private:
         }
         std::vector<double> between = boundary();
         for (std::size_t c = 0; c < between.size(); ++c)
-            if (labels_[graph_.contacts[c].a] == broken || labels_[graph_.contacts[c].b] == broken) between[c] = 0;
+            if (labels_[graph_.contacts[c].a] == fracture_label || labels_[graph_.contacts[c].b] == fracture_label)
+                between[c] = 0;
         const std::vector<std::size_t> side = min_labels(graph_, costs, between);
         for (const Index p : intact) labels_[p] = side[p];
     }
@@ -120,7 +121,8 @@ private:
     void answer() {
         double fracture_area = 0, supported_area = 0, expected = 0;
         for (std::size_t p = 0; p < labels_.size(); ++p) {
-            if (labels_[p] == broken) fracture_area += graph_.areas[p], supported_area += graph_.areas[p] * probability_[p];
+            if (labels_[p] == fracture_label)
+                fracture_area += graph_.areas[p], supported_area += graph_.areas[p] * probability_[p];
             expected += graph_.areas[p] * probability_[p];
         }
         constexpr double little = 0.05;  // share of the area
@@ -143,8 +145,8 @@ private:
         result_.segments.resize(pieces.count);
         for (const Face f : mesh_.faces()) {
             const Index p = graph_.patch_of_face[f];
-            const double area = face_area(mesh_, f), sure = labels_[p] == broken ? probability_[p] : 1 - probability_[p];
-            const double side = labels_[p] == 0 ? outside(p) : labels_[p] == broken ? 1 : 1 - outside(p);
+            const double area = face_area(mesh_, f), sure = labels_[p] == fracture_label ? probability_[p] : 1 - probability_[p];
+            const double side = labels_[p] == 0 ? outside(p) : labels_[p] == fracture_label ? 1 : 1 - outside(p);
             FacetSegment& segment = result_.segments[pieces.of_face[f]];
             segment.facet = static_cast<Facet>(labels_[p]);
             segment.faces.push_back(static_cast<Index>(f));
