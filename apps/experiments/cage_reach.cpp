@@ -61,7 +61,7 @@ void cage_reach(const CageReachOptions& options) {
                     "unit,verdict,mean_moved,max_moved\n";
     for (const std::string& edit_item : options.edits) {
         const auto [edit_name, edit_file] = named(edit_item);
-        const Json edit = read_json(edit_file);
+        const Edit edit = edit_from_json(read_json(edit_file), edit_file);
         for (const std::string& cage_item : options.cages) {
             const auto [cage_name, cage_file] = named(cage_item);
             const Mesh cage = read_mesh(cage_file).mesh;

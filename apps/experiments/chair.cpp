@@ -137,11 +137,8 @@ AxisDeviation deviation(const Chair& chair, const std::vector<Point>& points) {
 Constraints thesis_constraints(const Chair& chair, const std::vector<Index>& constrained) {
     Constraints list;
     add_closeness(list, chair.subject, chair.edited, held);
-    add_laplacians(list, chair.subject, vertices_of(chair.subject.mesh, chair.subject.part("left arm")), "Laplacian", 1);
-    ConstraintParameters parameters;
-    parameters.direction = chair.direction;
-    parameters.point = chair.point;
-    list.push_back(make_constraint("CoAxiality", {constrained.begin(), constrained.end()}, 1, parameters,
+    add_laplacians(list, chair.subject, vertices_of(chair.subject.mesh, chair.subject.part("left arm")), kinds::Laplacian{}, 1);
+    list.push_back(make_constraint(kinds::CoAxiality{chair.direction, chair.point}, {constrained.begin(), constrained.end()}, 1,
                                    columns(points_of(chair.subject.mesh))));
     return list;
 }

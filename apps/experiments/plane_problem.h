@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/mesh.h"
+#include "ostraka/solver/make_constraint.h"
 #include "ostraka/solver/solve.h"
 
 #include <memory>

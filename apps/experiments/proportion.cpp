@@ -42,7 +42,7 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
         std::set<Index> around(joint.begin(), joint.end());
         for (const Index v : joint)
             for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v)))) around.insert(w.idx());
-        add_laplacians(list, subject, {around.begin(), around.end()}, "Laplacian", 1);
+        add_laplacians(list, subject, {around.begin(), around.end()}, kinds::Laplacian{}, 1);
         std::vector<int> ids;
         for (const Index v : vertices_of(subject.mesh, part)) ids.push_back(static_cast<int>(v));
         const auto place = [&](Index v) {
@@ -51,21 +51,17 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
             ids.push_back(static_cast<int>(v));
             return static_cast<int>(ids.size() - 1);
         };
-        ConstraintParameters parameters;
-        parameters.pins = {place(first.points[0]), place(first.points[1])};
-        parameters.split = static_cast<int>(ids.size());
+        kinds::Proportion kind{{ratio.min, ratio.max}, {{place(first.points[0]), place(first.points[1])}}};
+        kind.part = static_cast<int>(ids.size());
         if (anchored)
-            for (const Index v : joint) parameters.anchors.push_back(place(v));
-        parameters.pins.push_back(place(second.points[0]));
-        parameters.pins.push_back(place(second.points[1]));
-        parameters.min = ratio.min;
-        parameters.max = ratio.max;
+            for (const Index v : joint) kind.anchors.push_back(place(v));
+        kind.second = kinds::PinnedMeasure{{place(second.points[0]), place(second.points[1])}};
         const auto vector = [](const std::optional<std::array<double, 3>>& d) {
             return d ? std::optional(Vector3d((*d)[0], (*d)[1], (*d)[2])) : std::nullopt;
         };
-        parameters.direction = vector(first.direction);
-        parameters.second_direction = vector(second.direction);
-        list.push_back(make_constraint("Proportion", ids, 1, parameters, rest));
+        kind.measure.direction = vector(first.direction);
+        kind.second->direction = vector(second.direction);
+        list.push_back(make_constraint(kind, ids, 1, rest));
     }
     return list;
 }

@@ -27,28 +27,19 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 /// An edit that moves the differing vertices to their target positions.
-Json moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
-    Json edit(rapidjson::kObjectType);
-    auto& allocator = edit.GetAllocator();
-    add_member(edit, "format", "ostraka-edit", allocator);
-    add_member(edit, "version", JsonValue(1), allocator);
-    JsonValue vertices(rapidjson::kArrayType), places(rapidjson::kArrayType), steps(rapidjson::kArrayType);
+Edit moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
+    EditStep::MeshVertices vertices;
+    EditStep::MoveTo move;
     for (std::size_t i = 0; i < from.size(); ++i) {
         if (from[i] == to[i]) continue;
-        JsonValue place(rapidjson::kArrayType);
-        place.PushBack(to[i].x(), allocator).PushBack(to[i].y(), allocator).PushBack(to[i].z(), allocator);
-        vertices.PushBack(static_cast<unsigned>(i), allocator);
-        places.PushBack(place, allocator);
+        vertices.indices.push_back(static_cast<Index>(i));
+        move.places.push_back(eigen(to[i]));
     }
-    if (!vertices.Empty()) {
-        JsonValue select(rapidjson::kObjectType), step(rapidjson::kObjectType);
-        add_member(select, "vertices", std::move(vertices), allocator);
-        add_member(step, "select", std::move(select), allocator);
-        add_member(step, "moveTo", std::move(places), allocator);
-        steps.PushBack(step, allocator);
-    }
-    add_member(edit, "steps", std::move(steps), allocator);
-    return edit;
+    if (vertices.indices.empty()) return {};
+    EditStep step;
+    step.select = std::move(vertices);
+    step.operation = std::move(move);
+    return {{std::move(step)}};
 }
 
 }  // namespace
@@ -83,7 +74,7 @@ Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, 
                       const std::string& name, const std::string& file) {
     options.conflicts = 0;
     if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
-    const Json edit = moved_to(points_of(subject.mesh), edited);
+    const Edit edit = moved_to(points_of(subject.mesh), edited);
     const auto start = std::chrono::steady_clock::now();
     DeformResult result = deform({subject.mesh, subject.set}, graph, edit, name, options);
     return {name, file, result.points, result.summary, result.rounds, seconds_since(start), std::move(result.constraints)};
@@ -106,19 +97,17 @@ Outcome solved_from(const Subject& subject, const std::vector<Point>& edited, Co
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight) {
     std::vector<int> ids;
     for (const Vertex v : subject.mesh.vertices()) ids.push_back(static_cast<int>(v.idx()));
-    ConstraintParameters parameters;
-    parameters.target = columns(edited);
-    list.push_back(make_constraint("Closeness", ids, weight, parameters, columns(points_of(subject.mesh))));
+    list.push_back(make_constraint(kinds::Closeness{columns(edited)}, ids, weight, columns(points_of(subject.mesh))));
 }
 
-void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const std::string& kind,
+void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const ConstraintKind& kind,
                     double weight) {
     const Points rest = columns(points_of(subject.mesh));
     for (const Index v : vertices) {
         std::vector<int> ids{static_cast<int>(v)};
         for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v))))
             ids.push_back(static_cast<int>(w.idx()));
-        list.push_back(make_constraint(kind, ids, weight, {}, rest));
+        list.push_back(make_constraint(kind, ids, weight, rest));
     }
 }
 
@@ -148,7 +137,7 @@ std::vector<Index> joint_of(const Mesh& mesh, const Annotation& part, const Anno
 }
 
 double rigid_distance(const Subject& subject, const std::vector<Index>& vertices, const std::vector<Point>& points) {
-    const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, columns(points_of(subject.mesh)));
+    const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, columns(points_of(subject.mesh)));
     return std::sqrt(rigid->squared_distance(columns(points)) / static_cast<double>(vertices.size()));
 }
 

@@ -4,6 +4,7 @@
 #include "ostraka/report/plot.h"
 #include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
+#include "ostraka/solver/make_constraint.h"
 #include "ostraka/synthetic/synthetic_object.h"
 
 #include <functional>
@@ -50,7 +51,7 @@ Outcome solved_from(const Subject& subject, const std::vector<Point>& edited, Co
 /// Closeness of every vertex to its position in `edited`.
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight);
 /// A Laplacian constraint of type `kind` on each of these vertices and its neighbours.
-void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const std::string& kind,
+void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, const ConstraintKind& kind,
                     double weight);
 
 Points columns(const std::vector<Point>& points);

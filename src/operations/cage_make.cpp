@@ -332,11 +332,12 @@ private:
         set_ = &annotations.on(mesh->mesh);
         report.set_unit(set_->unit);
         const std::string edit_name = edit ? edit.file() : "a stretch by a tenth";
-        if (edit) validate(*edit, "edit", edit_name);
+        std::optional<Edit> given;
+        if (edit) given = edit_from_json(*edit, edit_name);
         Coordinates own;
         if (!weights) own = compute_coordinates("mean-value", cage->mesh, mesh->mesh);
         const HandleSpace space{mesh->mesh, *set_, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &own};
-        auto list = cage_reach(space, graph.on(*set_), edit ? &*edit : nullptr, edit_name, deform_tolerances(), graph.file());
+        auto list = cage_reach(space, graph.on(*set_), given ? &*given : nullptr, edit_name, deform_tolerances(), graph.file());
         report_reach(report, list, *set_);
         return list;
     }

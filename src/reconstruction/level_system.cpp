@@ -3,6 +3,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <Eigen/LU>
 
@@ -142,22 +143,21 @@ std::vector<std::unique_ptr<Constraint>> LevelSystem::constraints() {
     laplacian_.clear();
     for (const Vertex v : mesh.vertices()) {
         const int i = static_cast<int>(v.idx());
-        ConstraintParameters here;
-        here.target = rest.col(i);
+        const kinds::Closeness at_rest{rest.col(i)};
         match_.push_back(list.size());
-        list.push_back(make_constraint("Closeness", {i}, 0, here, rest));
+        list.push_back(make_constraint(at_rest, {i}, 0, rest));
         stay_.push_back(list.size());
-        list.push_back(make_constraint("Closeness", {i}, 1, here, rest));
+        list.push_back(make_constraint(at_rest, {i}, 1, rest));
         laplacian_.push_back(no_constraint);
         if (mesh.is_isolated(v)) continue;
         std::vector<int> ids{i};
-        ConstraintParameters ring;
+        kinds::CotangentLaplacianDisplacement ring;
         for (std::size_t k = rings.begin[v]; k < rings.begin[v + 1]; ++k) {
             ids.push_back(rings.neighbour[k]);
-            ring.coefficients.push_back(rings.weight[k]);
+            ring.weights.push_back(rings.weight[k]);
         }
         laplacian_.back() = list.size();
-        list.push_back(make_constraint("CotangentLaplacianDisplacement", std::move(ids), 1, ring, rest));
+        list.push_back(make_constraint(ring, std::move(ids), 1, rest));
     }
     return list;
 }
