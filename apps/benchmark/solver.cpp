@@ -4,6 +4,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/solver/make_constraint.h"
 #include "ostraka/solver/solve.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/synthetic/make_mesh.h"
@@ -44,14 +45,14 @@ std::vector<int> patch(const Points& points, std::size_t count) {
 using ConstraintList = std::vector<std::unique_ptr<Constraint>>;
 
 void add_plane(ConstraintList& constraints, const Points& rest) {
-    constraints.push_back(make_constraint("Plane", patch(rest, static_cast<std::size_t>(rest.cols() / 40)), 1, {}, rest));
+    constraints.push_back(make_constraint(kinds::Plane{}, patch(rest, static_cast<std::size_t>(rest.cols() / 40)), 1, rest));
 }
 
 void add_laplacians(ConstraintList& constraints, const Mesh& mesh, const Points& rest, double weight) {
     for (const Vertex v : mesh.vertices()) {
         std::vector<int> ids{static_cast<int>(v.idx())};
         for (const Vertex w : CGAL::vertices_around_target(mesh.halfedge(v), mesh)) ids.push_back(static_cast<int>(w.idx()));
-        constraints.push_back(make_constraint("LaplacianDisplacement", std::move(ids), weight, {}, rest));
+        constraints.push_back(make_constraint(kinds::LaplacianDisplacement{}, std::move(ids), weight, rest));
     }
 }
 
@@ -116,7 +117,7 @@ void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
     SolveSummary summary;
     for ([[maybe_unused]] const auto lap : state) {
         ConstraintList constraints;
-        for (int i = 0; i < rest.cols(); ++i) constraints.push_back(make_constraint("Closeness", {i}, 1, {}, rest));
+        for (int i = 0; i < rest.cols(); ++i) constraints.push_back(make_constraint(kinds::Closeness{}, {i}, 1, rest));
         add_plane(constraints, rest);
         MeshSpaceSolver solver(std::move(constraints), rest);
         Points x = rest;
@@ -161,11 +162,9 @@ void same_level(benchmark::State& state, int window) {
             const auto squared_distance = [&](int i) { return (rest.col(i) - mean).squaredNorm(); };
             centres.push_back(*std::min_element(ids.begin(), ids.end(),
                                                 [&](int a, int b) { return squared_distance(a) < squared_distance(b); }));
-            constraints.push_back(make_constraint("Rigid", ids, 4, {}, rest));
+            constraints.push_back(make_constraint(kinds::Rigid{}, ids, 4, rest));
         }
-        ConstraintParameters upright;
-        upright.direction = Eigen::Vector3d(0.1, 0, 1);
-        constraints.push_back(make_constraint("Orientation", centres, 4, upright, rest));
+        constraints.push_back(make_constraint(kinds::Orientation{{0.1, 0, 1}}, centres, 4, rest));
         return constraints;
     };
     SolveOptions options;
@@ -222,17 +221,16 @@ void through_cage(benchmark::State& state, Kind kind) {
     ConstraintList constraints;
     const int half = static_cast<int>(rest.cols() / 2);
     if (kind == Kind::edges) {
-        ConstraintParameters shorter;
-        shorter.min = shorter.max = 0.9;
-        for (int i = 0; i < half; ++i) constraints.push_back(make_constraint("EdgeStrain", {i, i + 1}, 1, shorter, rest));
+        for (int i = 0; i < half; ++i) constraints.push_back(make_constraint(kinds::EdgeStrain{{0.9, 0.9}}, {i, i + 1}, 1, rest));
     } else {
         for (int group = 0; group < 5; ++group) {
             std::vector<int> ids;
             for (int i = group * (half / 5); i < (group + 1) * (half / 5); ++i) ids.push_back(i);
-            constraints.push_back(make_constraint(kind == Kind::planes ? "Plane" : "Rigid", ids, 1, {}, rest));
+            constraints.push_back(
+                make_constraint(kind == Kind::planes ? ConstraintKind(kinds::Plane{}) : kinds::Rigid{}, ids, 1, rest));
         }
     }
-    constraints.push_back(make_constraint("Closeness", {static_cast<int>(rest.cols()) - 1}, 1, {}, rest));
+    constraints.push_back(make_constraint(kinds::Closeness{}, {static_cast<int>(rest.cols()) - 1}, 1, rest));
     const std::size_t rows = kind == Kind::edges ? static_cast<std::size_t>(half) : 0;
     CageSpaceSolver solver(std::move(constraints), weights, cage);
     solver.initialize();
@@ -271,17 +269,16 @@ void interactive_edit(benchmark::State& state) {
     std::vector<int> ids(static_cast<std::size_t>(handles));
     std::iota(ids.begin(), ids.end(), static_cast<int>(n));
     ConstraintList constraints;
-    constraints.push_back(make_constraint("Closeness", ids, 1, {}, rest));
+    constraints.push_back(make_constraint(kinds::Closeness{}, ids, 1, rest));
     std::vector<int> members;
-    ConstraintParameters level;
-    level.direction = Eigen::Vector3d::UnitZ();
+    kinds::MeansOnLevel level{Eigen::Vector3d::UnitZ()};
     int count = 0;
     for (const std::vector<int>& flower : flowers_of(teapot)) {
-        constraints.push_back(make_constraint("Rigid", flower, 50, {}, rest));
+        constraints.push_back(make_constraint(kinds::Rigid{}, flower, 50, rest));
         members.insert(members.end(), flower.begin(), flower.end());
-        level.stations.insert(level.stations.end(), flower.size(), count++);
+        level.groups.insert(level.groups.end(), flower.size(), count++);
     }
-    constraints.push_back(make_constraint("MeansOnLevel", members, 50, level, rest));
+    constraints.push_back(make_constraint(level, members, 50, rest));
     CageSpaceSolver solver(std::move(constraints), weights, cage);
     solver.initialize();
     SolveOptions options;

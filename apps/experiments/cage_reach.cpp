@@ -70,7 +70,7 @@ void cage_reach(const CageReachOptions& options) {
         "mean_moved,max_moved");
     for (const std::string& edit_file : options.edits) {
         const std::string edit_name = name_of_file(edit_file);
-        const Json edit = read_json(edit_file);
+        const Edit edit = edit_from_json(read_json(edit_file), edit_file);
         for (const std::string& cage_file : options.cages) {
             const std::string cage_name = name_of_file(cage_file);
             const Mesh cage = read_mesh(cage_file).mesh;

@@ -135,11 +135,8 @@ Constraints thesis_constraints(const Chair& chair, const std::vector<Index>& con
     Constraints list;
     add_closeness(list, chair.subject, chair.edited, closeness_weight);
     add_laplacians(list, chair.subject, chair.subject.vertices("left arm"), 1);
-    ConstraintParameters parameters;
-    parameters.direction = chair.direction;
-    parameters.point = chair.point;
-    list.push_back(
-        make_constraint("CoAxiality", {constrained.begin(), constrained.end()}, 1, parameters, columns_of(chair.subject.mesh)));
+    list.push_back(make_constraint(kinds::CoAxiality{chair.direction, chair.point}, {constrained.begin(), constrained.end()}, 1,
+                                   columns_of(chair.subject.mesh)));
     return list;
 }
 

@@ -126,7 +126,7 @@ SolveSummary solve_nested(Constraints list, const CageWeights& weights, const Po
         for (const Index v : levels[l].cage.vertices)
             if (l != own)
                 list.push_back(
-                    make_constraint("Closeness", {static_cast<int>(weights.rows()) + static_cast<int>(v)}, 1e6, {}, all));
+                    make_constraint(kinds::Closeness{}, {static_cast<int>(weights.rows()) + static_cast<int>(v)}, 1e6, all));
     return CageSpaceSolver(std::move(list), extended, cage_rest).solve(x, how);
 }
 

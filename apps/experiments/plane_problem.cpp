@@ -20,15 +20,15 @@ std::vector<std::unique_ptr<Constraint>> plane_constraints(const Mesh& mesh, con
     for (const Vertex v : mesh.vertices()) {
         std::vector<int> ids{static_cast<int>(v.idx())};
         if (problem.rest_kind == "closeness") {
-            list.push_back(make_constraint("Closeness", std::move(ids), problem.rest_weight, {}, rest));
+            list.push_back(make_constraint(kinds::Closeness{}, std::move(ids), problem.rest_weight, rest));
         } else if (problem.rest_kind == "laplacian") {
             for (const Vertex w : CGAL::vertices_around_target(mesh.halfedge(v), mesh)) ids.push_back(static_cast<int>(w.idx()));
-            list.push_back(make_constraint("LaplacianDisplacement", std::move(ids), problem.rest_weight, {}, rest));
+            list.push_back(make_constraint(kinds::LaplacianDisplacement{}, std::move(ids), problem.rest_weight, rest));
         } else if (problem.rest_kind != "nothing") {
             fail_usage("'" + problem.rest_kind + "' is none of nothing, closeness and laplacian");
         }
     }
-    list.push_back(make_constraint("Plane", {region.begin(), region.end()}, problem.plane_weight, {}, rest));
+    list.push_back(make_constraint(kinds::Plane{}, {region.begin(), region.end()}, problem.plane_weight, rest));
     return list;
 }
 

@@ -3,6 +3,7 @@
 
 #include "scenes.h"
 
+#include "ostraka/solver/make_constraint.h"
 #include "ostraka/solver/solve.h"
 
 #include <memory>

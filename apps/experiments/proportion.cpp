@@ -46,21 +46,17 @@ Constraints thesis_proportions(const Subject& subject, const std::vector<Point>&
             ids.push_back(static_cast<int>(v));
             return static_cast<int>(ids.size() - 1);
         };
-        ConstraintParameters parameters;
-        parameters.pins = {place(first.points[0]), place(first.points[1])};
-        parameters.split = static_cast<int>(ids.size());
+        kinds::Proportion kind{{ratio.min, ratio.max}, {{place(first.points[0]), place(first.points[1])}}};
+        kind.part = static_cast<int>(ids.size());
         if (anchored)
-            for (const Index v : joint) parameters.anchors.push_back(place(v));
-        parameters.pins.push_back(place(second.points[0]));
-        parameters.pins.push_back(place(second.points[1]));
-        parameters.min = ratio.min;
-        parameters.max = ratio.max;
+            for (const Index v : joint) kind.anchors.push_back(place(v));
+        kind.second = kinds::PinnedMeasure{{place(second.points[0]), place(second.points[1])}};
         const auto vector = [](const std::optional<std::array<double, 3>>& d) {
             return d ? std::optional(Vector3d((*d)[0], (*d)[1], (*d)[2])) : std::nullopt;
         };
-        parameters.direction = vector(first.direction);
-        parameters.second_direction = vector(second.direction);
-        list.push_back(make_constraint("Proportion", ids, 1, parameters, columns_of(subject.mesh)));
+        kind.measure.direction = vector(first.direction);
+        kind.second->direction = vector(second.direction);
+        list.push_back(make_constraint(kind, ids, 1, columns_of(subject.mesh)));
     }
     return list;
 }

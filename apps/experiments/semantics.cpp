@@ -19,22 +19,19 @@ namespace ostraka::experiments {
 namespace {
 
 /// An edit that moves the differing vertices to their target positions.
-Json moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
-    Json edit = json_document("edit");
-    auto& allocator = edit.GetAllocator();
-    std::vector<Index> vertices;
-    std::vector<std::array<double, 3>> places;
-    for (std::size_t i = 0; i < from.size(); ++i)
-        if (from[i] != to[i]) {
-            vertices.push_back(static_cast<Index>(i));
-            places.push_back({to[i].x(), to[i].y(), to[i].z()});
-        }
-    JsonValue steps(rapidjson::kArrayType);
-    if (!vertices.empty())
-        steps.PushBack(json_object(allocator, "select", json_object(allocator, "vertices", vertices), "moveTo", places),
-                       allocator);
-    add_members(edit, allocator, "steps", std::move(steps));
-    return edit;
+Edit moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
+    EditStep::MeshVertices vertices;
+    EditStep::MoveTo move;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (from[i] == to[i]) continue;
+        vertices.indices.push_back(static_cast<Index>(i));
+        move.places.push_back(eigen(to[i]));
+    }
+    if (vertices.indices.empty()) return {};
+    EditStep step;
+    step.select = std::move(vertices);
+    step.operation = std::move(move);
+    return {{std::move(step)}};
 }
 
 }  // namespace
@@ -141,9 +138,8 @@ Problem deform_problem(const std::string& name, const std::string& title, const 
 
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight) {
     const std::vector<Index> all = all_vertices(subject.mesh);
-    ConstraintParameters parameters;
-    parameters.target = columns_of(edited);
-    list.push_back(make_constraint("Closeness", {all.begin(), all.end()}, weight, parameters, columns_of(subject.mesh)));
+    list.push_back(
+        make_constraint(kinds::Closeness{columns_of(edited)}, {all.begin(), all.end()}, weight, columns_of(subject.mesh)));
 }
 
 void add_laplacians(Constraints& list, const Subject& subject, const std::vector<Index>& vertices, double weight) {
@@ -152,7 +148,7 @@ void add_laplacians(Constraints& list, const Subject& subject, const std::vector
         std::vector<int> ids{static_cast<int>(v)};
         for (const Vertex w : subject.mesh.vertices_around_target(subject.mesh.halfedge(Vertex(v))))
             ids.push_back(static_cast<int>(w.idx()));
-        list.push_back(make_constraint("Laplacian", ids, weight, {}, rest));
+        list.push_back(make_constraint(kinds::Laplacian{}, ids, weight, rest));
     }
 }
 
@@ -176,7 +172,7 @@ std::vector<Index> joint_of(const Mesh& mesh, const Annotation& part, const Anno
 }
 
 double rigid_distance(const Subject& subject, const std::vector<Index>& vertices, const std::vector<Point>& points) {
-    const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, columns_of(subject.mesh));
+    const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, columns_of(subject.mesh));
     return std::sqrt(rigid->squared_distance(columns_of(points)) / static_cast<double>(vertices.size()));
 }
 

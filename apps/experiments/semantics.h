@@ -7,6 +7,7 @@
 
 #include "ostraka/report/table.h"
 #include "ostraka/semantic/deform.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <functional>
 

@@ -22,7 +22,7 @@ struct CageEdit final : Operation {
 
     void run(Context&, Report& report) override {
         const Mesh& rest = cage->mesh;
-        const Json& steps = *edit;
+        const Edit steps = edit_from_json(*edit, edit.file());
         refuse_annotations(steps);
         const AnnotationSet no_annotations;
         const Coordinates identity{"own", WeightMatrix::Identity(rest.number_of_vertices(), rest.number_of_vertices()), {}};
@@ -42,16 +42,12 @@ struct CageEdit final : Operation {
     }
 
     /// Refuses steps that select by annotation: there are no annotations here.
-    void refuse_annotations(const Json& document) const {
-        const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;
-        if (steps == nullptr || !steps->IsArray()) return;
-        for (rapidjson::SizeType i = 0; i < steps->Size(); ++i) {
-            const JsonValue* select = (*steps)[i].IsObject() ? find_member((*steps)[i], "select") : nullptr;
-            if (select != nullptr && select->IsObject() && find_member(*select, "annotation") != nullptr)
+    void refuse_annotations(const Edit& steps) const {
+        for (std::size_t i = 0; i < steps.steps.size(); ++i)
+            if (std::holds_alternative<EditStep::Annotations>(steps.steps[i].select))
                 fail_input(fmt::format("{}, /steps/{}", edit.file(), i),
                            "selects by annotation, but 'cage edit' reads no annotations",
                            "select cageVertices, box or all, or use 'ostraka deform'");
-        }
     }
 
     MeshInput cage;

@@ -346,11 +346,12 @@ private:
         set_ = &annotations.on(mesh->mesh);
         report.set_unit(set_->unit);
         const std::string edit_name = edit ? edit.file() : "a stretch by a tenth";
-        if (edit) validate(*edit, "edit", edit_name);
+        std::optional<Edit> given;
+        if (edit) given = edit_from_json(*edit, edit_name);
         Coordinates mean_value;
         if (!weights) mean_value = compute_coordinates("mean-value", cage->mesh, mesh->mesh);
         const HandleSpace space{mesh->mesh, *set_, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &mean_value};
-        auto reaches = cage_reach(space, graph.on(*set_), edit ? &*edit : nullptr, edit_name, deform_tolerances(), graph.file());
+        auto reaches = cage_reach(space, graph.on(*set_), given ? &*given : nullptr, edit_name, deform_tolerances(), graph.file());
         report_reach(report, reaches, *set_);
         return reaches;
     }

@@ -70,7 +70,7 @@ struct Deform final : Operation {
 
     void run(Context& context, Report& report) override {
         const std::string where = edit ? edit.file() : "the command line";
-        if (edit) validate(*edit, "edit", where);
+        const Edit given = edit ? edit_from_json(*edit, where) : Edit();
         const auto step = [](std::size_t i) { return "-step" + std::to_string(i + 1); };
         const Stopwatch stopwatch;
         static const AnnotationSet no_annotations;
@@ -86,10 +86,10 @@ struct Deform final : Operation {
             subject.around = &*cage;
             subject.coordinates = &weights.of(subject.object->mesh, cage->mesh);
         }
-        const Json steps = all_steps(subject);
+        const Edit all = all_steps(subject, given);
         if (states) {
             std::vector<Path> files;
-            for (std::size_t i = 0; i < steps["steps"].Size(); ++i) files.emplace_back(output.part_file(step(i)));
+            for (std::size_t i = 0; i < all.steps.size(); ++i) files.emplace_back(output.part_file(step(i)));
             context.check_outputs(files);
         }
         if (graph) subject.relations = &graph.on(*subject.set);
@@ -99,7 +99,7 @@ struct Deform final : Operation {
         RelationGraph relations;
         if (subject.relations != nullptr) relations.relationships = subject.relations->relationships;
         add_constraints(words, *subject.set, relations);
-        const DeformResult result = deform(space, relations, steps, where, options, tolerances,
+        const DeformResult result = deform(space, relations, all, where, options, tolerances,
                                            graph               ? graph.file()
                                            : subject.relations ? "the template's graph"
                                                                : "the command line");
@@ -117,7 +117,7 @@ struct Deform final : Operation {
             report.note("the vertices within the tetrahedra stay where they are: deform through a cage, which moves them along");
         output.write(shaped, subject.object->extras);
         if (states) {
-            const auto followed = follow_edit(steps, space, where);
+            const auto followed = follow_edit(all, space, where);
             for (std::size_t i = 0; i < followed.size(); ++i) {
                 const Mesh state = with_points(space.mesh, shape_of_edit(space, followed[i], options));
                 output.write_part(step(i), state, subject.object->extras);
@@ -146,23 +146,16 @@ struct Deform final : Operation {
     }
 
     /// All steps: to the deformed cage, then those of the edit, then those given in words.
-    [[nodiscard]] Json all_steps(const Subject& subject) const {
-        Json said = edit_of(words, *subject.set);
-        if (!edit && !deformed_cage) return said;
-        Json all;
-        all.CopyFrom(edit ? *edit : said, all.GetAllocator());
-        JsonValue steps(rapidjson::kArrayType);
-        if (deformed_cage) steps.PushBack(step_to_cage(subject, all.GetAllocator()), all.GetAllocator());
-        if (edit)
-            for (JsonValue& one : all["steps"].GetArray()) steps.PushBack(one, all.GetAllocator());
-        for (const JsonValue& one : said["steps"].GetArray())
-            steps.PushBack(JsonValue(one, all.GetAllocator()), all.GetAllocator());
-        all["steps"] = steps;
+    [[nodiscard]] Edit all_steps(const Subject& subject, const Edit& given) const {
+        Edit all;
+        if (deformed_cage) all.steps.push_back(step_to_cage(subject));
+        const Edit in_words = edit_of(words, *subject.set);
+        for (const Edit* part : {&given, &in_words}) all.steps.insert(all.steps.end(), part->steps.begin(), part->steps.end());
         return all;
     }
 
     /// A step that moves the cage vertices whose positions differ in the deformed cage.
-    [[nodiscard]] JsonValue step_to_cage(const Subject& subject, JsonAllocator& allocator) const {
+    [[nodiscard]] EditStep step_to_cage(const Subject& subject) const {
         if (subject.around == nullptr)
             fail_usage("--deformed-cage without a cage",
                        "add --cage and --weights, or a cage and its coordinates to the template");
@@ -173,16 +166,19 @@ struct Deform final : Operation {
                            std::to_string(from.number_of_vertices()),
                        "give the cage itself in another shape");
         const double moved = 1e-9 * box_diagonal(from);
-        std::vector<Index> vertices;
-        JsonValue places(rapidjson::kArrayType);
+        EditStep::CageVertices vertices;
+        EditStep::MoveTo move;
         for (const Vertex v : from.vertices()) {
             const Point& p = to.point(v);
             if (CGAL::squared_distance(from.point(v), p) <= moved * moved) continue;
-            vertices.push_back(v);
-            places.PushBack(json_value(std::array{p.x(), p.y(), p.z()}, allocator), allocator);
+            vertices.indices.push_back(v);
+            move.places.emplace_back(p.x(), p.y(), p.z());
         }
-        if (vertices.empty()) fail_input(deformed_cage.file(), "has the shape of the cage", "move some of its vertices");
-        return json_object(allocator, "select", json_object(allocator, "cageVertices", vertices), "moveTo", std::move(places));
+        if (vertices.indices.empty()) fail_input(deformed_cage.file(), "has the shape of the cage", "move some of its vertices");
+        EditStep step;
+        step.select = std::move(vertices);
+        step.operation = std::move(move);
+        return step;
     }
 
     Subject of_template(Context& context) {

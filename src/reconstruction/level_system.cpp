@@ -3,6 +3,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <Eigen/LU>
 
@@ -143,22 +144,21 @@ std::vector<std::unique_ptr<Constraint>> LevelSystem::constraints() {
     laplacian_.clear();
     for (const Vertex v : mesh.vertices()) {
         const int i = static_cast<int>(v.idx());
-        ConstraintParameters at_rest;
-        at_rest.target = rest.col(i);
+        const kinds::Closeness at_rest{rest.col(i)};
         match_.push_back(result.size());
-        result.push_back(make_constraint("Closeness", {i}, 0, at_rest, rest));
+        result.push_back(make_constraint(at_rest, {i}, 0, rest));
         stay_.push_back(result.size());
-        result.push_back(make_constraint("Closeness", {i}, 1, at_rest, rest));
+        result.push_back(make_constraint(at_rest, {i}, 1, rest));
         laplacian_.push_back(no_constraint);
         if (mesh.is_isolated(v)) continue;
         std::vector<int> ids{i};
-        ConstraintParameters ring;
+        kinds::CotangentLaplacianDisplacement ring;
         for (std::size_t k = rings.begin[v]; k < rings.begin[v + 1]; ++k) {
             ids.push_back(rings.neighbour[k]);
-            ring.coefficients.push_back(rings.weight[k]);
+            ring.weights.push_back(rings.weight[k]);
         }
         laplacian_.back() = result.size();
-        result.push_back(make_constraint("CotangentLaplacianDisplacement", std::move(ids), 1, ring, rest));
+        result.push_back(make_constraint(ring, std::move(ids), 1, rest));
     }
     return result;
 }

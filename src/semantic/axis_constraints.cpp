@@ -1,6 +1,6 @@
 // Constraints between the axes of parts. The last member is the reference, whose axis is not changed.
 #include "continuity.h"
-#include "reader.h"
+#include "statements.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -19,70 +19,70 @@ Axis steadiest(const Mesh& mesh, const Annotation& part) {
     return found.found ? found : axis_of_part(mesh, part);
 }
 
-Axis axis_of(const Reader& read, std::size_t i, AxisFinder find) {
-    read.need_region(i);
-    Axis found = find(read.shape().mesh, read.member(i));
+Axis axis_of(const ConstraintMembers& members, std::size_t i, AxisFinder find) {
+    members.need_region(i);
+    Axis found = find(members.shape().mesh, members.member(i));
     if (!found.found)
-        read.fail("annotation " + std::to_string(read.member(i).id) + " has no axis: " + found.reason, "use another relation");
+        members.fail("annotation " + std::to_string(members.member(i).id) + " has no axis: " + found.reason,
+                     "use another relation");
     return found;
 }
 
 /// The axes of all members, at least two.
-std::vector<Axis> axes_of_parts(const Reader& read) {
-    read.need(2, 0);
+std::vector<Axis> axes_of_parts(const ConstraintMembers& members) {
+    members.need(2, 0);
     std::vector<Axis> axes;
-    for (std::size_t i = 0; i < read.members(); ++i) axes.push_back(axis_of(read, i, axis_of_part));
+    for (std::size_t i = 0; i < members.count(); ++i) axes.push_back(axis_of(members, i, axis_of_part));
     return axes;
 }
 
 /// The axis of the reference on the current shape, or at rest if the deformed reference has none.
-Axis reference_now(const Reader& read, const Axis& rest, const State& now, AxisFinder find) {
-    Axis found = find(now.mesh, read.member(read.members() - 1));
+Axis reference_now(const ConstraintMembers& members, const Axis& rest, const State& now, AxisFinder find) {
+    Axis found = find(now.mesh, members.member(members.count() - 1));
     return found.found ? found : rest;
 }
 
 }  // namespace
 
-Motion motion_back(const Reader& read, const std::vector<Index>& vertices, const State& now) {
+Motion motion_back(const ConstraintMembers& members, const std::vector<Index>& vertices, const State& now) {
     std::vector<Vector3d> from, to;
     for (const Index v : vertices) {
         from.emplace_back(now.points.col(v));
-        to.emplace_back(read.shape().rest.col(v));
+        to.emplace_back(members.shape().rest.col(v));
     }
     return fit_motion(from, to);
 }
 
-Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, const State& now) {
-    Axis found = axis_of_part(now.mesh, read.member(i));
+Axis axis_carried_back(const ConstraintMembers& members, std::size_t i, const Axis& rest, const State& now) {
+    Axis found = axis_of_part(now.mesh, members.member(i));
     if (!found.found) return rest;
-    const Motion back = motion_back(read, read.vertices(i), now);
+    const Motion back = motion_back(members, members.vertices(i), now);
     found.point = point_of(back(eigen(found.point)));
     found.direction = vector_of(back.rotation * eigen(found.direction));
     return found;
 }
 
-Statement::Constraints stars_kept(const Reader& read, const std::vector<Index>& vertices, const Points& shape, double grown) {
+Statement::Constraints stars_kept(const ConstraintMembers& members, const std::vector<Index>& vertices, const Points& shape,
+                                  double grown) {
     constexpr double stiffness = 10;
-    const Mesh& mesh = read.shape().mesh;
+    const Mesh& mesh = members.shape().mesh;
     Statement::Constraints list;
     for (const Index v : vertices) {
         const std::vector<int> star = star_of(mesh, Vertex(v));
-        ConstraintParameters parameters;
-        parameters.target.emplace(3, static_cast<Eigen::Index>(star.size()));
-        for (std::size_t i = 0; i < star.size(); ++i)
-            parameters.target->col(static_cast<Eigen::Index>(i)) = grown * shape.col(star[i]);
-        list.push_back(read.make("Rigid", star, parameters, stiffness / read.relationship().weight));
+        Points grown_star(3, static_cast<Eigen::Index>(star.size()));
+        for (std::size_t i = 0; i < star.size(); ++i) grown_star.col(static_cast<Eigen::Index>(i)) = grown * shape.col(star[i]);
+        list.push_back(members.make(kinds::Rigid{std::move(grown_star)}, star, stiffness / members.relationship().weight));
     }
     return list;
 }
 
-void let_turn(const ReaderPtr& read, std::size_t members, Statement& statement) {
+void let_turn(const MembersPtr& members, std::size_t count, Statement& statement) {
     std::set<Index> all;
-    for (std::size_t i = 0; i < members; ++i)
-        for (const Index v : read->vertices(i)) all.insert(v);
+    for (std::size_t i = 0; i < count; ++i)
+        for (const Index v : members->vertices(i)) all.insert(v);
     statement.rotating.assign(all.begin(), all.end());
-    statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
-        return stars_kept(*read, rotating, edited.points);
+    statement.support = [members, rotating = statement.rotating](const State& edited, const State&) {
+        return stars_kept(*members, rotating, edited.points);
     };
 }
 
@@ -102,10 +102,10 @@ double volume(const Mesh& mesh, const Points& points) {
 
 }  // namespace
 
-void doubt_axes(const Reader& read, const State& deformed, double tolerance, Measured& measured) {
+void doubt_axes(const ConstraintMembers& members, const State& deformed, double tolerance, Measured& measured) {
     if (measured.verdict != Verdict::holds) return;
-    for (std::size_t i = 0; i < read.members(); ++i) {
-        const Annotation& part = read.member(i);
+    for (std::size_t i = 0; i < members.count(); ++i) {
+        const Annotation& part = members.member(i);
         const Axis axis = axis_of_part(deformed.mesh, part);
         if (!axis.found) continue;
         const AreaMoments moments = area_moments(deformed.mesh, part.faces);
@@ -121,57 +121,55 @@ void doubt_axes(const Reader& read, const State& deformed, double tolerance, Mea
     }
 }
 
-Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) {
-    const std::vector<Axis> axes = axes_of_parts(*read);
+Statement co_axiality(const MembersPtr& members, const spec::None&, const RelationOptions& tolerances) {
+    const std::vector<Axis> axes = axes_of_parts(*members);
     Statement statement;
     statement.follows = true;
-    let_turn(read, axes.size() - 1, statement);
-    statement.lower = [read, axes](const State&, const State& now) {
-        const Axis reference = reference_now(*read, axes.back(), now, axis_of_part);
+    let_turn(members, axes.size() - 1, statement);
+    statement.lower = [members, axes](const State&, const State& now) {
+        const Axis reference = reference_now(*members, axes.back(), now, axis_of_part);
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
-            ConstraintParameters parameters;
-            parameters.direction = eigen(reference.direction);
-            parameters.point = eigen(reference.point);
-            const Axis own = axis_carried_back(*read, i, axes[i], now);
-            parameters.rest_direction = eigen(own.direction);
-            parameters.rest_point = eigen(own.point);
-            list.push_back(read->make("CoAxiality", ids_of(read->vertices(i)), parameters));
+            const Axis axis = axis_carried_back(*members, i, axes[i], now);
+            list.push_back(members->make(
+                kinds::CoAxiality{eigen(reference.direction), eigen(reference.point), eigen(axis.direction), eigen(axis.point)},
+                ids_of(members->vertices(i))));
         }
         return list;
     };
-    statement.measure = as_related(read, read->relationship(), tolerances);
+    statement.measure = as_related(members, members->relationship(), tolerances);
     return statement;
 }
 
-Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
-    const std::vector<Axis> axes = axes_of_parts(*read);
-    const double angle = read->relationship().type == "perpendicular axes" ? pi / 2 : 0;
+Statement axis_angle(const MembersPtr& members, const spec::None&, const RelationOptions& tolerances) {
+    const std::vector<Axis> axes = axes_of_parts(*members);
+    const double angle = members->relationship().type == "perpendicular axes" ? pi / 2 : 0;
     Statement statement;
-    const int reference = read->member(axes.size() - 1).id;
+    const int reference = members->member(axes.size() - 1).id;
     for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
-        const int own = read->member(i).id;
+        const int own = members->member(i).id;
         statement.directions.push_back({own, eigen(axes.back().direction), angle, reference});
         statement.directions.push_back({reference, eigen(axes[i].direction), angle, own});
     }
     statement.follows = true;
-    let_turn(read, axes.size() - 1, statement);
-    statement.lower = [read, axes, angle](const State& edited, const State& now) {
-        ConstraintParameters parameters;
-        parameters.direction = eigen(reference_now(*read, axes.back(), now, axis_of_part).direction);
-        parameters.min = parameters.max = angle;
+    let_turn(members, axes.size() - 1, statement);
+    statement.lower = [members, axes, angle](const State& edited, const State& now) {
+        const Vector3d direction = eigen(reference_now(*members, axes.back(), now, axis_of_part).direction);
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
-            parameters.rest_direction = eigen(axis_carried_back(*read, i, axes[i], now).direction);
-            parameters.target = columns_at(edited.points, read->vertices(i));
-            list.push_back(read->make("AxisDirection", ids_of(read->vertices(i)), parameters));
+            const std::vector<Index> vertices = members->vertices(i);
+            list.push_back(members->make(kinds::AxisDirection{direction,
+                                                              {angle, angle},
+                                                              eigen(axis_carried_back(*members, i, axes[i], now).direction),
+                                                              columns_at(edited.points, vertices)},
+                                         ids_of(vertices)));
         }
         return list;
     };
-    statement.measure = [read, related = as_related(read, read->relationship(), tolerances),
+    statement.measure = [members, related = as_related(members, members->relationship(), tolerances),
                          tolerance = tolerances.angle](const State& deformed) {
         Measured measured = related(deformed);
-        doubt_axes(*read, deformed, tolerance, measured);
+        doubt_axes(*members, deformed, tolerance, measured);
         return measured;
     };
     return statement;
@@ -214,7 +212,7 @@ std::vector<Vector3d> section_means(const State& shape, const Annotation& part, 
 
 /// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have. If sections of the part, or of
 /// its half next to the reference, contradict the stations, the verdict becomes unknown.
-void doubt_stations(const Reader& read, const State& deformed, const AxisSegment& segment, const Axis& reference,
+void doubt_stations(const ConstraintMembers& members, const State& deformed, const AxisSegment& segment, const Axis& reference,
                     Measured& measured) {
     if (measured.verdict != Verdict::holds) return;
     const std::vector<Vector3d> stations = stations_of(segment, deformed.points);
@@ -222,7 +220,7 @@ void doubt_stations(const Reader& read, const State& deformed, const AxisSegment
     Vector3d direction = eigen(reference.direction).normalized();
     if (direction.dot(stations.back() - stations.front()) < 0) direction = -direction;  // away from the reference
     for (const double end : {0.9, 0.5}) {
-        const std::vector<Vector3d> means = section_means(deformed, read.member(0), segment.vertices, direction, 0.1, end);
+        const std::vector<Vector3d> means = section_means(deformed, members.member(0), segment.vertices, direction, 0.1, end);
         if (means.size() < 3) continue;
         Vector3d along = Vector3d::Zero(), middle = Vector3d::Zero();
         for (const Vector3d& mean : means) middle += mean / static_cast<double>(means.size());
@@ -230,10 +228,10 @@ void doubt_stations(const Reader& read, const State& deformed, const AxisSegment
         const double angle = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
         const double distance = direction.cross(middle - point).norm();  // single ones are drawn aside by joints
         if (angle <= *measured.deviations[0].tolerance && distance <= *measured.deviations[1].tolerance) continue;
-        const std::string& unit = read.shape().set.unit;
+        const std::string& unit = members.shape().set.unit;
         measured.verdict = Verdict::unknown;
         measured.text += (measured.text.empty() ? "" : "; ") + std::string("plane sections of '") +
-                         printable(read.member(0).tag, 60) + (end < 0.9 ? "', in the half next to the reference," : "'") +
+                         printable(members.member(0).tag, 60) + (end < 0.9 ? "', in the half next to the reference," : "'") +
                          " are " + digits(angle, 2) + " degrees and " + digits(distance, 3) + (unit.empty() ? "" : " " + unit) +
                          " off the axis: refine the mesh, it is too coarse to tell";
         return;
@@ -242,17 +240,19 @@ void doubt_stations(const Reader& read, const State& deformed, const AxisSegment
 
 }  // namespace
 
-Statement structural_continuity(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 2);
-    read->need_region(0);
-    const Axis rest = axis_of(*read, 1, steadiest);
-    const auto segment = std::make_shared<const AxisSegment>(continuing_segment(
-        read->shape().mesh, read->member(0), read->member(1), rest.direction, read->number("angle", 10, 0.1, 90)));
+Statement structural_continuity(const MembersPtr& members, const spec::StructuralContinuity& spec,
+                                const RelationOptions& tolerances) {
+    members->need(2, 2);
+    members->need_region(0);
+    const Axis rest = axis_of(*members, 1, steadiest);
+    const auto segment = std::make_shared<const AxisSegment>(
+        continuing_segment(members->shape().mesh, members->member(0), members->member(1), rest.direction, spec.angle));
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     Statement statement;
     // If the shape is judged alone, a part that deviates from the axis at once, and as a whole, does not continue the
     // reference.
-    if (const Axis own = axis_of_part(read->shape().mesh, read->member(0)); read->shape().alone && segment->turned && own.found) {
+    if (const Axis own = axis_of_part(members->shape().mesh, members->member(0));
+        members->shape().alone && segment->turned && own.found) {
         const Vector3d along = eigen(own.direction), direction = eigen(rest.direction);
         Deviation turned = angle;
         turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
@@ -260,36 +260,33 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         if (*turned.value > tolerances.angle) return statement;
     }
     if (!segment->reason.empty())
-        read->fail("annotation " + std::to_string(read->member(0).id) + " " + segment->reason,
-                   "raise angle, refine the mesh, or state co-axiality");
+        members->fail("annotation " + std::to_string(members->member(0).id) + " " + segment->reason,
+                      "raise angle, refine the mesh, or state co-axiality");
     statement.follows = statement.left_alone = true;
-    statement.lower = [read, rest, segment](const State&, const State& now) {
-        const Axis reference = reference_now(*read, rest, now, steadiest);
-        ConstraintParameters parameters;
-        parameters.direction = eigen(reference.direction);
-        parameters.point = eigen(reference.point);
-        parameters.stations = segment->stations;
-        parameters.coefficients = segment->shares;
-        return only(read->make("AxisOnLine", segment->vertices, parameters));
+    statement.lower = [members, rest, segment](const State&, const State& now) {
+        const Axis reference = reference_now(*members, rest, now, steadiest);
+        return only(members->make(
+            kinds::AxisOnLine{eigen(reference.direction), eigen(reference.point), segment->stations, segment->shares},
+            segment->vertices));
     };
     // The axis is constrained and the surface follows. The part may rotate, which displacements from neighbours would prevent.
-    statement.rotating = read->vertices(0);
+    statement.rotating = members->vertices(0);
     // The reference is fixed, otherwise both would tilt further in each pass. Vertices of the reference that also belong to the
     // part may move.
     const std::set<Index> own(statement.rotating.begin(), statement.rotating.end());
-    for (const Index v : read->vertices(1))
+    for (const Index v : members->vertices(1))
         if (own.count(v) == 0) statement.referred.push_back(v);
-    statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
-        const Mesh& mesh = read->shape().mesh;
+    statement.support = [members, rotating = statement.rotating](const State& edited, const State&) {
+        const Mesh& mesh = members->shape().mesh;
         // The shape at rest, scaled if the edit changes the volume of the whole object.
-        const double ratio = volume(mesh, edited.points) / volume(mesh, read->shape().rest);
+        const double ratio = volume(mesh, edited.points) / volume(mesh, members->shape().rest);
         const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
-        return stars_kept(*read, rotating, read->shape().rest, grown);
+        return stars_kept(*members, rotating, members->shape().rest, grown);
     };
-    statement.prepare = [read, rest, segment, part = statement.rotating](const State& now, Points& start) {
-        const Axis reference = reference_now(*read, rest, now, steadiest);
+    statement.prepare = [members, rest, segment, part = statement.rotating](const State& now, Points& start) {
+        const Axis reference = reference_now(*members, rest, now, steadiest);
         const Vector3d point = eigen(reference.point), direction = eigen(reference.direction);
-        const Points& shape = read->shape().rest;
+        const Points& shape = members->shape().rest;
         const std::vector<Vector3d> then = stations_of(*segment, shape);
         std::vector<Vector3d> there = stations_of(*segment, now.points);
         for (Vector3d& station : there) station = point + direction * direction.dot(station - point);
@@ -310,9 +307,9 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
             start.col(v) = to + rotation * (shape.col(v) - from);
         }
     };
-    const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().set.unit};
     statement.measure = [=](const State& deformed) -> Measured {
-        const Axis reference = steadiest(deformed.mesh, read->member(1));
+        const Axis reference = steadiest(deformed.mesh, members->member(1));
         if (!reference.found) return {Verdict::unknown, {}, "the reference has no axis any more: " + reference.reason};
         const std::vector<Vector3d> places = stations_of(*segment, deformed.points);
         const Vector3d direction = eigen(reference.direction), along = places.back() - places.front();
@@ -321,7 +318,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         for (const Vector3d& place : places)
             off.value = std::max(*off.value, direction.cross(place - eigen(reference.point)).norm());
         Measured measured = verdict_of({turned, off});
-        doubt_stations(*read, deformed, *segment, reference, measured);
+        doubt_stations(*members, deformed, *segment, reference, measured);
         return measured;
     };
     return statement;

@@ -13,17 +13,11 @@ namespace {
 using semantic::Deformer;
 
 /// An edit that stretches the object by a tenth along one axis.
-Json stretched_along(int axis) {
-    Json edit(rapidjson::kObjectType);
-    JsonAllocator& a = edit.GetAllocator();
-    std::array<double, 3> direction{0, 0, 0};
-    direction[static_cast<std::size_t>(axis)] = 1;
-    JsonValue steps(rapidjson::kArrayType);
-    steps.PushBack(json_object(a, "select", json_object(a, "all", true), "stretch",
-                               json_object(a, "direction", json_value(direction, a), "factor", 1.1)),
-                   a);
-    add_members(edit, a, "format", "ostraka-edit", "version", 1, "steps", std::move(steps));
-    return edit;
+Edit stretched_along(int axis) {
+    EditStep step;
+    step.select = EditStep::All();
+    step.operation = EditStep::Stretch{Eigen::Vector3d::Unit(axis), 1.1};
+    return {{step}};
 }
 
 /// A graph of this constraint only, hard if it can be.
@@ -90,7 +84,7 @@ std::optional<int> owner_of(const Constraint& constraint, const HandleSpace& spa
 }
 
 /// Result after one edit; nothing if there is nothing to solve through the cage.
-std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relationship& relationship, const JsonValue& edit,
+std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relationship& relationship, const Edit& edit,
                                            const std::string& edit_name, const RelationOptions& tolerances,
                                            const std::string& graph_name) {
     const RelationGraph graph = alone(relationship);
@@ -140,25 +134,25 @@ bool is_worse(const ConstraintReach& one, const ConstraintReach& other) {
 
 }  // namespace
 
-std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const RelationGraph& graph, const JsonValue* edit,
+std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const RelationGraph& graph, const Edit* edit,
                                         const std::string& edit_name, const RelationOptions& tolerances,
                                         const std::string& graph_name) {
     if (space.cage == nullptr || space.coordinates == nullptr)
         fail_usage("there is no cage whose reach could be told", "give a cage and its coordinates");
     check_options(tolerances, "cage reach");
-    std::vector<Json> probes;
+    std::vector<Edit> probes;
     if (edit == nullptr)
         for (int axis = 0; axis < 3; ++axis) probes.push_back(stretched_along(axis));
     std::vector<ConstraintReach> list;
     for (const Relationship& relationship : graph.relationships) {
         if (!relationship.is_constraint || !(relationship.weight > 0)) continue;
         std::optional<ConstraintReach> worst;
-        const auto add = [&](const JsonValue& one) {
+        const auto add = [&](const Edit& one) {
             const auto reach = reach_after(space, relationship, one, edit_name, tolerances, graph_name);
             if (reach && (!worst || is_worse(*reach, *worst))) worst = reach;
         };
         if (edit != nullptr) add(*edit);
-        for (const Json& probe : probes) add(probe);
+        for (const Edit& probe : probes) add(probe);
         if (worst) list.push_back(std::move(*worst));
     }
     return list;

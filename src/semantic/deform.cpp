@@ -91,7 +91,7 @@ std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& stat
     return shape;
 }
 
-DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
+DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const Edit& edit, const std::string& edit_name,
                     const DeformOptions& options, const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");

@@ -68,19 +68,19 @@ public:
     /// What neither the edit nor a constraint asks to move gives way over all of the spread, instead of a third of it.
     void let_neighbours_give() { neighbours_give_ = true; }
 
-    DeformResult follow(const JsonValue& edit);
+    DeformResult follow(const Edit& edit);
     DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held);
 
     struct Solved {
         Points edited, points;
     };
     /// The shape after the edit, and after solving; nothing is judged.
-    Solved solve_only(const JsonValue& edit);
+    Solved solve_only(const Edit& edit);
     [[nodiscard]] const std::vector<semantic::Statement>& statements() const { return statements_; }
 
     /// For a drag of these handles from where the edit leaves the cage, whose vertices are handed over; no solver where no
     /// constraint asks for anything.
-    CageSystem begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage);
+    CageSystem begin(const Edit& edit, const std::vector<Index>& handles, std::vector<Point>& cage);
 
 private:
     // The verdict: deformer_verdict.cpp
@@ -98,7 +98,7 @@ private:
 
     // What is asked, and the passes in which it is solved for: deformer_passes.cpp
     /// To the state after the last step. How many handles each step selects.
-    std::vector<std::size_t> follow_steps(const JsonValue& edit);
+    std::vector<std::size_t> follow_steps(const Edit& edit);
     void understand(DeformResult& result);
     /// Parts on one level keep their shape; but their size only where no other constraint changes it, and where the constraint
     /// does not say itself how they are kept.

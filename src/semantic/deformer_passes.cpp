@@ -10,7 +10,7 @@
 
 namespace ostraka::semantic {
 
-Deformer::Solved Deformer::solve_only(const JsonValue& edit) {
+Deformer::Solved Deformer::solve_only(const Edit& edit) {
     follow_steps(edit);
     const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
     edited_ = columns_of(shape);
@@ -21,7 +21,7 @@ Deformer::Solved Deformer::solve_only(const JsonValue& edit) {
     return {edited_, solve(used(result)).points};
 }
 
-CageSystem Deformer::begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
+CageSystem Deformer::begin(const Edit& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
     follow_steps(edit);
     for (const Index handle : handles) last_.touched[handle] = true;
     last_.by_handles = true;
@@ -43,7 +43,7 @@ CageSystem Deformer::begin(const JsonValue& edit, const std::vector<Index>& hand
     return lower(used(result), outcome) ? cage_system() : CageSystem();
 }
 
-std::vector<std::size_t> Deformer::follow_steps(const JsonValue& edit) {
+std::vector<std::size_t> Deformer::follow_steps(const Edit& edit) {
     std::vector<std::size_t> selected;
     last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
     last_.touched.assign(last_.handles.size(), false);

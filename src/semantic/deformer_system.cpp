@@ -4,6 +4,7 @@
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/solver/hard.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <algorithm>
 
@@ -12,11 +13,9 @@ namespace ostraka::semantic {
 void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
                    std::vector<std::unique_ptr<Constraint>>& list) {
     if (ids.empty() || weight == 0) return;
-    ConstraintParameters parameters;
-    parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-    for (std::size_t i = 0; i < ids.size(); ++i)
-        parameters.target->col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
-    list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
+    Points places(3, static_cast<Eigen::Index>(ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i) places.col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
+    list.push_back(make_constraint(kinds::Closeness{std::move(places)}, ids, weight, rest));
 }
 
 void add_displacements(const Mesh& mesh, double weight, const Points& shape, const std::set<Index>& others, const Sizes* sizes,
@@ -25,13 +24,13 @@ void add_displacements(const Mesh& mesh, double weight, const Points& shape, con
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v) || others.count(v.idx()) > 0) continue;
         std::vector<int> star = semantic::star_of(mesh, v);
-        ConstraintParameters parameters;
+        kinds::LaplacianDisplacement kept;
         if (sizes != nullptr) {
             Eigen::Vector3d mean = Eigen::Vector3d::Zero();
             for (std::size_t i = 1; i < star.size(); ++i) mean += shape.col(star[i]) - shape.col(star[0]);
-            parameters.target = sizes->around(v.idx()) * mean / static_cast<double>(star.size() - 1);
+            kept.displacement = sizes->around(v.idx()) * mean / static_cast<double>(star.size() - 1);
         }
-        list.push_back(make_constraint("LaplacianDisplacement", std::move(star), weight, parameters, shape));
+        list.push_back(make_constraint(kept, std::move(star), weight, shape));
     }
 }
 
@@ -90,10 +89,8 @@ void Deformer::add_sizes() {
     anchors_.insert(anchors.begin(), anchors.end());
     const double stiff = options_.handles, loose = 81 * closeness(options_, space_.mesh, mean_edge_length(space_.mesh));
     for (const semantic::Sizes::Copy& copy : sizes_->copies()) {
-        ConstraintParameters parameters;
-        parameters.target = copy.shape;
         support_.push_back(
-            make_constraint("Rigid", copy.ids, copy.holds_others ? std::min(stiff, loose) : stiff, parameters, rest_));
+            make_constraint(kinds::Rigid{copy.shape}, copy.ids, copy.holds_others ? std::min(stiff, loose) : stiff, rest_));
     }
 }
 
@@ -224,8 +221,9 @@ CageSystem Deformer::cage_system() {
     if (options_.laplacian > 0)
         for (const Vertex v : space_.cage->vertices()) {
             if (space_.cage->is_isolated(v)) continue;
-            list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(*space_.cage, v, static_cast<int>(n)),
-                                           share * options_.laplacian, {}, shape));
+            list.push_back(make_constraint(kinds::LaplacianDisplacement{},
+                                           semantic::star_of(*space_.cage, v, static_cast<int>(n)), share * options_.laplacian,
+                                           shape));
         }
     system.displacements = list.size() - system.first_displacement;
     system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
@@ -234,7 +232,7 @@ CageSystem Deformer::cage_system() {
         // What must hold counts a thousandfold: a cage may not be able to do it. The level of a part counts as much as all of
         // its points, whose shape a cage can keep only so far.
         double factor = statements_[owner_[i]].hard ? 1e3 : 1;
-        if (constraint.kind() == "MeansOnLevel")
+        if (constraint.kind() == kinds::MeansOnLevel::kind.name)
             factor *= static_cast<double>(constraint.ids().size()) / static_cast<double>(constraint.map().rows);
         if (factor != 1) system.solver->set_weight(first_ + i, factor * constraint.weight());
     }

@@ -10,7 +10,7 @@
 
 namespace ostraka::semantic {
 
-DeformResult Deformer::follow(const JsonValue& edit) {
+DeformResult Deformer::follow(const Edit& edit) {
     DeformResult result;
     result.selected = follow_steps(edit);
     result.edited = shape_of_edit(space_, last_, options_);

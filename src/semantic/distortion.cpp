@@ -1,6 +1,6 @@
 #include "distortion.h"
 
-#include "reader.h"
+#include "statements.h"
 
 #include "ostraka/fields/thickness.h"
 #include "ostraka/geom/eigen.h"

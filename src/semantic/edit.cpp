@@ -4,9 +4,13 @@
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace ostraka {
@@ -26,19 +30,12 @@ public:
         carrying_ = carrying_weights(levels_);
     }
 
-    EditState step(const JsonValue& step, const std::string& at) {
+    EditState follow(const EditStep& step, const std::string& at) {
         at_ = at;
         state_.threshold = 0;
-        state_.selected = select(step["select"]);
-        int operations = 0;
+        state_.selected = select(step);
         const std::vector<Point> before = state_.handles;
-        for (const char* name : {"translate", "rotate", "scale", "stretch", "moveTo"}) {
-            const JsonValue* value = find_member(step, name);
-            if (value == nullptr) continue;
-            if (++operations > 1) fail("has more than one operation", "make a step of each");
-            apply(name, *value);
-        }
-        if (operations == 0) fail("has no operation", "add translate, rotate, scale, stretch or moveTo");
+        std::visit([&](const auto& operation) { apply(operation); }, step.operation);
         for (const Index v : state_.selected) state_.touched[v] = true;
         carry(before);
         return state_;
@@ -68,15 +65,12 @@ private:
     }
 
     /// The level specified by a step, otherwise the innermost level that contains most of these vertices.
-    [[nodiscard]] std::size_t level_for(const JsonValue& select, const std::vector<Index>& vertices) const {
-        if (const JsonValue* level = find_member(select, "level")) {
-            if (level->GetUint64() >= levels_.size())
-                fail("there is no level " + std::to_string(level->GetUint64()) + ": the cage has " +
-                         std::to_string(levels_.size()) + (levels_.size() == 1 ? " level" : " levels"),
-                     "levels count from 0, the outermost; leave it out where no cage is within another");
-            return static_cast<std::size_t>(level->GetUint64());
-        }
-        return level_that_holds(space_.coordinates->vertex, vertices, levels_, carrying_);
+    [[nodiscard]] std::size_t level_for(const EditStep& step, const std::vector<Index>& vertices) const {
+        if (!step.level) return level_that_holds(space_.coordinates->vertex, vertices, levels_, carrying_);
+        if (*step.level >= levels_.size())
+            fail(fmt::format("there is no level {}: the cage has {}", *step.level, counted(levels_.size(), "level")),
+                 "levels count from 0, the outermost; leave it out where no cage is within another");
+        return *step.level;
     }
 
     /// Weights of a level's vertices on these mesh vertices (all if none are given), one row each.
@@ -88,187 +82,150 @@ private:
         return {"", weights_of_level(rows, levels_, carrying_, level), {}};
     }
 
-    [[nodiscard]] Vector3d vector(const JsonValue& value, const char* name, bool direction = false) const {
-        const Vector3d v(value[0].GetDouble(), value[1].GetDouble(), value[2].GetDouble());
-        const double largest = v.cwiseAbs().maxCoeff();
-        if (!v.allFinite() || largest > 1e60) fail(std::string(name) + " is beyond 1e60", "give numbers up to 1e60");
-        if (direction && !(largest > 0)) fail(std::string(name) + " is zero", "give a direction");
-        return direction ? Vector3d((v / largest).normalized()) : v;
-    }
-
-    [[nodiscard]] double factor(const JsonValue& value) const {
-        const double f = value["factor"].GetDouble();
-        if (!(f > 0 && f < 1e6)) fail("the factor is not between 0 and a million", "give a positive factor; 1 changes nothing");
-        return f;
-    }
-
-    [[nodiscard]] std::vector<Index> select(const JsonValue& select) {
-        std::set<Index> chosen;
-        int ways = 0;
-        if (find_member(select, "level") != nullptr && space_.cage == nullptr)
+    [[nodiscard]] std::vector<Index> select(const EditStep& step) {
+        if (step.level && space_.cage == nullptr)
             fail("has a level without a cage", "leave it out, or give --cage and --weights");
-        const auto add_mesh_vertices = [&](const std::vector<Index>& vertices, const std::string& what) {
-            for (const Index v : vertices) state_.named[v] = true;
-            if (space_.cage == nullptr) {
-                chosen.insert(vertices.begin(), vertices.end());
-                return;
-            }
-            const JsonValue* threshold = find_member(select, "threshold");
-            const JsonValue* scope = find_member(select, "scope");
-            const std::size_t level = level_for(select, vertices);
-            const Coordinates weights = weights_in(level, vertices);
-            std::vector<Index> rows(vertices.size());
-            for (Index i = 0; i < rows.size(); ++i) rows[i] = i;
-            const auto choose = [&](const std::vector<Index>& found) {
-                for (const Index j : found) chosen.insert(levels_[level].cage.vertices[j]);
-            };
-            if (threshold != nullptr && threshold->IsString() && std::string(threshold->GetString()) == "per-point") {
-                choose(strongest(weights, rows));
-                return;
-            }
-            const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
-            // As in the thesis, figure 5.11, or lower if on a dense cage a vertex of the part would have no handle.
-            if (threshold == nullptr) state_.threshold = std::min(0.4, influence_threshold(weights.vertex, "auto-mesh"));
-            else if (threshold->IsNumber()) state_.threshold = threshold->GetDouble();
-            else
-                state_.threshold =
-                    influence_threshold(here ? weights.vertex : weights_in(level, {}).vertex, threshold->GetString());
-            const auto found = influential(weights, rows, state_.threshold);
-            if (found.empty())
-                fail("no cage vertex has an influence of " + std::to_string(state_.threshold) + " on " + what +
-                         "; the largest is " + std::to_string(weights.vertex.maxCoeff()),
-                     "lower the threshold, use auto-mesh, or name cageVertices");
-            choose(found);
-        };
-        if (const JsonValue* name = find_member(select, "annotation")) {
-            ++ways;
-            const Annotation& annotation = named(*name);
-            add_mesh_vertices(vertices_of(space_.mesh, annotation), "annotation " + std::to_string(annotation.id));
-        }
-        if (const JsonValue* list = find_member(select, "annotations")) {
-            ++ways;
-            for (const JsonValue& name : list->GetArray()) {
-                const Annotation& annotation = named(name);
-                add_mesh_vertices(vertices_of(space_.mesh, annotation), "annotation " + std::to_string(annotation.id));
-            }
-        }
-        if (const JsonValue* list = find_member(select, "vertices")) {
-            ++ways;
-            add_mesh_vertices(indices(*list, space_.mesh.number_of_vertices(), "mesh"), "these vertices");
-        }
-        if (const JsonValue* list = find_member(select, "cageVertices")) {
-            ++ways;
-            if (find_member(select, "level") != nullptr)
-                fail("names cageVertices and a level", "leave the level out: each vertex is of one");
-            if (space_.cage == nullptr) fail("cageVertices without a cage", "give --cage and --weights, or select otherwise");
-            const auto found = indices(*list, space_.cage->number_of_vertices(), "cage");
-            chosen.insert(found.begin(), found.end());
-        }
-        if (const JsonValue* box = find_member(select, "box")) {
-            ++ways;
-            const Vector3d low = vector((*box)["min"], "min"), high = vector((*box)["max"], "max");
-            if ((low.array() > high.array()).any()) fail("the box has min > max", "exchange them");
-            for (const Index v : handles_in(select)) {
-                const Vector3d p = eigen(state_.handles[v]);
-                if ((p.array() >= low.array()).all() && (p.array() <= high.array()).all()) chosen.insert(v);
-            }
-        }
-        if (find_member(select, "all") != nullptr) {
-            ++ways;
-            for (const Index v : handles_in(select)) chosen.insert(v);
-        }
-        bool names = false;
-        for (const char* way : {"annotation", "annotations", "vertices"}) names = names || find_member(select, way) != nullptr;
-        state_.by_handles = state_.by_handles || (space_.cage != nullptr && !names);
-        if (ways != 1)
-            fail("selects in " + std::to_string(ways) + " ways",
-                 "use one of annotation, annotations, vertices, cageVertices, box, all");
+        std::set<Index> chosen;
+        std::visit([&](const auto& selection) { choose(selection, step, chosen); }, step.select);
         if (chosen.empty()) fail("selects nothing", "choose another box");
         return {chosen.begin(), chosen.end()};
     }
 
+    void choose(const EditStep::Annotations& selection, const EditStep& step, std::set<Index>& chosen) {
+        for (const EditStep::AnnotationName& name : selection.names) {
+            const Annotation& annotation = named(name);
+            choose_at(vertices_of(space_.mesh, annotation), fmt::format("annotation {}", annotation.id), step, chosen);
+        }
+    }
+    void choose(const EditStep::MeshVertices& selection, const EditStep& step, std::set<Index>& chosen) {
+        check_indices(selection.indices, space_.mesh.number_of_vertices(), "mesh");
+        choose_at(selection.indices, "these vertices", step, chosen);
+    }
+    void choose(const EditStep::CageVertices& selection, const EditStep& step, std::set<Index>& chosen) {
+        if (step.level) fail("names cageVertices and a level", "leave the level out: each vertex is of one");
+        if (space_.cage == nullptr) fail("cageVertices without a cage", "give --cage and --weights, or select otherwise");
+        check_indices(selection.indices, space_.cage->number_of_vertices(), "cage");
+        chosen.insert(selection.indices.begin(), selection.indices.end());
+        state_.by_handles = true;
+    }
+    void choose(const EditStep::Box& box, const EditStep& step, std::set<Index>& chosen) {
+        for (const Index v : handles_in(step)) {
+            const Vector3d p = eigen(state_.handles[v]);
+            if ((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all()) chosen.insert(v);
+        }
+        state_.by_handles = state_.by_handles || space_.cage != nullptr;
+    }
+    void choose(const EditStep::All&, const EditStep& step, std::set<Index>& chosen) {
+        for (const Index v : handles_in(step)) chosen.insert(v);
+        state_.by_handles = state_.by_handles || space_.cage != nullptr;
+    }
+
+    /// Chooses these vertices of the mesh, through a cage the handles that influence them.
+    void choose_at(const std::vector<Index>& vertices, const std::string& name, const EditStep& step, std::set<Index>& chosen) {
+        for (const Index v : vertices) state_.named[v] = true;
+        if (space_.cage == nullptr) {
+            chosen.insert(vertices.begin(), vertices.end());
+            return;
+        }
+        const std::size_t level = level_for(step, vertices);
+        const Coordinates weights = weights_in(level, vertices);
+        std::vector<Index> rows(vertices.size());
+        std::iota(rows.begin(), rows.end(), Index{0});
+        for (const Index j : influencing(weights, rows, name, step, level)) chosen.insert(levels_[level].cage.vertices[j]);
+    }
+
+    /// The vertices of a level that influence the rows by the step's threshold.
+    std::vector<Index> influencing(const Coordinates& weights, const std::vector<Index>& rows, const std::string& name,
+                                   const EditStep& step, std::size_t level) {
+        const auto* rule = step.threshold ? std::get_if<EditStep::Rule>(&*step.threshold) : nullptr;
+        if (rule != nullptr && *rule == EditStep::Rule::per_point) return strongest(weights, rows);
+        // As in the thesis, figure 5.11, or lower if on a dense cage a vertex of the part would have no handle.
+        if (!step.threshold) state_.threshold = std::min(0.4, influence_threshold(weights.vertex, "auto-mesh"));
+        else if (rule == nullptr) state_.threshold = std::get<double>(*step.threshold);
+        else
+            state_.threshold = influence_threshold(step.rule_within_selection ? weights.vertex : weights_in(level, {}).vertex,
+                                                   *rule == EditStep::Rule::auto_mesh ? "auto-mesh" : "auto-cage");
+        std::vector<Index> list = influential(weights, rows, state_.threshold);
+        if (list.empty())
+            fail(fmt::format("no cage vertex has an influence of {} on {}; the largest is {}", std::to_string(state_.threshold),
+                             name, std::to_string(weights.vertex.maxCoeff())),
+                 "lower the threshold, use auto-mesh, or name cageVertices");
+        return list;
+    }
+
     /// All handles, or those of the specified level.
-    [[nodiscard]] std::vector<Index> handles_in(const JsonValue& select) const {
-        if (find_member(select, "level") != nullptr) return levels_[level_for(select, {})].cage.vertices;
+    [[nodiscard]] std::vector<Index> handles_in(const EditStep& step) const {
+        if (step.level) return levels_[level_for(step, {})].cage.vertices;
         std::vector<Index> all(state_.handles.size());
-        for (Index v = 0; v < all.size(); ++v) all[v] = v;
+        std::iota(all.begin(), all.end(), Index{0});
         return all;
     }
 
-    [[nodiscard]] std::vector<Index> indices(const JsonValue& list, std::size_t count, const std::string& of) const {
-        std::vector<Index> result;
-        for (const auto& value : list.GetArray()) {
-            if (value.GetUint64() >= count)
-                fail("vertex " + std::to_string(value.GetUint64()) + " is not one of the " + std::to_string(count) + " of the " +
-                         of,
+    void check_indices(const std::vector<Index>& list, std::size_t count, const char* name) const {
+        for (const Index index : list)
+            if (index >= count)
+                fail(fmt::format("vertex {} is not one of the {} of the {}", index, count, name),
                      "give an index of the mesh, from 0");
-            result.push_back(static_cast<Index>(value.GetUint64()));
-        }
-        return result;
     }
 
-    [[nodiscard]] const Annotation& named(const JsonValue& name) const {
-        const Annotation* found = nullptr;
+    [[nodiscard]] const Annotation& named(const EditStep::AnnotationName& name) const {
+        const int* id = std::get_if<int>(&name);
+        const std::string* tag = std::get_if<std::string>(&name);
+        const Annotation* match = nullptr;
         for (const Annotation& annotation : space_.set.annotations) {
-            const bool here =
-                name.IsInt() ? annotation.id == name.GetInt() : name.IsString() && annotation.tag == name.GetString();
-            if (!here) continue;
-            if (found != nullptr) fail("several annotations are tagged '" + annotation.tag + "'", "use the id");
-            found = &annotation;
+            if (id != nullptr ? annotation.id != *id : annotation.tag != *tag) continue;
+            if (match != nullptr) fail(fmt::format("several annotations are tagged '{}'", annotation.tag), "use the id");
+            match = &annotation;
         }
-        if (found == nullptr)
-            fail("there is no annotation " + (name.IsString() ? "tagged '" + std::string(name.GetString()) + "'" : to_text(name)),
+        if (match == nullptr)
+            fail(id != nullptr ? fmt::format("there is no annotation {}", *id)
+                               : fmt::format("there is no annotation tagged '{}'", *tag),
                  "see 'annotation list'");
-        return *found;
+        return *match;
     }
 
-    void apply(const std::string& name, const JsonValue& value) {
-        Vector3d middle = Vector3d::Zero();
-        for (const Index v : state_.selected) middle += eigen(state_.handles[v]);
-        middle /= static_cast<double>(state_.selected.size());
-        const auto centre = [&] {
-            const JsonValue* given = find_member(value, "centre");
-            return given == nullptr ? middle : vector(*given, "centre");
-        };
-        const auto each = [&](auto&& move) {
-            for (const Index v : state_.selected) {
-                const Vector3d p = move(eigen(state_.handles[v]));
-                if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e60) fail("moves a handle beyond 1e60", "give smaller numbers");
-                state_.handles[v] = point_of(p);
-            }
-        };
-        if (name == "translate") {
-            const Vector3d by = vector(value, "translate");
-            each([&](const Vector3d& p) -> Vector3d { return p + by; });
-        } else if (name == "rotate") {
-            const double angle = value["angle"].GetDouble();
-            if (!std::isfinite(angle)) fail("the angle is not finite", "give degrees");
-            const Eigen::Matrix3d rotation =
-                Eigen::AngleAxisd(angle * pi / 180, vector(value["axis"], "axis", true)).toRotationMatrix();
-            const Vector3d c = centre();
-            each([&](const Vector3d& p) -> Vector3d { return c + rotation * (p - c); });
-        } else if (name == "scale") {
-            const double f = factor(value);
-            const Vector3d c = centre();
-            each([&](const Vector3d& p) -> Vector3d { return c + f * (p - c); });
-        } else if (name == "stretch") {
-            const double f = factor(value);
-            const Vector3d d = vector(value["direction"], "direction", true);
-            const JsonValue* from = find_member(value, "from");
-            double start = std::numeric_limits<double>::infinity();
-            if (from != nullptr && from->IsArray()) start = d.dot(vector(*from, "from"));
-            else if (from != nullptr && std::string(from->GetString()) == "middle") start = d.dot(middle);
-            else
-                for (const Index v : state_.selected) start = std::min(start, d.dot(eigen(state_.handles[v])));
-            each([&](const Vector3d& p) -> Vector3d { return p + (f - 1) * (d.dot(p) - start) * d; });
-        } else {
-            if (value.Size() != state_.selected.size())
-                fail("moveTo has " + std::to_string(value.Size()) + " positions for " + std::to_string(state_.selected.size()) +
-                         " selected vertices",
-                     "give one for each, in the order of the vertices");
-            for (rapidjson::SizeType i = 0; i < value.Size(); ++i)
-                state_.handles[state_.selected[i]] = point_of(vector(value[i], "moveTo"));
+    [[nodiscard]] Vector3d middle() const {
+        Vector3d sum = Vector3d::Zero();
+        for (const Index v : state_.selected) sum += eigen(state_.handles[v]);
+        return sum / static_cast<double>(state_.selected.size());
+    }
+
+    /// Moves each selected handle.
+    template <class Move>
+    void move_handles(const Move& move) {
+        for (const Index v : state_.selected) {
+            const Vector3d p = move(eigen(state_.handles[v]));
+            if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e60) fail("moves a handle beyond 1e60", "give smaller numbers");
+            state_.handles[v] = point_of(p);
         }
+    }
+
+    void apply(const EditStep::Translate& step) {
+        move_handles([&](const Vector3d& p) -> Vector3d { return p + step.by; });
+    }
+    void apply(const EditStep::Rotate& step) {
+        const Eigen::Matrix3d rotation = Eigen::AngleAxisd(step.angle * pi / 180, step.axis).toRotationMatrix();
+        const Vector3d c = step.centre ? *step.centre : middle();
+        move_handles([&](const Vector3d& p) -> Vector3d { return c + rotation * (p - c); });
+    }
+    void apply(const EditStep::Scale& step) {
+        const Vector3d c = step.centre ? *step.centre : middle();
+        move_handles([&](const Vector3d& p) -> Vector3d { return c + step.factor * (p - c); });
+    }
+    void apply(const EditStep::Stretch& step) {
+        const Vector3d& d = step.direction;
+        double start = std::numeric_limits<double>::infinity();
+        if (const auto* point = std::get_if<Vector3d>(&step.from)) start = d.dot(*point);
+        else if (std::holds_alternative<EditStep::Stretch::Middle>(step.from)) start = d.dot(middle());
+        else
+            for (const Index v : state_.selected) start = std::min(start, d.dot(eigen(state_.handles[v])));
+        move_handles([&](const Vector3d& p) -> Vector3d { return p + (step.factor - 1) * (d.dot(p) - start) * d; });
+    }
+    void apply(const EditStep::MoveTo& step) {
+        if (step.places.size() != state_.selected.size())
+            fail(fmt::format("moveTo has {} positions for {} selected vertices", step.places.size(), state_.selected.size()),
+                 "give one for each, in the order of the vertices");
+        for (std::size_t i = 0; i < step.places.size(); ++i) state_.handles[state_.selected[i]] = point_of(step.places[i]);
     }
 
     const HandleSpace& space_;
@@ -321,15 +278,13 @@ bool is_whole(const Mesh& mesh, const Annotation& annotation) {
 
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) { return touched_vertices(mesh, annotation); }
 
-std::vector<EditState> follow_edit(const JsonValue& edit, const HandleSpace& space, const std::string& where) {
-    validate(edit, "edit", where);
+std::vector<EditState> follow_edit(const Edit& edit, const HandleSpace& space, const std::string& where) {
     if ((space.cage == nullptr) != (space.coordinates == nullptr))
         throw Error(ErrorKind::usage, where, "a cage and its weights belong together", "give both or none");
     Follower follower(space, where);
     std::vector<EditState> states;
-    const auto& steps = edit["steps"];
-    for (rapidjson::SizeType i = 0; i < steps.Size(); ++i)
-        states.push_back(follower.step(steps[i], "/steps/" + std::to_string(i)));
+    for (std::size_t i = 0; i < edit.steps.size(); ++i)
+        states.push_back(follower.follow(edit.steps[i], fmt::format("/steps/{}", i)));
     return states;
 }
 

@@ -8,8 +8,9 @@
 #include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace ostraka {
@@ -46,7 +47,7 @@ std::vector<const Annotation*> parts_of_word(const AnnotationSet& set, const std
 struct Amount {
     std::string parts;
     double number = 0;
-    std::array<double, 3> axis{0, 0, 1};
+    Eigen::Vector3d axis{0, 0, 1};  ///< of any length
 };
 
 /// Parses PARTS=NUMBER or PARTS=NUMBER,AXIS.
@@ -65,14 +66,14 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
     const std::string axis = comma == std::string::npos ? "up" : text.substr(comma + 1);
     if (axis == "up") {
         if (!set.up) fail("no direction is up", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
-        amount.axis = *set.up;
+        amount.axis = {(*set.up)[0], (*set.up)[1], (*set.up)[2]};
         return amount;
     }
     const std::size_t k = axis.empty() ? std::string::npos : std::string("xyz").find(axis.back());
     if (k == std::string::npos || (axis.size() == 2 ? axis[0] != '-' : axis.size() != 1))
         fail("'" + printable(axis, 20) + "' is no axis", "use up, x, y, z, -x, -y or -z");
-    amount.axis = {0, 0, 0};
-    amount.axis.at(k) = axis.size() == 2 ? -1 : 1;
+    amount.axis.setZero();
+    amount.axis[static_cast<Eigen::Index>(k)] = axis.size() == 2 ? -1 : 1;
     return amount;
 }
 
@@ -107,37 +108,33 @@ std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::
     return all;
 }
 
-Json edit_of(const EditWords& words, const AnnotationSet& set) {
-    Json edit = json_document("edit");
-    auto& allocator = edit.GetAllocator();
-    JsonValue steps(rapidjson::kArrayType);
-    const auto add = [&](const std::vector<std::string>& texts, const char* option, auto&& operation) {
+Edit edit_of(const EditWords& words, const AnnotationSet& set) {
+    Edit edit;
+    const auto add = [&](const std::vector<std::string>& texts, const char* option, auto&& operation_of) {
         for (const std::string& text : texts) {
             const Amount amount = amount_of(text, option, set);
-            std::vector<int> ids;
-            for (const Annotation* part : parts_named(set, amount.parts)) ids.push_back(part->id);
-            JsonValue step = json_object(allocator, "select", json_object(allocator, "annotations", ids));
-            operation(step, amount);
-            steps.PushBack(step, allocator);
+            EditStep::Annotations parts;
+            for (const Annotation* part : parts_named(set, amount.parts)) parts.names.emplace_back(part->id);
+            EditStep step;
+            step.select = std::move(parts);
+            step.operation = operation_of(amount);
+            edit.steps.push_back(std::move(step));
         }
     };
-    add(words.stretch, "--stretch", [&](JsonValue& step, const Amount& amount) {
+    add(words.stretch, "--stretch", [](const Amount& amount) {
         if (!(amount.number > 0 && amount.number < 1e6))
-            fail_usage("--stretch " + printable(amount.parts, 60) + " has the factor " + digits(amount.number, 6),
+            fail_usage(fmt::format("--stretch {} has the factor {}", printable(amount.parts, 60), digits(amount.number, 6)),
                        "give a positive factor; 1 changes nothing");
-        add_members(step, allocator, "stretch", json_object(allocator, "direction", amount.axis, "factor", amount.number));
+        return EditStep::Stretch{unit_direction(amount.axis), amount.number};
     });
-    add(words.raise, "--raise", [&](JsonValue& step, const Amount& amount) {
-        std::array<double, 3> by = amount.axis;
+    add(words.raise, "--raise", [](const Amount& amount) {
         double size = 0;
-        for (const double x : by) size = std::hypot(size, x);
-        for (double& x : by) x *= amount.number / size;
-        add_members(step, allocator, "translate", by);
+        for (const double x : amount.axis) size = std::hypot(size, x);
+        return EditStep::Translate{amount.axis * (amount.number / size)};
     });
-    add(words.rotate, "--rotate", [&](JsonValue& step, const Amount& amount) {
-        add_members(step, allocator, "rotate", json_object(allocator, "axis", amount.axis, "angle", amount.number));
+    add(words.rotate, "--rotate", [](const Amount& amount) {
+        return EditStep::Rotate{unit_direction(amount.axis), amount.number};
     });
-    add_members(edit, allocator, "steps", std::move(steps));
     return edit;
 }
 

@@ -31,7 +31,7 @@ struct LiveDeformation::State {
     CageSystem system;
 };
 
-LiveDeformation::LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit,
+LiveDeformation::LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const Edit& edit,
                                  std::vector<Index> handles, const DeformOptions& options, const RelationOptions& tolerances) {
     if (space.cage == nullptr || space.coordinates == nullptr)
         throw Error(ErrorKind::usage, "the drag", "has no cage", "give a cage and its coordinates");

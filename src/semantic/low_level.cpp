@@ -1,6 +1,6 @@
 // Constraints of the solver, stated by their own names (thesis, section 4.2), on the vertices of annotations.
 #include "ostraka/core/angles.h"
-#include "reader.h"
+#include "statements.h"
 
 #include <set>
 
@@ -9,54 +9,124 @@ namespace ostraka::semantic {
 namespace {
 
 /// How the vertices of the annotations are grouped into constraints.
-enum class Groups { together, pairs, members, edges, faces, hinges, stars };
+enum class Groups { together, pairs, members, edges, faces, hinges, stars, closed_stars };
 
 /// Whether the admissible set depends on the shape at rest.
 enum class Keeps { nothing, rest, rest_without_absolute };
 
-struct Form {
-    const char* kind;
-    Groups groups;
-    Keeps keeps = Keeps::nothing;
+/// Parameters of the solver's kinds as files give them.
+struct Parameters {
+    std::optional<double> min, max;
+    bool absolute;
+    std::optional<Vector3d> direction, point;
+
+    explicit Parameters(const ParameterReader& read)
+        : min(read.number("minValue", 0, 1e60)),
+          max(read.number("maxValue", 0, 1e60)),
+          absolute(read.flag("absolute")),
+          direction(read.direction("direction")),
+          point(read.vector("point")),
+          read_(read) {}
+    [[nodiscard]] Interval range(double default_min, double default_max) const {
+        return {min.value_or(default_min), max.value_or(default_max)};
+    }
+    /// A range relative to the value at rest, or absolute.
+    [[nodiscard]] Interval range_of_measure() const {
+        if (absolute && !min && !max) read_.fail("the absolute range is missing", "");
+        return absolute ? range(0, kinds::infinity) : range(1, 1);
+    }
+    [[nodiscard]] Interval stretch() const {
+        if (absolute) read_.fail("strain has no absolute range", "");
+        return range(1, 1);
+    }
+    [[nodiscard]] Vector3d need_direction() const {
+        if (!direction) read_.fail("the direction is missing", "");
+        return *direction;
+    }
+    [[nodiscard]] Vector3d need_point() const {
+        if (!point) read_.fail("the point is missing", "");
+        return *point;
+    }
+
+private:
+    const ParameterReader& read_;
 };
 
-/// The kinds whose parameters can be given by annotations. The others are created from their own types of relationship.
+struct Form {
+    const char* type;
+    Groups groups;
+    Keeps keeps;
+    ConstraintKind (*kind)(const Parameters&);
+};
+
+template <class Kind>
+ConstraintKind without_parameters(const Parameters&) {
+    return Kind{};
+}
+template <class Kind>
+ConstraintKind of_direction(const Parameters& p) {
+    return Kind{p.need_direction()};
+}
+template <class Kind>
+ConstraintKind of_measure(const Parameters& p) {
+    return Kind{p.range_of_measure(), p.absolute};
+}
+template <class Kind>
+ConstraintKind of_stretch(const Parameters& p) {
+    return Kind{p.stretch()};
+}
+
+/// The kinds whose parameters can be given by annotations, by the name of their type. The others are created from their own types
+/// of relationship.
 const std::vector<Form>& forms() {
+    using namespace kinds;
+    constexpr auto rest = Keeps::rest, relative = Keeps::rest_without_absolute, nothing = Keeps::nothing;
     static const std::vector<Form> list{
-        {"Closeness", Groups::together, Keeps::rest},
-        {"Line", Groups::together},
-        {"Plane", Groups::together},
-        {"Orientation", Groups::together},
-        {"FittedPlaneOrientation", Groups::together},
-        {"Circle", Groups::together},
-        {"Sphere", Groups::together},
-        {"Similarity", Groups::members, Keeps::rest},
-        {"Rigid", Groups::members, Keeps::rest},
-        {"NonUniformScaling", Groups::members, Keeps::rest},
-        {"Equilateral", Groups::together},
-        {"Parallelogram", Groups::together},
-        {"Rectangle", Groups::together},
-        {"Angle", Groups::together},
-        {"Parallel", Groups::pairs},
-        {"Perpendicular", Groups::together},
-        {"PolylineLength", Groups::members, Keeps::rest_without_absolute},
-        {"EqualLengths", Groups::pairs},
-        {"CoAxiality", Groups::members},
-        {"TetrahedronStrain", Groups::together, Keeps::rest},
-        {"Volume", Groups::together, Keeps::rest_without_absolute},
-        {"EdgeStrain", Groups::edges, Keeps::rest_without_absolute},
-        {"TriangleStrain", Groups::faces, Keeps::rest},
-        {"Area", Groups::faces, Keeps::rest_without_absolute},
-        {"Bending", Groups::hinges, Keeps::rest_without_absolute},
-        {"Laplacian", Groups::stars},
-        {"LaplacianDisplacement", Groups::stars, Keeps::rest},
-        {"CotangentLaplacian", Groups::stars},
-        {"CotangentLaplacianDisplacement", Groups::stars, Keeps::rest},
+        {"closeness", Groups::together, rest, without_parameters<Closeness>},
+        {"line", Groups::together, nothing, without_parameters<kinds::Line>},
+        {"plane", Groups::together, nothing, without_parameters<kinds::Plane>},
+        {"orientation", Groups::together, nothing, of_direction<Orientation>},
+        {"fitted-plane orientation", Groups::together, nothing, of_direction<FittedPlaneOrientation>},
+        {"circle", Groups::together, nothing, without_parameters<Circle>},
+        {"sphere", Groups::together, nothing, without_parameters<Sphere>},
+        {"similarity", Groups::members, rest,
+         [](const Parameters& p) -> ConstraintKind { return Similarity{p.range(0, infinity)}; }},
+        {"rigid", Groups::members, rest, without_parameters<Rigid>},
+        {"non-uniform scaling", Groups::members, rest,
+         [](const Parameters& p) -> ConstraintKind {
+             return NonUniformScaling{p.need_direction(), p.range(0, infinity)};
+         }},
+        {"equilateral", Groups::together, nothing, without_parameters<Equilateral>},
+        {"parallelogram", Groups::together, nothing, without_parameters<Parallelogram>},
+        {"rectangle", Groups::together, nothing, without_parameters<Rectangle>},
+        {"angle", Groups::together, nothing,
+         [](const Parameters& p) -> ConstraintKind {
+             return Angle{{p.min.value_or(0) * degree, p.max ? *p.max * degree : pi}};
+         }},
+        {"parallel", Groups::pairs, nothing, without_parameters<Parallel>},
+        {"perpendicular", Groups::together, nothing, without_parameters<Perpendicular>},
+        {"polyline length", Groups::members, relative, of_measure<PolylineLength>},
+        {"equal lengths", Groups::pairs, nothing, without_parameters<EqualLengths>},
+        {"co-axiality", Groups::members, nothing,
+         [](const Parameters& p) -> ConstraintKind {
+             return CoAxiality{p.need_direction(), p.need_point()};
+         }},
+        {"tetrahedron strain", Groups::together, rest, of_stretch<TetrahedronStrain>},
+        {"volume", Groups::together, relative, of_measure<Volume>},
+        {"edge strain", Groups::edges, relative, of_measure<EdgeStrain>},
+        {"triangle strain", Groups::faces, rest, of_stretch<TriangleStrain>},
+        {"area", Groups::faces, relative, of_measure<Area>},
+        {"bending", Groups::hinges, relative, of_measure<Bending>},
+        {"laplacian", Groups::stars, nothing, without_parameters<Laplacian>},
+        {"laplacian displacement", Groups::stars, rest, without_parameters<LaplacianDisplacement>},
+        {"cotangent laplacian", Groups::closed_stars, nothing, without_parameters<CotangentLaplacian>},
+        {"cotangent laplacian displacement", Groups::closed_stars, rest, without_parameters<CotangentLaplacianDisplacement>},
     };
     return list;
 }
 
-std::string plain(std::string_view name) {
+/// The letters of a name: "Edge strain" and "EdgeStrain" are the same.
+std::string letters_of(std::string_view name) {
     std::string text;
     for (const char c : name)
         if (c != ' ' && c != '-') text += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
@@ -65,7 +135,7 @@ std::string plain(std::string_view name) {
 
 const Form* form_of(const std::string& type) {
     for (const Form& form : forms())
-        if (plain(form.kind) == plain(type)) return &form;
+        if (letters_of(form.type) == letters_of(type)) return &form;
     return nullptr;
 }
 
@@ -108,15 +178,15 @@ void add_hinges(const Mesh& mesh, const Annotation& annotation, std::vector<std:
     }
 }
 
-std::vector<std::vector<int>> groups_of(const Reader& read, const Form& form) {
-    const Mesh& mesh = read.shape().mesh;
+std::vector<std::vector<int>> groups_of(const ConstraintMembers& members, const Form& form) {
+    const Mesh& mesh = members.shape().mesh;
     std::vector<std::vector<int>> groups;
     std::set<int> seen;
-    for (std::size_t i = 0; i < read.members(); ++i) {
-        const Annotation& annotation = read.member(i);
+    for (std::size_t i = 0; i < members.count(); ++i) {
+        const Annotation& annotation = members.member(i);
         if (vertices_of(mesh, annotation).empty())
-            read.fail("annotation " + std::to_string(annotation.id) + " selects nothing", "select a part, or leave it out");
-        if (form.groups == Groups::faces || form.groups == Groups::hinges) read.need_region(i);
+            members.fail("annotation " + std::to_string(annotation.id) + " selects nothing", "select a part, or leave it out");
+        if (form.groups == Groups::faces || form.groups == Groups::hinges) members.need_region(i);
         switch (form.groups) {
             case Groups::pairs:
             case Groups::together:
@@ -140,39 +210,28 @@ std::vector<std::vector<int>> groups_of(const Reader& read, const Form& form) {
                 add_hinges(mesh, annotation, groups);
                 break;
             case Groups::stars:
-                // Cotangent weights need the complete one-ring.
+            case Groups::closed_stars:  // cotangent weights need the complete one-ring
                 for (const Index v : vertices_of(mesh, annotation))
-                    if (std::string_view(form.kind).find("Cotangent") == std::string_view::npos || !mesh.is_border(Vertex(v)))
-                        groups.push_back(star_of(mesh, Vertex(v)));
+                    if (form.groups == Groups::stars || !mesh.is_border(Vertex(v))) groups.push_back(star_of(mesh, Vertex(v)));
                 break;
         }
     }
-    if (groups.empty()) read.fail("has nothing to act on", "give larger regions");
+    if (groups.empty()) members.fail("has nothing to act on", "give larger regions");
     return groups;
 }
 
 }  // namespace
 
-const ConstraintKind* low_level_kind(const std::string& type) {
-    if (form_of(type) == nullptr) return nullptr;
-    for (const ConstraintKind& kind : constraint_kinds())
-        if (plain(kind.name) == plain(type)) return &kind;
-    return nullptr;
-}
+bool is_low_level(const std::string& type) { return form_of(type) != nullptr; }
 
-Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
-    const Form& form = *form_of(read->relationship().type);
-    const auto groups = std::make_shared<const std::vector<std::vector<int>>>(groups_of(*read, form));
-    const bool degrees = std::string_view(form.kind) == "Angle";
-    ConstraintParameters parameters;
-    if (read->has("minValue")) parameters.min = read->number("minValue", 0, 0, 1e60) * (degrees ? degree : 1);
-    if (read->has("maxValue")) parameters.max = read->number("maxValue", 0, 0, 1e60) * (degrees ? degree : 1);
-    parameters.absolute = read->flag("absolute");
-    parameters.direction = read->direction("direction");
-    parameters.point = read->vector("point");
+Statement low_level(const MembersPtr& members, const ParameterReader& read, const RelationOptions& tolerances) {
+    const Form& form = *form_of(members->relationship().type);
+    const auto groups = std::make_shared<const std::vector<std::vector<int>>>(groups_of(*members, form));
+    const Parameters parameters(read);
+    const ConstraintKind kind = form.kind(parameters);
     const auto lower = [=] {
         Statement::Constraints list;
-        for (const auto& ids : *groups) list.push_back(read->make(form.kind, ids, parameters));
+        for (const auto& ids : *groups) list.push_back(members->make(kind, ids));
         return list;
     };
     Statement statement;
@@ -183,7 +242,7 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     const auto list = std::make_shared<const Statement::Constraints>(lower());
     // Residuals are relative to the size of the group at rest, since edges and faces are smaller on finer meshes.
     std::vector<double> sizes;
-    for (const auto& constraint : *list) sizes.push_back(read->size_at_rest(*constraint));
+    for (const auto& constraint : *list) sizes.push_back(members->size_at_rest(*constraint));
     const Deviation residual{"residual of a vertex", 0.0, 100 * tolerances.distance, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = residual;

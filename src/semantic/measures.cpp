@@ -1,5 +1,5 @@
 // Constraints on measures: of one part, of a part relative to another, of parts among each other.
-#include "reader.h"
+#include "statements.h"
 
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/measure/measure.h"
@@ -11,7 +11,7 @@ namespace ostraka::semantic {
 namespace {
 
 /// Deviation of a value from a range in percent.
-double percent_out(double value, const Range& range) {
+double percent_out(double value, const Interval& range) {
     if (value < range.min) return 100 * (range.min - value) / range.min;
     return value > range.max ? 100 * (value - range.max) / range.max : 0;
 }
@@ -19,22 +19,22 @@ double percent_out(double value, const Range& range) {
 /// A measure of a part, evaluated on a shape as `measure take` does.
 class Gauge {
 public:
-    Gauge(const Reader& read, const char* name, std::size_t member)
-        : annotation_(&read.member(member)), measure_(read.measure(name, *annotation_)) {
-        const Mesh& mesh = read.shape().mesh;
+    Gauge(const ConstraintMembers& members, const MeasureName& name, std::size_t member)
+        : annotation_(&members.member(member)), measure_(members.measure(name, member)) {
+        const Mesh& mesh = members.shape().mesh;
         const std::string who = "annotation " + std::to_string(annotation_->id);
-        if (measure_.points.size() < 2) read.fail(who + " has a measure with fewer than two pins", "take it again");
+        if (measure_.points.size() < 2) members.fail(who + " has a measure with fewer than two pins", "take it again");
         for (const Index v : measure_.points)
             if (v >= mesh.number_of_vertices())
-                read.fail(who + " has a measure with pin " + std::to_string(v) + ", which the mesh does not have",
-                          "take it again");
+                members.fail(who + " has a measure with pin " + std::to_string(v) + ", which the mesh does not have",
+                             "take it again");
         if (measure_.direction) {
             const Vector3d given((*measure_.direction)[0], (*measure_.direction)[1], (*measure_.direction)[2]);
             direction_ = Vector3d((given / given.cwiseAbs().maxCoeff()).normalized());
         }
         extent_ = is_extent(mesh, *annotation_, measure_);
         at_rest_ = evaluate(mesh, *annotation_, measure_);
-        if (!(at_rest_ > 0)) read.fail("the measure of " + who + " has no length", "move its pins apart");
+        if (!(at_rest_ > 0)) members.fail("the measure of " + who + " has no length", "move its pins apart");
     }
 
     [[nodiscard]] double at_rest() const { return at_rest_; }
@@ -94,14 +94,14 @@ std::vector<Index> joint(const Mesh& mesh, const Annotation& annotation) {
 /// A part with its measure, which changes by stretching the part along the measure or scaling it.
 class Stretch {
 public:
-    Stretch(const ReaderPtr& read, std::size_t member, Gauge gauge)
-        : read_(read), gauge_(std::move(gauge)), uniform_(read->word("mode", "stretch", {"stretch", "scale"}) == "scale") {
-        const Points& rest = read->shape().rest;
-        const std::vector<Index> joined = joint(read->shape().mesh, read->member(member)), own = read->vertices(member);
+    Stretch(const MembersPtr& members, std::size_t member, Gauge gauge, spec::SizeMode mode)
+        : members_(members), gauge_(std::move(gauge)), uniform_(mode == spec::SizeMode::scale) {
+        const Points& rest = members->shape().rest;
+        const std::vector<Index> joined = joint(members->shape().mesh, members->member(member)), own = members->vertices(member);
         if (!gauge_.is_tape())
             for (const Index v : own) place(static_cast<int>(v), ids_, places_);
         // The joint is fixed if it is at one end of the part. A part between others moves them on all sides.
-        const std::vector<int> way = gauge_.way(State(read->shape().mesh));
+        const std::vector<int> way = gauge_.way(State(members->shape().mesh));
         const Vector3d edge = rest.col(way.back()) - rest.col(way.front());
         const Vector3d axis = gauge_.direction() ? *gauge_.direction() : Vector3d(edge.normalized());
         const auto extent = [&](const std::vector<Index>& vertices) {
@@ -132,44 +132,35 @@ public:
     [[nodiscard]] std::string where(const State& now, double factor) const {
         const std::vector<int> way = gauge_.way(now);
         const double length = gauge_.value(now), off = length * (factor - 1);
-        const std::string& unit = read_->shape().set.unit;
+        const std::string& unit = members_->shape().set.unit;
         return "vertices " + std::to_string(way.front()) + " and " + std::to_string(way.back()) + " are " + digits(length, 6) +
                " apart, " + digits(std::abs(off), 3) + (unit.empty() ? "" : " ") + unit + (off > 0 ? " too near" : " too far");
     }
 
     /// Constrains the measure to a range, in the mesh's unit. For a tape its path is constrained and the surface follows.
-    [[nodiscard]] std::unique_ptr<Constraint> to(const Range& range, const State& edited, const State& now) const {
+    [[nodiscard]] std::unique_ptr<Constraint> to(const Interval& range, const State& edited, const State& now) const {
         if (!gauge_.is_tape()) {
-            auto [ids, parameters] = placed(edited, now);
-            parameters.min = range.min;
-            parameters.max = range.max;
-            parameters.absolute = true;
-            return read_->make("Proportion", ids, parameters);
+            auto [ids, proportion] = placed(range, edited, now);
+            return members_->make(proportion, ids);
         }
         // Ratio of the measure to the length of the edges along its path, which an exact tape shortens.
         const std::vector<int> way = gauge_.way(now);
         double length = 0;
         for (std::size_t i = 1; i < way.size(); ++i) length += (now.points.col(way[i]) - now.points.col(way[i - 1])).norm();
         const double factor = gauge_.value(now) / length;
-        ConstraintParameters parameters;
-        parameters.min = range.min / factor;
-        parameters.max = range.max / factor;
-        parameters.absolute = true;
-        return read_->make("PolylineLength", way, parameters);
+        return members_->make(kinds::PolylineLength{{range.min / factor, range.max / factor}, true}, way);
     }
 
     /// Constrains the ratio to another measure, which may change as well. Neither is a tape.
-    [[nodiscard]] std::unique_ptr<Constraint> against(const Gauge& other, const Range& ratio, const State& edited,
+    [[nodiscard]] std::unique_ptr<Constraint> against(const Gauge& other, const Interval& ratio, const State& edited,
                                                       const State& now) const {
-        auto [ids, parameters] = placed(edited, now);
+        auto [ids, proportion] = placed(ratio, edited, now);
         std::unordered_map<int, int> places = places_;
         for (std::size_t i = places_.size(); i < ids.size(); ++i) places.emplace(ids[i], static_cast<int>(i));
-        parameters.min = ratio.min;
-        parameters.max = ratio.max;
-        parameters.second_direction = other.direction();
         const std::vector<int> way = other.way(now);
-        for (const int v : {way.front(), way.back()}) parameters.pins.push_back(place(v, ids, places));
-        return read_->make("Proportion", ids, parameters);
+        const int first = place(way.front(), ids, places), last = place(way.back(), ids, places);
+        proportion.second = kinds::PinnedMeasure{{first, last}, other.direction()};
+        return members_->make(proportion, ids);
     }
 
 private:
@@ -178,26 +169,26 @@ private:
         if (fresh) ids.push_back(v);
         return entry->second;
     }
-    /// Ids and parameters for the part and its current pins; the target is the shape of the part.
-    [[nodiscard]] std::pair<std::vector<int>, ConstraintParameters> placed(const State& edited, const State& now) const {
+    /// Ids of the part and its current pins, and the constraint of its measure; its shape is that of the part.
+    [[nodiscard]] std::pair<std::vector<int>, kinds::Proportion> placed(const Interval& range, const State& edited,
+                                                                        const State& now) const {
         std::vector<int> ids = ids_;
         std::unordered_map<int, int> places = places_;
-        ConstraintParameters parameters;
         const std::vector<int> way = gauge_.way(now);
-        parameters.pins = {place(way.front(), ids, places), place(way.back(), ids, places)};
-        parameters.split = static_cast<int>(ids.size());
-        parameters.direction = gauge_.direction();
-        parameters.uniform = uniform_;
+        const int first = place(way.front(), ids, places), last = place(way.back(), ids, places);
+        kinds::Proportion proportion{range, {{first, last}, gauge_.direction()}};
+        proportion.part = static_cast<int>(ids.size());
+        proportion.uniform = uniform_;
         // A part that was only moved by its neighbours keeps its shape at rest.
         std::size_t asked = 0;
         for (const int v : ids_) asked += edited.asked.empty() || edited.asked[static_cast<std::size_t>(v)] ? 1 : 0;
-        const Points& shape = 2 * asked >= ids_.size() ? edited.points : read_->shape().rest;
-        parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
-        for (std::size_t i = 0; i < ids.size(); ++i) parameters.target->col(static_cast<Eigen::Index>(i)) = shape.col(ids[i]);
-        return {std::move(ids), std::move(parameters)};
+        const Points& shape = 2 * asked >= ids_.size() ? edited.points : members_->shape().rest;
+        proportion.shape.emplace(3, static_cast<Eigen::Index>(ids.size()));
+        for (std::size_t i = 0; i < ids.size(); ++i) proportion.shape->col(static_cast<Eigen::Index>(i)) = shape.col(ids[i]);
+        return {std::move(ids), std::move(proportion)};
     }
 
-    ReaderPtr read_;
+    MembersPtr members_;
     Gauge gauge_;
     bool uniform_;
     Vector3d axis_;  ///< direction of the measure at rest
@@ -206,7 +197,7 @@ private:
     std::unordered_map<int, int> places_;
 };
 
-std::function<Measured(const State&)> within(const Range& range, std::function<double(const State&)> value,
+std::function<Measured(const State&)> within(const Interval& range, std::function<double(const State&)> value,
                                              std::shared_ptr<const Stretch> part) {
     return [=](const State& deformed) {
         const double now = value(deformed), out = percent_out(now, range);
@@ -220,23 +211,25 @@ std::function<Measured(const State&)> within(const Range& range, std::function<d
 
 }  // namespace
 
-Statement proportion(const ReaderPtr& read, const RelationOptions&) {
-    read->need(2, 2);
-    const auto part = std::make_shared<const Stretch>(read, 0, Gauge(*read, "measure1", 0));
-    const Gauge other(*read, "measure2", 1);
-    const Range range = read->range(part->gauge().at_rest() / other.at_rest());
+Statement proportion(const MembersPtr& members, const spec::Proportion& spec, const RelationOptions&) {
+    members->need(2, 2);
+    const auto part = std::make_shared<const Stretch>(members, 0, Gauge(*members, spec.first, 0), spec.mode);
+    const Gauge other(*members, spec.second, 1);
+    const double at_rest = part->gauge().at_rest() / other.at_rest();
+    const Interval range = spec.range.value_or(Interval{at_rest, at_rest});
     const bool tapes = part->gauge().is_tape() || other.is_tape();
-    read->read_leader();
+    members->check_leader(spec.leader);
     Statement statement;
-    if (!read->has_range()) statement.keeps = "the ratio of its measures";
+    if (!spec.range) statement.keeps = "the ratio of its measures";
     statement.anchors = part->anchors();
     statement.follows = statement.until_it_holds = statement.resizes = true;
     statement.lower = [=](const State& edited, const State& now) {
-        if (const auto leader = read->leader(edited)) {
-            Statement::Constraints list = only(read->as_edited(*leader, edited));
+        if (const auto leader = members->leader(spec.leader, edited)) {
+            Statement::Constraints list = only(members->as_edited(*leader, edited));
             const double led = (*leader == 0 ? part->gauge() : other).value(edited);
-            list.push_back(*leader == 0 ? Stretch(read, 1, other).to({led / range.max, led / range.min}, edited, now)
-                                        : part->to({range.min * led, range.max * led}, edited, now));
+            list.push_back(*leader == 0
+                               ? Stretch(members, 1, other, spec.mode).to({led / range.max, led / range.min}, edited, now)
+                               : part->to({range.min * led, range.max * led}, edited, now));
             return list;
         }
         const double size = other.value(now);
@@ -246,9 +239,9 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     const auto ratio = [=](const State& s) { return part->gauge().value(s) / other.value(s); };
     statement.measure = within(range, ratio, part);
     if (tapes) return statement;
-    if (read->follows()) {
+    if (spec.leader.any) {
         // Each part is constrained by its own measure: the leader keeps its own, and that of the other is a multiple of it.
-        const auto reference = std::make_shared<const Stretch>(read, 1, other);
+        const auto reference = std::make_shared<const Stretch>(members, 1, other, spec.mode);
         for (const std::size_t i : {0U, 1U}) {
             const Stretch& one = i == 0 ? *part : *reference;
             const Gauge gauge = one.gauge(), partner = i == 0 ? other : part->gauge();
@@ -263,7 +256,7 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
                 return i == 0 ? from(partner.value(s)) : std::pair(own, own);
             };
             sized.led = [=](const State& edited) -> std::optional<std::pair<double, double>> {
-                const auto leader = read->leader(edited);
+                const auto leader = members->leader(spec.leader, edited);
                 if (!leader) return {};
                 return *leader == i ? std::pair(gauge.value(edited), gauge.value(edited)) : from(partner.value(edited));
             };
@@ -276,12 +269,13 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     return statement;
 }
 
-Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
-    read->need(1, 1);
-    const auto part = std::make_shared<const Stretch>(read, 0, Gauge(*read, "measure", 0));
-    const Range range = read->range(part->gauge().at_rest());
+Statement keep_measure(const MembersPtr& members, const spec::KeepMeasure& spec, const RelationOptions&) {
+    members->need(1, 1);
+    const auto part = std::make_shared<const Stretch>(members, 0, Gauge(*members, spec.measure, 0), spec.mode);
+    const double at_rest = part->gauge().at_rest();
+    const Interval range = spec.range.value_or(Interval{at_rest, at_rest});
     Statement statement;
-    if (!read->has_range()) statement.keeps = "its measure";
+    if (!spec.range) statement.keeps = "its measure";
     statement.anchors = part->anchors();
     statement.follows = statement.until_it_holds = statement.resizes = true;
     statement.lower = [=](const State& edited, const State& now) { return only(part->to(range, edited, now)); };
@@ -295,13 +289,13 @@ Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
     return statement;
 }
 
-Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
+Statement same_measure(const MembersPtr& members, const spec::SameMeasure& spec, const RelationOptions& tolerances) {
+    members->need(2, 0);
     std::vector<std::shared_ptr<const Stretch>> parts;
     Statement statement;
     statement.follows = statement.until_it_holds = statement.resizes = true;
-    for (std::size_t i = 0; i < read->members(); ++i) {
-        parts.push_back(std::make_shared<const Stretch>(read, i, Gauge(*read, "measure", i)));
+    for (std::size_t i = 0; i < members->count(); ++i) {
+        parts.push_back(std::make_shared<const Stretch>(members, i, Gauge(*members, spec.measure, i), spec.mode));
         statement.anchors.insert(statement.anchors.end(), parts.back()->anchors().begin(), parts.back()->anchors().end());
     }
     const auto mean = [parts](const State& state) {
@@ -309,13 +303,13 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
         for (const auto& part : parts) sum += part->gauge().value(state);
         return sum / static_cast<double>(parts.size());
     };
-    read->read_leader();
+    members->check_leader(spec.leader);
     statement.lower = [=](const State& edited, const State& now) {
-        const auto leader = read->leader(edited);
+        const auto leader = members->leader(spec.leader, edited);
         const double size = leader ? parts[*leader]->gauge().value(edited) : mean(now);
         Statement::Constraints list;
         for (std::size_t i = 0; i < parts.size(); ++i)
-            list.push_back(i == leader ? read->as_edited(i, edited) : parts[i]->to({size, size}, edited, now));
+            list.push_back(i == leader ? members->as_edited(i, edited) : parts[i]->to({size, size}, edited, now));
         return list;
     };
     const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
@@ -331,7 +325,7 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
     for (const auto& part : parts) {
         statement.sized.push_back(part->sized());
         statement.sized.back().led = [=](const State& edited) -> std::optional<std::pair<double, double>> {
-            const auto leader = read->leader(edited);
+            const auto leader = members->leader(spec.leader, edited);
             if (!leader) return {};
             const double size = parts[*leader]->gauge().value(edited);
             return std::pair(size, size);

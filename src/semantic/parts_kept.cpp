@@ -1,5 +1,5 @@
 // Relations between parts that a deformation preserves, and position and direction of single parts.
-#include "reader.h"
+#include "statements.h"
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/axis/axis.h"
@@ -11,15 +11,15 @@ namespace ostraka::semantic {
 namespace {
 
 /// For relations that follow from the selections and do not change with the shape.
-Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& tolerances) {
+Statement nothing_to_solve(const MembersPtr& members, const RelationOptions& tolerances) {
     Statement statement;
     statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     RelationGraph graph;
-    graph.relationships.push_back(read->relationship());
+    graph.relationships.push_back(members->relationship());
     graph.relationships.back().is_constraint = false;
     graph.relationships.back().constraint.clear();
-    graph.relationships.back().directed = read->relationship().type == "containment";
-    const RelationCheck check = check_relations(read->shape().mesh, read->shape().set, graph, tolerances).at(0);
+    graph.relationships.back().directed = members->relationship().type == "containment";
+    const RelationCheck check = check_relations(members->shape().mesh, members->shape().set, graph, tolerances).at(0);
     statement.measure = [check](const State&) -> Measured {
         return {check.verdict, check.parameters.deviations,
                 check.text.empty() ? "selections do not change with the shape" : check.text};
@@ -28,38 +28,35 @@ Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& toleran
 }
 
 /// Vertices shared by two parts.
-std::vector<Index> common_outline(const Reader& read) {
-    const auto first = read.vertices(0), second = read.vertices(1);
+std::vector<Index> common_outline(const ConstraintMembers& members) {
+    const auto first = members.vertices(0), second = members.vertices(1);
     std::vector<Index> shared;
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
-    if (shared.size() < 3) read.fail("has parts without a common outline", "use parts that share one, or state adjacency");
+    if (shared.size() < 3) members.fail("has parts without a common outline", "use parts that share one, or state adjacency");
     return shared;
 }
 
 /// Rotates the common outline of two parts rigidly until the angle between its normal and up is in the range; it is the normal
 /// that relations measure.
-Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& tolerances, double min, double max) {
-    read->need(2, 2);
-    const std::vector<Index> shared = common_outline(*read);
-    ConstraintParameters parameters;
-    parameters.direction = read->up();
-    parameters.min = min;
-    parameters.max = max;
-    Relationship stated = read->relationship();
+Statement outline_at_angle(const MembersPtr& members, const spec::Upward& spec, const RelationOptions& tolerances, double min,
+                           double max) {
+    members->need(2, 2);
+    const std::vector<Index> shared = common_outline(*members);
+    const Vector3d up = members->up(spec.up);
+    Relationship stated = members->relationship();
     stated.is_constraint = false;
-    stated.parameters.up = {(*parameters.direction)[0], (*parameters.direction)[1], (*parameters.direction)[2]};
+    stated.parameters.up = {up[0], up[1], up[2]};
     Statement statement;
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
-        ConstraintParameters given = parameters;
-        given.rest_direction = normal_of(read->shape().rest, shared);
-        if (const auto plane = RelationMeter(now.mesh, read->shape().set, tolerances).measure(stated).parameters.plane)
-            given.rest_direction = motion_back(*read, shared, now).rotation *
-                                   Vector3d(plane->direction[0], plane->direction[1], plane->direction[2]);
-        given.target = columns_at(edited.points, shared);
-        return only(read->make("AxisDirection", ids_of(shared), given));
+        Vector3d normal = normal_of(members->shape().rest, shared);
+        if (const auto plane = RelationMeter(now.mesh, members->shape().set, tolerances).measure(stated).parameters.plane)
+            normal = motion_back(*members, shared, now).rotation *
+                     Vector3d(plane->direction[0], plane->direction[1], plane->direction[2]);
+        return only(
+            members->make(kinds::AxisDirection{up, {min, max}, normal, columns_at(edited.points, shared)}, ids_of(shared)));
     };
-    statement.measure = as_related(read, stated, tolerances);
+    statement.measure = as_related(members, stated, tolerances);
     return statement;
 }
 
@@ -67,11 +64,11 @@ Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& toleran
 constexpr double well_within = 0.5;
 
 /// The vertices along the only polyline of a member.
-std::vector<int> only_polyline(const Reader& read, std::size_t i) {
-    const Annotation& line = read.member(i);
+std::vector<int> only_polyline(const ConstraintMembers& members, std::size_t i) {
+    const Annotation& line = members.member(i);
     if (line.polylines.size() != 1)
-        read.fail("annotation " + std::to_string(line.id) + " is not one poly-line",
-                  "use lines of one piece, or state 'same measure' of tapes");
+        members.fail("annotation " + std::to_string(line.id) + " is not one poly-line",
+                     "use lines of one piece, or state 'same measure' of tapes");
     return ids_of(line.polylines.front());
 }
 
@@ -83,38 +80,38 @@ double length_along(const std::vector<int>& way, const Points& points) {
 
 }  // namespace
 
-Statement selections_kept(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, read->relationship().type == "containment" ? 2 : 0);
-    return nothing_to_solve(read, tolerances);
+Statement selections_kept(const MembersPtr& members, const spec::None&, const RelationOptions& tolerances) {
+    members->need(2, members->relationship().type == "containment" ? 2 : 0);
+    return nothing_to_solve(members, tolerances);
 }
 
-Statement support(const ReaderPtr& read, const RelationOptions& tolerances) {
-    return outline_at_angle(read, tolerances, 0, well_within * tolerances.tilt * pi / 180);
+Statement support(const MembersPtr& members, const spec::Upward& spec, const RelationOptions& tolerances) {
+    return outline_at_angle(members, spec, tolerances, 0, well_within * tolerances.tilt * pi / 180);
 }
 
-Statement contact(const ReaderPtr& read, const RelationOptions& tolerances) {
-    return outline_at_angle(read, tolerances, pi / 2 - well_within * tolerances.tilt * pi / 180, pi / 2);
+Statement contact(const MembersPtr& members, const spec::Upward& spec, const RelationOptions& tolerances) {
+    return outline_at_angle(members, spec, tolerances, pi / 2 - well_within * tolerances.tilt * pi / 180, pi / 2);
 }
 
-Statement part_similarity(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
+Statement part_similarity(const MembersPtr& members, const spec::Alike& spec, const RelationOptions& tolerances) {
+    members->need(2, 0);
     std::vector<double> at_rest;
-    for (std::size_t i = 0; i < read->members(); ++i) {
-        read->need_region(i);
-        at_rest.push_back(area_of(read->shape().mesh, read->member(i)));
+    for (std::size_t i = 0; i < members->count(); ++i) {
+        members->need_region(i);
+        at_rest.push_back(area_of(members->shape().mesh, members->member(i)));
     }
     for (const double area : at_rest)
-        if (!(area > 0)) read->fail("has a part without area", "use other parts");
-    read->read_leader();
+        if (!(area > 0)) members->fail("has a part without area", "use other parts");
+    members->check_leader(spec.leader);
     Statement statement;
     statement.resizes = true;
     statement.follows = true;
     // All parts keep their shape at rest up to a common scale factor: that of the leader, otherwise the mean of their current
     // factors.
     statement.lower = [=](const State& edited, const State& now) {
-        const auto leader = read->leader(edited);
+        const auto leader = members->leader(spec.leader, edited);
         const auto growth = [&](const State& state, std::size_t i) {
-            return std::sqrt(area_of(state.mesh, read->member(i)) / at_rest[i]);
+            return std::sqrt(area_of(state.mesh, members->member(i)) / at_rest[i]);
         };
         double factor = leader ? growth(edited, *leader) : 0;
         if (!leader)
@@ -122,40 +119,37 @@ Statement part_similarity(const ReaderPtr& read, const RelationOptions& toleranc
         Statement::Constraints list;
         for (std::size_t i = 0; i < at_rest.size(); ++i) {
             if (i == leader) {
-                list.push_back(read->as_edited(i, edited));
+                list.push_back(members->as_edited(i, edited));
                 continue;
             }
-            ConstraintParameters parameters;
-            parameters.min = parameters.max = factor;
-            list.push_back(read->make("Similarity", ids_of(read->vertices(i)), parameters));
+            list.push_back(members->make(kinds::Similarity{{factor, factor}}, ids_of(members->vertices(i))));
         }
         return list;
     };
-    statement.measure = as_related(read, read->relationship(), tolerances);
+    statement.measure = as_related(members, members->relationship(), tolerances);
     return statement;
 }
 
-Statement same_length(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
+Statement same_length(const MembersPtr& members, const spec::Alike& spec, const RelationOptions& tolerances) {
+    members->need(2, 0);
     std::vector<std::vector<int>> ways;
-    for (std::size_t i = 0; i < read->members(); ++i) ways.push_back(only_polyline(*read, i));
+    for (std::size_t i = 0; i < members->count(); ++i) ways.push_back(only_polyline(*members, i));
     const auto mean = [ways](const Points& points) {
         double sum = 0;
         for (const auto& way : ways) sum += length_along(way, points);
         return sum / static_cast<double>(ways.size());
     };
-    if (!(mean(read->shape().rest) > 0)) read->fail("has lines without length", "use other lines");
-    read->read_leader();
+    if (!(mean(members->shape().rest) > 0)) members->fail("has lines without length", "use other lines");
+    members->check_leader(spec.leader);
     Statement statement;
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
-        const auto leader = read->leader(edited);
-        ConstraintParameters parameters;
-        parameters.min = parameters.max = leader ? length_along(ways[*leader], edited.points) : mean(now.points);
-        parameters.absolute = true;
+        const auto leader = members->leader(spec.leader, edited);
+        const double length = leader ? length_along(ways[*leader], edited.points) : mean(now.points);
         Statement::Constraints list;
         for (std::size_t i = 0; i < ways.size(); ++i)
-            list.push_back(i == leader ? read->as_edited(i, edited) : read->make("PolylineLength", ways[i], parameters));
+            list.push_back(i == leader ? members->as_edited(i, edited)
+                                       : members->make(kinds::PolylineLength{{length, length}, true}, ways[i]));
         return list;
     };
     const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
@@ -169,9 +163,9 @@ Statement same_length(const ReaderPtr& read, const RelationOptions& tolerances) 
     return statement;
 }
 
-Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(1, 0);
-    const Vector3d up = read->up();
+Statement keep_direction(const MembersPtr& members, const spec::KeepDirection& spec, const RelationOptions& tolerances) {
+    members->need(1, 0);
+    const Vector3d up = members->up(spec.up);
     struct Part {
         std::vector<Index> vertices;
         Axis axis;
@@ -182,29 +176,28 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
         return std::atan2(direction.cross(up).norm(), std::abs(direction.dot(up)));
     };
     std::vector<Part> parts;
-    const double given = read->has("angle") ? read->number("angle", 0, 0, 90) : -1;
-    for (std::size_t i = 0; i < read->members(); ++i) {
-        read->need_region(i);
-        const Axis axis = axis_of_part(read->shape().mesh, read->member(i));
+    for (std::size_t i = 0; i < members->count(); ++i) {
+        members->need_region(i);
+        const Axis axis = axis_of_part(members->shape().mesh, members->member(i));
         if (!axis.found)
-            read->fail("annotation " + std::to_string(read->member(i).id) + " has no axis: " + axis.reason,
-                       "name a part that has one");
-        parts.push_back({read->vertices(i), axis, given >= 0 ? given * pi / 180 : angle_to(axis)});
+            members->fail("annotation " + std::to_string(members->member(i).id) + " has no axis: " + axis.reason,
+                          "name a part that has one");
+        parts.push_back({members->vertices(i), axis, spec.angle ? *spec.angle * pi / 180 : angle_to(axis)});
     }
     Statement statement;
-    if (given < 0) statement.keeps = "its direction";
-    for (std::size_t i = 0; i < parts.size(); ++i) statement.directions.push_back({read->member(i).id, up, parts[i].angle});
+    if (!spec.angle) statement.keeps = "its direction";
+    for (std::size_t i = 0; i < parts.size(); ++i) statement.directions.push_back({members->member(i).id, up, parts[i].angle});
     statement.follows = true;
-    let_turn(read, parts.size(), statement);
+    let_turn(members, parts.size(), statement);
     statement.lower = [=](const State& edited, const State& now) {
         Statement::Constraints list;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            ConstraintParameters own;
-            own.direction = up;
-            own.rest_direction = eigen(axis_carried_back(*read, i, parts[i].axis, now).direction);
-            own.min = own.max = parts[i].angle;
-            own.target = columns_at(edited.points, parts[i].vertices);
-            list.push_back(read->make("AxisDirection", ids_of(parts[i].vertices), own));
+            const Part& part = parts[i];
+            list.push_back(members->make(kinds::AxisDirection{up,
+                                                              {part.angle, part.angle},
+                                                              eigen(axis_carried_back(*members, i, part.axis, now).direction),
+                                                              columns_at(edited.points, part.vertices)},
+                                         ids_of(part.vertices)));
         }
         return list;
     };
@@ -212,38 +205,32 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
     statement.measure = [=](const State& deformed) -> Measured {
         Deviation worst = angle;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const Axis axis = axis_of_part(deformed.mesh, read->member(i));
+            const Axis axis = axis_of_part(deformed.mesh, members->member(i));
             if (!axis.found) return {Verdict::unknown, {}, "a part has no axis any more: " + axis.reason};
             worst.value = std::max(*worst.value, std::abs(angle_to(axis) - parts[i].angle) / degree);
         }
         Measured measured = verdict_of({worst});
-        if (given >= 0) doubt_axes(*read, deformed, tolerances.angle, measured);  // otherwise axis errors cancel
+        if (spec.angle) doubt_axes(*members, deformed, tolerances.angle, measured);  // otherwise axis errors cancel
         return measured;
     };
     return statement;
 }
 
-Statement keep_position(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(1, 1);
-    const std::vector<Index> vertices = read->vertices(0);
-    const Vector3d place = read->vector("point").value_or(mean_of(vertices, read->shape().rest));
+Statement keep_position(const MembersPtr& members, const spec::KeepPosition& spec, const RelationOptions& tolerances) {
+    members->need(1, 1);
+    const std::vector<Index> vertices = members->vertices(0);
+    const Vector3d place = spec.place.value_or(mean_of(vertices, members->shape().rest));
     Statement statement;
-    if (!read->has("point")) statement.keeps = "its place";
+    if (!spec.place) statement.keeps = "its place";
     statement.lower = [=](const State&, const State&) {
-        ConstraintParameters parameters;
-        parameters.point = place;
-        return only(read->make("MeanPosition", ids_of(vertices), parameters, static_cast<double>(vertices.size())));
+        return only(members->make(kinds::MeanPosition{place}, ids_of(vertices), static_cast<double>(vertices.size())));
     };
     // The part, in its shape after the edit, is translated as a whole, as far as other constraints allow.
     statement.support = [=](const State& edited, const State&) {
-        ConstraintParameters parameters;
         const Vector3d way = place - mean_of(vertices, edited.points);
-        parameters.target.emplace(3, static_cast<Eigen::Index>(vertices.size()));
-        for (std::size_t i = 0; i < vertices.size(); ++i)
-            parameters.target->col(static_cast<Eigen::Index>(i)) = edited.points.col(vertices[i]) + way;
-        return only(read->make("Closeness", ids_of(vertices), parameters));
+        return only(members->make(kinds::Closeness{columns_at(edited.points, vertices).colwise() + way}, ids_of(vertices)));
     };
-    const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().set.unit};
     statement.measure = [=](const State& deformed) {
         Deviation off = distance;
         off.value = (mean_of(vertices, deformed.points) - place).norm();

@@ -1,6 +1,6 @@
 // Constraints on parts that keep their shape, and on features on one level.
 #include "ostraka/core/dense.h"
-#include "reader.h"
+#include "statements.h"
 
 namespace ostraka::semantic {
 
@@ -33,10 +33,16 @@ Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     return best;
 }
 
-/// Constraints of this kind, which preserves shape, for all members.
-Statement::Constraints kept(const Reader& read, const char* kind) {
+/// The kind that preserves shape, with size or up to a factor.
+ConstraintKind keeping(bool similar) {
+    if (similar) return kinds::Similarity{};
+    return kinds::Rigid{};
+}
+
+/// Constraints of this kind for all members.
+Statement::Constraints kept(const ConstraintMembers& members, const ConstraintKind& kind) {
     Statement::Constraints list;
-    for (std::size_t i = 0; i < read.members(); ++i) list.push_back(read.make(kind, ids_of(read.vertices(i)), {}));
+    for (std::size_t i = 0; i < members.count(); ++i) list.push_back(members.make(kind, ids_of(members.vertices(i))));
     return list;
 }
 
@@ -93,13 +99,15 @@ struct LevelReference {
     }
 };
 
-std::vector<LevelReference> level_references(const Reader& read, const std::string& reference, const Vector3d& up) {
+std::vector<LevelReference> level_references(const ConstraintMembers& members, spec::SameLevel::Reference reference,
+                                             const Vector3d& up) {
+    using Reference = spec::SameLevel::Reference;
     std::vector<LevelReference> list;
-    for (std::size_t i = 0; i < read.members(); ++i) {
-        std::vector<Index> vertices = read.vertices(i);
-        if (reference == "base") vertices = base_of(read.shape().rest, vertices, up);
-        if (reference == "vertex") vertices = {reference_vertex(read.shape().rest, vertices)};
-        list.push_back({&read.member(i), std::move(vertices), reference == "mean", reference == "base"});
+    for (std::size_t i = 0; i < members.count(); ++i) {
+        std::vector<Index> vertices = members.vertices(i);
+        if (reference == Reference::base) vertices = base_of(members.shape().rest, vertices, up);
+        if (reference == Reference::vertex) vertices = {reference_vertex(members.shape().rest, vertices)};
+        list.push_back({&members.member(i), std::move(vertices), reference == Reference::mean, reference == Reference::base});
     }
     return list;
 }
@@ -117,10 +125,10 @@ double apart(const std::vector<LevelReference>& references, const Vector3d& up, 
 }
 
 /// A constraint on the heights of references; with positions at rest their height differences are preserved.
-std::unique_ptr<Constraint> level_of(const Reader& read, const std::vector<LevelReference>& references, const Vector3d& up,
-                                     const Mesh& weighted_on, const State& now, const std::vector<Vector3d>& rest) {
-    ConstraintParameters level;
-    level.direction = up;
+std::unique_ptr<Constraint> level_of(const ConstraintMembers& members, const std::vector<LevelReference>& references,
+                                     const Vector3d& up, const Mesh& weighted_on, const State& now,
+                                     const std::vector<Vector3d>& rest) {
+    kinds::MeansOnLevel level{up};
     std::vector<int> ids;
     for (std::size_t i = 0; i < references.size(); ++i) {
         const LevelReference reference = references[i].on(now.mesh, now.points, up);
@@ -128,56 +136,57 @@ std::unique_ptr<Constraint> level_of(const Reader& read, const std::vector<Level
         for (std::size_t k = 0; k < weights.size(); ++k) {
             if (!(weights[k] > 0)) continue;
             ids.push_back(static_cast<int>(reference.vertices[k]));
-            level.stations.push_back(static_cast<int>(i));
-            level.coefficients.push_back(weights[k]);
+            level.groups.push_back(static_cast<int>(i));
+            level.weights.push_back(weights[k]);
         }
     }
     if (!rest.empty()) {
-        level.target.emplace(3, static_cast<Eigen::Index>(rest.size()));
-        for (std::size_t i = 0; i < rest.size(); ++i) level.target->col(static_cast<Eigen::Index>(i)) = rest[i];
+        level.places.emplace(3, static_cast<Eigen::Index>(rest.size()));
+        for (std::size_t i = 0; i < rest.size(); ++i) level.places->col(static_cast<Eigen::Index>(i)) = rest[i];
     }
-    return read.make("MeansOnLevel", ids, level);
+    return members.make(level, std::move(ids));
 }
 
-Reattachment reattachment_of(const Reader& read, std::optional<Vector3d> up) {
+Reattachment reattachment_of(const ConstraintMembers& members, std::optional<Vector3d> up, double bend) {
     Reattachment reattachment;
-    std::vector<bool> taken(read.shape().mesh.number_of_vertices(), false);
-    for (std::size_t i = 0; i < read.members(); ++i) {
-        const Annotation& feature = read.member(i);
-        read.need_region(i);
-        if (!has_outline(read.shape().mesh, feature))
-            read.fail("annotation " + std::to_string(feature.id) + " is a whole piece of the object and sits on nothing",
-                      "seat parts of it");
-        for (const Index v : read.vertices(i)) {
+    std::vector<bool> taken(members.shape().mesh.number_of_vertices(), false);
+    for (std::size_t i = 0; i < members.count(); ++i) {
+        const Annotation& feature = members.member(i);
+        members.need_region(i);
+        if (!has_outline(members.shape().mesh, feature))
+            members.fail("annotation " + std::to_string(feature.id) + " is a whole piece of the object and sits on nothing",
+                         "seat parts of it");
+        for (const Index v : members.vertices(i)) {
             if (taken[v])
-                read.fail("annotation " + std::to_string(feature.id) + " touches another feature, so that neither can move alone",
-                          "make one annotation of both, or keep their shapes without seating");
+                members.fail(
+                    "annotation " + std::to_string(feature.id) + " touches another feature, so that neither can move alone",
+                    "make one annotation of both, or keep their shapes without seating");
             taken[v] = true;
         }
         reattachment.features.push_back(&feature);
     }
     reattachment.up = up;
-    reattachment.bend = read.number("bend", 7.5e-4, 0, 1);
+    reattachment.bend = bend;
     return reattachment;
 }
 
 }  // namespace
 
-Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(1, 0);
-    const std::string mode = read->word("mode", "rigid", {"rigid", "similar", "seat"});
-    const char* const kind = mode == "similar" ? "Similarity" : "Rigid";
+Statement keep_shape(const MembersPtr& members, const spec::KeepShape& spec, const RelationOptions& tolerances) {
+    members->need(1, 0);
+    using Mode = spec::KeepShape::Mode;
+    const ConstraintKind kind = keeping(spec.mode == Mode::similar);
     Statement statement;
     statement.keeps = "its shape";
-    if (mode == "seat") statement.reattachment = reattachment_of(*read, {});
-    const auto parts = std::make_shared<const Statement::Constraints>(kept(*read, kind));
-    statement.lower = [read, kind, reattached = mode == "seat"](const State&, const State&) {
-        return reattached ? Statement::Constraints() : kept(*read, kind);
+    if (spec.mode == Mode::seat) statement.reattachment = reattachment_of(*members, {}, spec.bend);
+    const auto parts = std::make_shared<const Statement::Constraints>(kept(*members, kind));
+    statement.lower = [members, kind, reattached = spec.mode == Mode::seat](const State&, const State&) {
+        return reattached ? Statement::Constraints() : kept(*members, kind);
     };
     // Tolerances are relative to the size of each part, since parts are small compared to the object.
     std::vector<double> tolerance;
-    for (const auto& part : *parts) tolerance.push_back(tolerances.distance * read->size_at_rest(*part));
-    statement.measure = [=, unit = read->shape().set.unit](const State& deformed) {
+    for (const auto& part : *parts) tolerance.push_back(tolerances.distance * members->size_at_rest(*part));
+    statement.measure = [=, unit = members->shape().set.unit](const State& deformed) {
         Deviation worst{"rms distance from its shape", 0.0, tolerance.front(), unit};
         for (std::size_t i = 0; i < parts->size(); ++i) {
             const Constraint& part = *(*parts)[i];
@@ -189,49 +198,52 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     return statement;
 }
 
-Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
-    read->need(2, 0);
-    const Vector3d up = read->up();
-    const std::string shapes = read->word("shapes", "keep", {"keep", "similar", "free", "seat"});
+Statement same_level(const MembersPtr& members, const spec::SameLevel& spec, const RelationOptions& tolerances) {
+    members->need(2, 0);
+    using Shapes = spec::SameLevel::Shapes;
+    using Reference = spec::SameLevel::Reference;
+    using Heights = spec::SameLevel::Heights;
+    const Vector3d up = members->up(spec.up);
     // The thesis uses a reference vertex of each part. Its position depends on the mesh, so that such vertices are not on one
     // level even at rest; centroids of parts are.
-    const std::string reference = read->word("reference", "mean", {"mean", "vertex", "base"});
-    const auto references = std::make_shared<const std::vector<LevelReference>>(level_references(*read, reference, up));
-    const Mesh& mesh = read->shape().mesh;
-    const double tolerance = read->tolerance("height", length_tolerance(*read, tolerances));
+    const auto references = std::make_shared<const std::vector<LevelReference>>(level_references(*members, spec.reference, up));
+    const Mesh& mesh = members->shape().mesh;
+    const double tolerance = members->tolerance("height", length_tolerance(*members, tolerances));
     // Parts on one level at rest keep their small height differences; others are moved to one level.
-    const bool keeps = reference != "vertex" && !read->shape().alone && apart(*references, up, State(mesh)) <= tolerance;
-    const bool as_at_rest = shapes != "seat" && read->word("heights", keeps ? "rest" : "equal", {"rest", "equal"}) == "rest";
+    const bool keeps =
+        spec.reference != Reference::vertex && !members->shape().alone && apart(*references, up, State(mesh)) <= tolerance;
+    const bool as_at_rest =
+        spec.shapes != Shapes::seat && spec.heights.value_or(keeps ? Heights::rest : Heights::equal) == Heights::rest;
     std::vector<Vector3d> places;
     if (as_at_rest)
-        for (const LevelReference& one : *references) places.push_back(one.place(mesh, read->shape().rest));
+        for (const LevelReference& one : *references) places.push_back(one.place(mesh, members->shape().rest));
     Statement statement;
     if (as_at_rest) statement.keeps = "the differences of height";
-    if (shapes == "seat") {
-        statement.reattachment = reattachment_of(*read, up);
+    if (spec.shapes == Shapes::seat) {
+        statement.reattachment = reattachment_of(*members, up, spec.bend);
         for (const LevelReference& one : *references)
             if (!one.centroid) statement.reattachment->references.push_back(one.vertices);
         statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
-        read->read_leader();
+        members->check_leader(spec.leader);
         // For rigid parts the centroid has the vertex weights at rest; for others the weights are updated.
-        const bool rigid = shapes != "free";
-        const char* const kind = shapes == "similar" ? "Similarity" : "Rigid";
-        statement.follows = (!rigid && reference == "mean") || reference == "base";
+        const bool rigid = spec.shapes != Shapes::free;
+        const ConstraintKind kind = keeping(spec.shapes == Shapes::similar);
+        statement.follows = (!rigid && spec.reference == Reference::mean) || spec.reference == Reference::base;
         statement.lower = [=](const State& edited, const State& now) {
-            const auto leader = read->leader(edited);
+            const auto leader = members->leader(spec.leader, edited);
             Statement::Constraints list;
-            if (leader) list.push_back(read->as_edited(*leader, edited));
+            if (leader) list.push_back(members->as_edited(*leader, edited));
             if (rigid)
-                for (std::size_t i = 0; i < read->members(); ++i)
-                    if (const auto ids = ids_of(read->vertices(i)); i != leader && ids.size() > 1)
-                        list.push_back(read->make(kind, ids, {}));
-            list.push_back(level_of(*read, *references, up, rigid ? read->shape().mesh : now.mesh, now, places));
+                for (std::size_t i = 0; i < members->count(); ++i)
+                    if (const auto ids = ids_of(members->vertices(i)); i != leader && ids.size() > 1)
+                        list.push_back(members->make(kind, ids));
+            list.push_back(level_of(*members, *references, up, rigid ? members->shape().mesh : now.mesh, now, places));
             return list;
         };
     }
     const Deviation height{as_at_rest ? "change of the heights against each other" : "height", 0.0, tolerance,
-                           read->shape().set.unit};
+                           members->shape().set.unit};
     statement.measure = [=](const State& deformed) {
         Deviation worst = height;
         worst.value = apart(*references, up, deformed, places);

@@ -1,28 +1,62 @@
 #include "statement.h"
 
-#include "reader.h"
+#include "statements.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/text.h"
 #include "ostraka/relation/geometric.h"
 
+#include <fmt/core.h>
+
+#include <functional>
 #include <map>
 
 namespace ostraka::semantic {
 
 namespace {
 
-using Understanding = Statement (*)(const ReaderPtr&, const RelationOptions&);
+using Understanding = std::function<Statement(const MembersPtr&, const ParameterReader&, const RelationOptions&)>;
+
+/// Reads the parameters, all of which must be known, before the constraint is interpreted.
+template <class Spec>
+Understanding by(Statement (*understand)(const MembersPtr&, const Spec&, const RelationOptions&)) {
+    return [understand](const MembersPtr& members, const ParameterReader& read, const RelationOptions& tolerances) {
+        const bool hard = read.flag("hard");
+        const Spec spec(read);
+        read.refuse_others();
+        Statement statement = understand(members, spec, tolerances);
+        statement.hard = hard;
+        bool follows = false;
+        if constexpr (requires { spec.leader; }) follows = spec.leader.any;
+        statement.left_alone = statement.left_alone || (hard && !statement.sized.empty() && !follows);
+        return statement;
+    };
+}
+
 const std::map<std::string, Understanding>& table() {
     static const std::map<std::string, Understanding> rows{
-        {"keep shape", keep_shape},         {"same level", same_level},         {"co-axiality", co_axiality},
-        {"parallel axes", axis_angle},      {"perpendicular axes", axis_angle}, {"structural continuity", structural_continuity},
-        {"proportion", proportion},         {"keep measure", keep_measure},     {"same measure", same_measure},
-        {"co-planarity", co_planarity},     {"co-linearity", co_linearity},     {"mirror symmetry", mirror_symmetry},
-        {"adjacency", adjacency},           {"containment", selections_kept},   {"equal selections", selections_kept},
-        {"horizontal support", support},    {"side contact", contact},          {"part similarity", part_similarity},
-        {"equal attributes", same_measure}, {"same length", same_length},       {"keep direction", keep_direction},
-        {"keep position", keep_position},
+        {"keep shape", by(keep_shape)},
+        {"same level", by(same_level)},
+        {"co-axiality", by(co_axiality)},
+        {"parallel axes", by(axis_angle)},
+        {"perpendicular axes", by(axis_angle)},
+        {"structural continuity", by(structural_continuity)},
+        {"proportion", by(proportion)},
+        {"keep measure", by(keep_measure)},
+        {"same measure", by(same_measure)},
+        {"co-planarity", by(co_planarity)},
+        {"co-linearity", by(co_linearity)},
+        {"mirror symmetry", by(mirror_symmetry)},
+        {"adjacency", by(adjacency)},
+        {"containment", by(selections_kept)},
+        {"equal selections", by(selections_kept)},
+        {"horizontal support", by(support)},
+        {"side contact", by(contact)},
+        {"part similarity", by(part_similarity)},
+        {"equal attributes", by(same_measure)},
+        {"same length", by(same_length)},
+        {"keep direction", by(keep_direction)},
+        {"keep position", by(keep_position)},
     };
     return rows;
 }
@@ -45,39 +79,38 @@ Measured verdict_of(std::vector<Deviation> deviations) {
     return result;
 }
 
-std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances) {
+std::function<Measured(const State&)> as_related(const MembersPtr& members, Relationship stated,
+                                                 const RelationOptions& tolerances) {
     stated.is_constraint = false;
     // Distance tolerances are relative to the diagonal at rest, independent of the current size.
-    const double diagonal = box_diagonal(read->shape().mesh);
-    return [read, stated, given = tolerances, diagonal](const State& deformed) -> Measured {
+    const double diagonal = box_diagonal(members->shape().mesh);
+    return [members, stated, given = tolerances, diagonal](const State& deformed) -> Measured {
         RelationOptions at_rest = given;
         if (const double now = box_diagonal(deformed.mesh); now > 0)
             at_rest.distance = std::min(1.0, given.distance * diagonal / now);
-        const RelationCheck check = RelationMeter(deformed.mesh, read->shape().set, at_rest).measure(stated);
+        const RelationCheck check = RelationMeter(deformed.mesh, members->shape().set, at_rest).measure(stated);
         return {check.verdict, check.parameters.deviations, check.text};
     };
 }
 
-double length_tolerance(const Reader& read, const RelationOptions& tolerances) {
-    return tolerances.distance * box_diagonal(read.shape().mesh);
+double length_tolerance(const ConstraintMembers& members, const RelationOptions& tolerances) {
+    return tolerances.distance * box_diagonal(members.shape().mesh);
 }
 
 Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
                      const std::string& where) {
-    const auto row = table().find(relationship.type);
-    const auto read = std::make_shared<const Reader>(shape, relationship, where);
+    const std::string place = fmt::format("{}, constraint {} ({})", where, relationship.id, relationship.type);
+    const auto members = std::make_shared<const ConstraintMembers>(shape, relationship, place);
+    const ParameterReader read(relationship, place);
+    if (const auto row = table().find(relationship.type); row != table().end()) return row->second(members, read, tolerances);
     Statement statement;
-    if (row != table().end()) {
-        statement = row->second(read, tolerances);
-    } else if (low_level_kind(relationship.type) != nullptr) {
-        statement = low_level(read, tolerances);
-    } else {
+    if (!is_low_level(relationship.type)) {
         statement.unknown = "deformation does not know this type";
         return statement;
     }
-    statement.hard = read->flag("hard");
-    statement.left_alone = statement.left_alone || (statement.hard && !statement.sized.empty() && !read->follows());
-    read->refuse_others();
+    statement = low_level(members, read, tolerances);
+    statement.hard = read.flag("hard");
+    read.refuse_others();
     return statement;
 }
 

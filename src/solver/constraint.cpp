@@ -1,7 +1,7 @@
 #include "ostraka/solver/constraint.h"
 #include "ostraka/core/dense.h"
 
-#include "kinds.h"
+#include "create.h"
 
 #include <cmath>
 

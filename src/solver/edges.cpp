@@ -1,5 +1,5 @@
 // Constraints on differences of points: lengths, angles and directions.
-#include "kinds.h"
+#include "create.h"
 #include "ostraka/core/angles.h"
 
 #include <algorithm>
@@ -16,14 +16,14 @@ using Eigen::Vector3d;
 /// Rows x_b - x_a for pairs (a, b) of positions.
 class Edges : public Constraint {
 protected:
-    Edges(const Making& m, const std::vector<std::pair<int, int>>& pairs) : Constraint(m.kind, m.ids, m.weight) {
+    Edges(const ConstraintArguments& a, const std::vector<std::pair<int, int>>& pairs) : Constraint(a.kind, a.ids, a.weight) {
         map_.rows = static_cast<Index>(pairs.size());
         rest_.resize(3, map_.rows);
         for (Index r = 0; r < map_.rows; ++r) {
-            const auto [a, b] = pairs[static_cast<std::size_t>(r)];
-            map_.entries.push_back({static_cast<std::int32_t>(r), a, -1.0});
-            map_.entries.push_back({static_cast<std::int32_t>(r), b, 1.0});
-            rest_.col(r) = m.rest.col(b) - m.rest.col(a);
+            const auto [from, to] = pairs[static_cast<std::size_t>(r)];
+            map_.entries.push_back({static_cast<std::int32_t>(r), from, -1.0});
+            map_.entries.push_back({static_cast<std::int32_t>(r), to, 1.0});
+            rest_.col(r) = a.rest.col(to) - a.rest.col(from);
         }
     }
     /// Row r scaled to another length; a row of zero length takes the direction of the rest state.
@@ -41,10 +41,10 @@ std::vector<std::pair<int, int>> path_edges(int begin, int end) {
     return pairs;
 }
 
-std::vector<std::pair<int, int>> pairs_of(const Making& m) {
-    if (m.ids.size() % 2 != 0) m.fail("there is an odd number of points", "give two for each segment");
+std::vector<std::pair<int, int>> pairs_of(const ConstraintArguments& a) {
+    if (a.ids.size() % 2 != 0) a.fail("there is an odd number of points", "give two for each segment");
     std::vector<std::pair<int, int>> pairs;
-    for (int i = 0; i + 1 < static_cast<int>(m.ids.size()); i += 2) pairs.emplace_back(i, i + 1);
+    for (int i = 0; i + 1 < static_cast<int>(a.ids.size()); i += 2) pairs.emplace_back(i, i + 1);
     return pairs;
 }
 
@@ -70,11 +70,10 @@ void bring_to_angle(Vector3d& u, Vector3d& v, double wanted) {
     v = lv * std::cos(excess - a) * at(a + wanted);
 }
 
-/// The angle at the first point, or between two segments, is within a range.
 class Angle final : public Edges {
 public:
-    Angle(const Making& m, const std::vector<std::pair<int, int>>& pairs, Making::Interval range)
-        : Edges(m, pairs), range_(range) {}
+    Angle(const ConstraintArguments& a, const std::vector<std::pair<int, int>>& pairs, Interval range)
+        : Edges(a, pairs), range_(range) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         Vector3d u = rows.col(0), v = rows.col(1);
         const double now = std::atan2(u.cross(v).norm(), u.dot(v)), wanted = range_.clamp(now);
@@ -84,13 +83,12 @@ public:
     }
 
 private:
-    Making::Interval range_;
+    Interval range_;
 };
 
-/// All segments are parallel or antiparallel: the rank-one matrix closest to the rows.
 class Parallel final : public Edges {
 public:
-    explicit Parallel(const Making& m) : Edges(m, pairs_of(m)) {}
+    explicit Parallel(const ConstraintArguments& a) : Edges(a, pairs_of(a)) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         const Vector3d d = principal(outer_sum(rows, rows)).eigenvectors().col(2);
         for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = d * d.dot(rows.col(r));
@@ -129,11 +127,11 @@ void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign
     for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = std::max(lengths[i] + sign[i] * delta, 0.0);
 }
 
-/// The length of a polyline is within a range; the projection changes all edges by the same amount.
 class PolylineLength final : public Edges {
 public:
-    explicit PolylineLength(const Making& m) : Edges(m, path_edges(0, static_cast<int>(m.ids.size()))) {
-        range_ = m.range_of(rest_.colwise().norm().sum());
+    PolylineLength(const ConstraintArguments& a, const kinds::PolylineLength& kind)
+        : Edges(a, path_edges(0, static_cast<int>(a.ids.size()))) {
+        range_ = a.range_of(kind.length, kind.absolute, rest_.colwise().norm().sum());
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
         std::vector<double> lengths(static_cast<std::size_t>(rows.cols()));
@@ -146,24 +144,23 @@ public:
     }
 
 private:
-    Making::Interval range_{0, 0};
+    Interval range_{0, 0};
 };
 
-/// All segments have the same length; the projection uses their mean.
 class EqualLengths final : public Edges {
 public:
-    explicit EqualLengths(const Making& m) : Edges(m, pairs_of(m)) {}
+    explicit EqualLengths(const ConstraintArguments& a) : Edges(a, pairs_of(a)) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         const double mean = rows.colwise().norm().mean();
         for (Index r = 0; r < rows.cols(); ++r) projected.col(r) = with_length(rows, r, mean);
     }
 };
 
-/// Two polylines have the same length.
 class EqualLength final : public Edges {
 public:
-    EqualLength(const Making& m, std::vector<std::pair<int, int>> first, const std::vector<std::pair<int, int>>& second)
-        : Edges(m, joined(first, second)), first_(static_cast<Index>(first.size())) {}
+    EqualLength(const ConstraintArguments& a, std::vector<std::pair<int, int>> first,
+                const std::vector<std::pair<int, int>>& second)
+        : Edges(a, joined(first, second)), first_(static_cast<Index>(first.size())) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         std::vector<double> lengths, sign;
         for (Index r = 0; r < rows.cols(); ++r) {
@@ -185,24 +182,25 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_angle(Making&& m) {
-    const auto range = m.range(0, pi);
-    if (range.max > pi) m.fail("an angle is at most pi", "angles are in radians");
-    return std::make_unique<Angle>(m, std::vector<std::pair<int, int>>{{0, 1}, {0, 2}}, range);
+ConstraintPtr create(const kinds::Angle& kind, const ConstraintArguments& a) {
+    const Interval range = a.checked(kind.angle);
+    if (range.max > pi) a.fail("an angle is at most pi", "angles are in radians");
+    return std::make_unique<Angle>(a, std::vector<std::pair<int, int>>{{0, 1}, {0, 2}}, range);
 }
 
-std::unique_ptr<Constraint> make_perpendicular(Making&& m) {
-    return std::make_unique<Angle>(m, pairs_of(m), Making::Interval{pi / 2, pi / 2});
+ConstraintPtr create(const kinds::Perpendicular&, const ConstraintArguments& a) {
+    return std::make_unique<Angle>(a, pairs_of(a), Interval{pi / 2, pi / 2});
 }
-
-std::unique_ptr<Constraint> make_parallel(Making&& m) { return std::make_unique<Parallel>(m); }
-std::unique_ptr<Constraint> make_polyline_length(Making&& m) { return std::make_unique<PolylineLength>(m); }
-std::unique_ptr<Constraint> make_equal_lengths(Making&& m) { return std::make_unique<EqualLengths>(m); }
-
-std::unique_ptr<Constraint> make_equal_length(Making&& m) {
-    const int count = static_cast<int>(m.ids.size()), split = m.parameters.split;
-    if (split < 2 || split > count - 2) m.fail("split is " + std::to_string(split), "both poly-lines need two points at least");
-    return std::make_unique<EqualLength>(m, path_edges(0, split), path_edges(split, count));
+ConstraintPtr create(const kinds::Parallel&, const ConstraintArguments& a) { return std::make_unique<Parallel>(a); }
+ConstraintPtr create(const kinds::PolylineLength& kind, const ConstraintArguments& a) {
+    return std::make_unique<PolylineLength>(a, kind);
+}
+ConstraintPtr create(const kinds::EqualLengths&, const ConstraintArguments& a) { return std::make_unique<EqualLengths>(a); }
+ConstraintPtr create(const kinds::EqualLength& kind, const ConstraintArguments& a) {
+    const int count = static_cast<int>(a.ids.size());
+    if (kind.first < 2 || kind.first > count - 2)
+        a.fail("the first polyline has " + std::to_string(kind.first) + " points", "both polylines need at least two points");
+    return std::make_unique<EqualLength>(a, path_edges(0, kind.first), path_edges(kind.first, count));
 }
 
 }  // namespace ostraka::solver

@@ -1,14 +1,13 @@
 // Constraints of points to positions, a surface, a line or a plane.
-#include "kinds.h"
+#include "create.h"
 
 namespace ostraka::solver {
 
 namespace {
 
-/// The points x_i are at target positions. Rows: the points.
 class Closeness final : public Constraint {
 public:
-    explicit Closeness(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight), target_(m.target_or(m.rest)) {
+    Closeness(const ConstraintArguments& a, Points target) : Constraint(a.kind, a.ids, a.weight), target_(std::move(target)) {
         map_.direct = map_.rows = target_.cols();
     }
     void project(const RowsIn&, RowsOut projected) const override { projected = target_; }
@@ -23,10 +22,10 @@ private:
     Points target_;
 };
 
-/// The points x_i are on a surface. Rows: the points.
 class OnSurface final : public Constraint {
 public:
-    explicit OnSurface(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight), closest_(m.parameters.closest_point) {
+    OnSurface(const ConstraintArguments& a, const kinds::OnSurface& kind)
+        : Constraint(a.kind, a.ids, a.weight), closest_(kind.closest_point) {
         map_.direct = map_.rows = static_cast<Eigen::Index>(ids().size());
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
@@ -40,7 +39,6 @@ private:
     std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_;
 };
 
-/// The points are on a line: the first principal axis (ShapeUp, section 4).
 class Line final : public MomentConstraint {
 public:
     using MomentConstraint::MomentConstraint;
@@ -50,7 +48,6 @@ public:
     }
 };
 
-/// The points are on a plane: the one perpendicular to the last principal axis.
 class Plane final : public MomentConstraint {
 public:
     using MomentConstraint::MomentConstraint;
@@ -60,11 +57,10 @@ public:
     }
 };
 
-/// The points are on a plane with given normal (the thesis, section 5.2.1).
 class Orientation final : public MomentConstraint {
 public:
-    Orientation(const Making& m, const Eigen::Vector3d& n)
-        : MomentConstraint(m), plane_(Eigen::Matrix3d::Identity() - n * n.transpose()) {}
+    Orientation(const ConstraintArguments& a, const Eigen::Vector3d& n)
+        : MomentConstraint(a), plane_(Eigen::Matrix3d::Identity() - n * n.transpose()) {}
     [[nodiscard]] LinearProjection project_moments(const Moments&) const override { return {plane_, Eigen::Matrix3d::Zero()}; }
 
 private:
@@ -73,16 +69,17 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_closeness(Making&& m) { return std::make_unique<Closeness>(std::move(m)); }
-
-std::unique_ptr<Constraint> make_on_surface(Making&& m) {
-    if (!m.parameters.closest_point) m.fail("there is no surface", "give closest_point");
-    return std::make_unique<OnSurface>(std::move(m));
+ConstraintPtr create(const kinds::Closeness& kind, const ConstraintArguments& a) {
+    return std::make_unique<Closeness>(a, a.given_or_rest(kind.targets));
 }
-
-std::unique_ptr<Constraint> make_line(Making&& m) { return std::make_unique<Line>(m); }
-std::unique_ptr<Constraint> make_plane(Making&& m) { return std::make_unique<Plane>(m); }
-
-std::unique_ptr<Constraint> make_orientation(Making&& m) { return std::make_unique<Orientation>(m, m.direction()); }
+ConstraintPtr create(const kinds::OnSurface& kind, const ConstraintArguments& a) {
+    if (!kind.closest_point) a.fail("there is no surface", "give closest_point");
+    return std::make_unique<OnSurface>(a, kind);
+}
+ConstraintPtr create(const kinds::Line&, const ConstraintArguments& a) { return std::make_unique<Line>(a); }
+ConstraintPtr create(const kinds::Plane&, const ConstraintArguments& a) { return std::make_unique<Plane>(a); }
+ConstraintPtr create(const kinds::Orientation& kind, const ConstraintArguments& a) {
+    return std::make_unique<Orientation>(a, a.unit(kind.normal, "normal"));
+}
 
 }  // namespace ostraka::solver

@@ -1,5 +1,7 @@
 // Constraints on stations of an axis, levels, mirrored pairs and proportions.
-#include "kinds.h"
+#include "create.h"
+
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -15,52 +17,46 @@ using Eigen::Vector3d;
 /// station by the rest: hat functions, which avoid waves of the length of a group between moved stations.
 class StationMeans : public Constraint {
 protected:
-    StationMeans(const Making& m, const std::vector<double>& shares, const std::vector<double>& weights = {})
-        : Constraint(m.kind, m.ids, m.weight) {
-        std::vector<int> stations = m.parameters.stations;
-        if (m.kind == "MeanPosition") stations.assign(ids().size(), 0);
+    StationMeans(const ConstraintArguments& a, std::vector<int> stations, const std::vector<double>& shares,
+                 const std::vector<double>& weights)
+        : Constraint(a.kind, a.ids, a.weight) {
         if (stations.empty())
             for (std::size_t i = 0; i < ids().size(); ++i) stations.push_back(static_cast<int>(i));
-        if (stations.size() != ids().size()) m.fail("there must be a station for each point");
-        if (!shares.empty() && shares.size() != ids().size())
-            m.fail("there are " + std::to_string(shares.size()) + " coefficients for " + std::to_string(ids().size()) +
-                   " points");
-        if (!weights.empty() && weights.size() != ids().size())
-            m.fail("there are " + std::to_string(weights.size()) + " coefficients for " + std::to_string(ids().size()) +
-                   " points");
+        if (stations.size() != ids().size()) a.fail("there must be a station for each point");
+        for (const auto& [values, name] : {std::pair(&shares, "shares"), std::pair(&weights, "weights")})
+            if (!values->empty() && values->size() != ids().size())
+                a.fail(fmt::format("there are {} {} for {} points", values->size(), name, ids().size()));
         int count = 0;
-        for (const int station : stations) {
+        for (const int station : stations)
             if (station < 0 || station >= static_cast<int>(stations.size()))
-                m.fail("station " + std::to_string(station) + " is out of range");
-        }
+                a.fail(fmt::format("station {} is out of range", station));
         for (std::size_t i = 0; i < stations.size(); ++i)
             count = std::max(count, stations[i] + (!shares.empty() && shares[i] > 0 ? 2 : 1));
         std::vector<std::vector<std::pair<std::int32_t, double>>> members(static_cast<std::size_t>(count));
         for (std::size_t i = 0; i < stations.size(); ++i) {
             const double share = shares.empty() ? 0.0 : shares[i];
             if (!(share >= 0 && share <= 1))
-                m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(share), "shares are from 0 to 1");
+                a.fail(fmt::format("share {} is {}", i, std::to_string(share)), "shares are from 0 to 1");
             const double weight = weights.empty() ? 1.0 : weights[i];
             if (!(weight > 0 && weight < 1e60))
-                m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(weight), "weights are positive");
+                a.fail(fmt::format("weight {} is {}", i, std::to_string(weight)), "weights are positive");
             if (share < 1) members[stations[i]].emplace_back(static_cast<std::int32_t>(i), weight * (1 - share));
             if (share > 0) members[stations[i] + 1].emplace_back(static_cast<std::int32_t>(i), share);
         }
         for (int s = 0; s < count; ++s) {
             double sum = 0;
             for (const auto& [i, weight] : members[s]) sum += weight;
-            if (!(sum > 0)) m.fail("station " + std::to_string(s) + " has no point");
+            if (!(sum > 0)) a.fail(fmt::format("station {} has no point", s));
             for (const auto& [i, weight] : members[s]) map_.entries.push_back({s, i, weight / sum});
         }
         map_.rows = count;
     }
 };
 
-/// The stations of an axis lie on a given line: constrains the axis, and the surface follows.
 class AxisOnLine final : public StationMeans {
 public:
-    AxisOnLine(const Making& m, const Vector3d& direction, const Vector3d& point)
-        : StationMeans(m, m.parameters.coefficients), direction_(direction), point_(point) {}
+    AxisOnLine(const ConstraintArguments& a, const kinds::AxisOnLine& kind)
+        : StationMeans(a, kind.stations, kind.shares, {}), direction_(a.unit(kind.direction)), point_(a.finite(kind.point)) {}
     void project(const RowsIn& rows, RowsOut projected) const override {
         for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = point_ + direction_ * direction_.dot(rows.col(i) - point_);
     }
@@ -77,18 +73,16 @@ private:
     Vector3d direction_, point_;
 };
 
-/// The means of the groups have the same height; the closest is the mean of their heights. With a target (one point per group)
-/// their height differences are those of the target's points.
 class MeansOnLevel final : public StationMeans {
 public:
-    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}, m.parameters.coefficients), up_(up) {
+    MeansOnLevel(const ConstraintArguments& a, const kinds::MeansOnLevel& kind)
+        : StationMeans(a, kind.groups, {}, kind.weights), up_(a.unit(kind.up)) {
         heights_ = Eigen::VectorXd::Zero(map_.rows);
-        if (!m.parameters.target) return;
-        const Points& target = *m.parameters.target;
-        if (target.cols() != map_.rows)
-            m.fail("the target has " + std::to_string(target.cols()) + " points instead of " + std::to_string(map_.rows));
-        if (!target.allFinite()) m.fail("the target is not finite");
-        for (Index i = 0; i < target.cols(); ++i) heights_[i] = up.dot(target.col(i) - target.col(0));
+        if (!kind.places) return;
+        const Points& places = *kind.places;
+        if (places.cols() != map_.rows) a.fail(fmt::format("there are {} places for {} groups", places.cols(), map_.rows));
+        if (!places.allFinite()) a.fail("the places are not finite");
+        for (Index i = 0; i < places.cols(); ++i) heights_[i] = up_.dot(places.col(i) - places.col(0));
         heights_.array() -= heights_.mean();
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
@@ -102,10 +96,10 @@ private:
     Eigen::VectorXd heights_;  ///< height of each group relative to the mean of all
 };
 
-/// The mean of all points is at a given position.
 class MeanPosition final : public StationMeans {
 public:
-    MeanPosition(const Making& m, const Vector3d& place) : StationMeans(m, {}, m.parameters.coefficients), place_(place) {}
+    MeanPosition(const ConstraintArguments& a, const kinds::MeanPosition& kind)
+        : StationMeans(a, std::vector<int>(a.ids.size(), 0), {}, kind.weights), place_(a.finite(kind.place)) {}
     void project(const RowsIn& rows, RowsOut projected) const override { projected = place_.replicate(1, rows.cols()); }
     [[nodiscard]] bool constant() const override { return true; }
     [[nodiscard]] std::optional<Components> given_components() const override {
@@ -119,17 +113,15 @@ private:
     Vector3d place_;
 };
 
-/// Pairs of points that mirror each other in a given plane (rows: the points) or in the best plane (rows: the centred points),
-/// whose normal is the last eigenvector of the symmetric part of sum p q^T.
 class MirrorSymmetry final : public Constraint {
 public:
-    MirrorSymmetry(Making&& m, const Vector3d& normal, const Vector3d& point)
-        : Constraint(m.kind, std::move(m.ids), m.weight), given_(true), normal_(normal), point_(point) {
+    MirrorSymmetry(const ConstraintArguments& a, const kinds::MirrorSymmetry& kind)
+        : Constraint(a.kind, a.ids, a.weight), given_(kind.plane) {
         map_.direct = map_.rows = static_cast<Index>(ids().size());
-    }
-    explicit MirrorSymmetry(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight) {
-        map_.direct = map_.rows = static_cast<Index>(ids().size());
-        map_.centred = true;
+        map_.centred = !given_;
+        if (!given_) return;
+        normal_ = a.unit(kind.plane->normal, "normal");
+        point_ = a.finite(kind.plane->point);
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
         Vector3d n = normal_;
@@ -147,28 +139,25 @@ public:
     }
 
 private:
-    bool given_ = false;
+    bool given_;
     Vector3d normal_ = Vector3d::UnitZ(), point_ = Vector3d::Zero();
 };
 
-/// Pairs of a point and a partner, a combination of three other points, that mirror each other in a given plane up to a
-/// constant discrepancy per pair. Rows: the point and the combination.
-class MirroredInTriangles final : public Constraint {
+class MirrorInTriangles final : public Constraint {
 public:
-    MirroredInTriangles(const Making& m, const Vector3d& normal, const Vector3d& point)
-        : Constraint(m.kind, m.ids, m.weight), normal_(normal), point_(point) {
+    MirrorInTriangles(const ConstraintArguments& a, const kinds::MirrorInTriangles& kind)
+        : Constraint(a.kind, a.ids, a.weight), normal_(a.unit(kind.plane.normal, "normal")), point_(a.finite(kind.plane.point)) {
         if (ids().size() % 4 != 0)
-            m.fail("there are " + std::to_string(ids().size()) + " points",
-                   "with coefficients, give groups of four: a point and the corners that its partner lies between");
+            a.fail(fmt::format("there are {} points", ids().size()),
+                   "give groups of four: a point and the corners that its partner lies between");
         const std::size_t groups = ids().size() / 4;
-        const std::vector<double>& shares = m.parameters.coefficients;
+        const std::vector<double>& shares = kind.barycentric;
         if (shares.size() != 3 * groups)
-            m.fail("there are " + std::to_string(shares.size()) + " coefficients for " + std::to_string(groups) + " groups",
-                   "give three a group");
+            a.fail(fmt::format("there are {} coordinates for {} groups", shares.size(), groups), "give three per group");
         for (std::size_t g = 0; g < groups; ++g) {
             const double sum = shares[3 * g] + shares[3 * g + 1] + shares[3 * g + 2];
             if (!(std::abs(sum - 1) <= 1e-6))
-                m.fail("the coefficients of group " + std::to_string(g) + " add up to " + std::to_string(sum),
+                a.fail(fmt::format("the coordinates of group {} add up to {}", g, std::to_string(sum)),
                        "barycentric coordinates add up to 1");
             const auto row = static_cast<std::int32_t>(2 * g), first = static_cast<std::int32_t>(4 * g);
             map_.entries.push_back({row, first, 1.0});
@@ -176,13 +165,13 @@ public:
         }
         map_.rows = static_cast<Index>(2 * groups);
         discrepancy_.setZero(3, static_cast<Index>(groups));
-        if (m.parameters.target) MirroredInTriangles::set_target(*m.parameters.target);
+        if (kind.discrepancies) MirrorInTriangles::set_target(*kind.discrepancies);
     }
     void set_target(const Points& target) override {
         if (target.cols() != discrepancy_.cols())
-            fail_usage("the target of MirrorSymmetry must have a discrepancy for each of " + std::to_string(discrepancy_.cols()) +
-                       " groups");
-        check_points(target, "target of MirrorSymmetry");
+            fail_usage(
+                fmt::format("the target of {} must have a discrepancy for each of {} groups", kind(), discrepancy_.cols()));
+        check_points(target, fmt::format("target of {}", kind()));
         discrepancy_ = target;
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
@@ -199,45 +188,29 @@ private:
     Points discrepancy_;
 };
 
-/// The first part, stretched along its measure so that the measure, or its ratio to a second measure, is within a range (the
-/// thesis, section 5.3.2). It is stretched about its mean (rows: the centred points of the part) or about the mean of its
-/// anchors (rows: the points). The second measure, if any, is one more row, which is only observed. With a target the part is a
-/// rotated copy of that shape instead, stretched along the measure or scaled uniformly (rows: the centred points). The set of
-/// such copies does not depend on the points, so that conflicting constraints cannot degrade the shape over the iterations.
 class Proportion final : public Constraint {
 public:
-    Proportion(Making&& m, Making::Interval range)
-        : Constraint(m.kind, m.ids, m.weight),
-          range_(range),
-          single_(m.parameters.absolute),
-          pins_(m.parameters.pins),
-          anchors_(m.parameters.anchors) {
-        const int count = static_cast<int>(ids().size()), part = m.parameters.split > 0 ? m.parameters.split : count;
-        if (part < 2 || part > count) m.fail("split is " + std::to_string(part), "the first part needs two points at least");
-        if (single_ && part != count) m.fail("there are points beyond the part", "an absolute range has no second measure");
-        if (pins_.size() != (single_ ? 2 : 4))
-            m.fail("there are " + std::to_string(pins_.size()) + " pins",
-                   single_ ? "give two: an absolute range has one measure" : "give two of each measure");
-        for (std::size_t i = 0; i < pins_.size(); ++i)
-            if (pins_[i] < 0 || pins_[i] >= (i < 2 ? part : count))
-                m.fail("pin " + std::to_string(pins_[i]) + " is out of range");
-        for (const int anchor : anchors_)
-            if (anchor < 0 || anchor >= part) m.fail("anchor " + std::to_string(anchor) + " is out of range");
-        if (m.parameters.direction) along_first_ = m.direction();
-        if (m.parameters.second_direction) {
-            along_second_ = *m.parameters.second_direction;
-            if (!along_second_->allFinite() || !(along_second_->norm() > 0)) m.fail("the second direction has no length");
-            along_second_->normalize();
+    Proportion(const ConstraintArguments& a, const kinds::Proportion& kind)
+        : Constraint(a.kind, a.ids, a.weight), range_(a.checked(kind.range)), anchors_(kind.anchors) {
+        const int count = static_cast<int>(ids().size()), part = kind.part > 0 ? kind.part : count;
+        if (part < 2 || part > count) a.fail(fmt::format("the part has {} points", part), "it needs two points at least");
+        if (!kind.second && part != count) a.fail("there are points beyond the part", "give a second measure, or leave them out");
+        first_ = kind.measure;
+        if (first_.direction) first_.direction = a.unit(*first_.direction);
+        check(a, first_, part, "first measure");
+        second_ = kind.second;
+        if (second_ && second_->direction) {
+            a.unit(*second_->direction, "second direction");
+            second_->direction->normalize();
         }
-        if (!(length(m.rest.col(pins_[1]) - m.rest.col(pins_[0]), along_first_) > 0))
-            m.fail("the first measure has no length", "move its pins apart");
+        if (second_) check(a, *second_, count, "second measure");
+        for (const int anchor : anchors_)
+            if (anchor < 0 || anchor >= part) a.fail(fmt::format("anchor {} is out of range", anchor));
         map_.direct = map_.rows = part;
-        map_.centred = anchors_.empty() || m.parameters.target.has_value();
-        if (m.parameters.target) set_reference(m, *m.parameters.target);
-        if (single_) return;
-        if (!(length(m.rest.col(pins_[3]) - m.rest.col(pins_[2]), along_second_) > 0))
-            m.fail("the second measure has no length", "move its pins apart");
-        map_.entries = {{0, pins_[2], -1.0}, {0, pins_[3], 1.0}};
+        map_.centred = anchors_.empty() || kind.shape.has_value();
+        if (kind.shape) set_reference(a, *kind.shape, kind.uniform);
+        if (!second_) return;
+        map_.entries = {{0, second_->pins[0], -1.0}, {0, second_->pins[1], 1.0}};
         map_.rows = part + 1;
         map_.observed = 1;
     }
@@ -247,13 +220,13 @@ public:
             project_copy(rows, projected);
             return;
         }
-        const Vector3d first = rows.col(pins_[1]) - rows.col(pins_[0]);
-        const double l1 = length(first, along_first_), unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
+        const Vector3d first = rows.col(first_.pins[1]) - rows.col(first_.pins[0]);
+        const double l1 = length(first, first_.direction), unit = unit_of(rows);
         if (!(l1 > 0)) return;  // a measure of zero length cannot be stretched
-        const double wanted = std::isinf(range_.max) ? std::max(l1, unit * range_.min)
-                                                     : Making::Interval{unit * range_.min, unit * range_.max}.clamp(l1);
+        const double wanted =
+            std::isinf(range_.max) ? std::max(l1, unit * range_.min) : Interval{unit * range_.min, unit * range_.max}.clamp(l1);
         if (wanted == l1) return;
-        const Vector3d axis = along_first_ ? *along_first_ : Vector3d(first / l1);
+        const Vector3d axis = first_.direction ? *first_.direction : Vector3d(first / l1);
         Vector3d fixed = Vector3d::Zero();
         for (const int anchor : anchors_) fixed += (rows.col(anchor) - rows.col(0)) / static_cast<double>(anchors_.size());
         if (!anchors_.empty()) fixed += rows.col(0);
@@ -265,24 +238,34 @@ private:
     static double length(const Vector3d& edge, const std::optional<Vector3d>& along) {
         return along ? std::abs(along->dot(edge)) : edge.norm();
     }
-    void set_reference(const Making& m, const Points& target) {
-        if (target.cols() != map_.direct)
-            m.fail("the target has " + std::to_string(target.cols()) + " points instead of " + std::to_string(map_.direct));
-        if (!target.allFinite()) m.fail("the target is not finite");
-        const Vector3d mean = target.col(0) + (target.colwise() - target.col(0).eval()).rowwise().mean();
-        reference_ = target.colwise() - mean;
-        whole_ = m.parameters.uniform;
-        const Vector3d edge = reference_.col(pins_[1]) - reference_.col(pins_[0]);
-        if (!(length(edge, along_first_) > 0)) m.fail("the first measure of the target has no length", "move its pins apart");
-        axis_ = along_first_ ? *along_first_ : Vector3d(edge.normalized());
+    /// The length of the second measure; 1 if there is none.
+    [[nodiscard]] double unit_of(const RowsIn& rows) const {
+        return second_ ? length(rows.col(rows.cols() - 1), second_->direction) : 1.0;
+    }
+    /// The pins are among the first `count` points and apart from each other.
+    static void check(const ConstraintArguments& a, const kinds::PinnedMeasure& measure, int count, const char* name) {
+        for (const int pin : measure.pins)
+            if (pin < 0 || pin >= count) a.fail(fmt::format("pin {} is out of range", pin));
+        if (!(length(a.rest.col(measure.pins[1]) - a.rest.col(measure.pins[0]), measure.direction) > 0))
+            a.fail(fmt::format("the {} has no length", name), "move its pins apart");
+    }
+    void set_reference(const ConstraintArguments& a, const Points& shape, bool uniform) {
+        if (shape.cols() != map_.direct) a.fail(fmt::format("the shape has {} points instead of {}", shape.cols(), map_.direct));
+        if (!shape.allFinite()) a.fail("the shape is not finite");
+        const Vector3d mean = shape.col(0) + (shape.colwise() - shape.col(0).eval()).rowwise().mean();
+        reference_ = shape.colwise() - mean;
+        whole_ = uniform;
+        const Vector3d edge = reference_.col(first_.pins[1]) - reference_.col(first_.pins[0]);
+        if (!(length(edge, first_.direction) > 0)) a.fail("the first measure of the shape has no length", "move its pins apart");
+        axis_ = first_.direction ? *first_.direction : Vector3d(edge.normalized());
     }
 
     /// The copy R S q closest to the rows, where S is a stretch by s along the axis or a scaling by s, with its measure in
     /// range. Alternates between R and s, from the unrotated copy.
     void project_copy(const RowsIn& rows, RowsOut projected) const {
-        const double unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
+        const double unit = unit_of(rows);
         const Points part = rows.leftCols(map_.direct);
-        const Vector3d edge = reference_.col(pins_[1]) - reference_.col(pins_[0]);
+        const Vector3d edge = reference_.col(first_.pins[1]) - reference_.col(first_.pins[0]);
         const Matrix3d along = whole_ ? Matrix3d(Matrix3d::Identity()) : Matrix3d(axis_ * axis_.transpose());
         const Matrix3d rest = Matrix3d::Identity() - along;
         const Matrix3d moment = outer_sum(part, reference_), own = outer_sum(reference_, reference_);
@@ -308,52 +291,44 @@ private:
         const double low = range_.min * unit, high = std::isinf(range_.max) ? range_.max : range_.max * unit;
         constexpr double minimum = 1e-3;  // prevents a part from vanishing or inverting
         s = std::max(s, minimum);
-        const double now = length(constant + s * growing, along_first_);
+        const double now = length(constant + s * growing, first_.direction);
         const double wanted = now < low ? low : now > high ? high : now;
         if (wanted == now) return s;
-        double a = along_first_ ? along_first_->dot(growing) : growing.norm(), b = along_first_ ? along_first_->dot(constant) : 0;
+        const auto& along = first_.direction;
+        double a = along ? along->dot(growing) : growing.norm(), b = along ? along->dot(constant) : 0;
         if (a < 0) a = -a, b = -b;
         return a > 0 ? std::max((wanted - b) / a, minimum) : s;
     }
 
-    Making::Interval range_;
-    bool single_;  ///< the range applies to the first measure alone
+    Interval range_;
+    kinds::PinnedMeasure first_{};
+    std::optional<kinds::PinnedMeasure> second_;
     bool whole_ = false;
     Points reference_;  ///< centred; empty: the points keep their shape
     Vector3d axis_ = Vector3d::UnitZ();
-    std::vector<int> pins_, anchors_;
-    std::optional<Vector3d> along_first_, along_second_;
+    std::vector<int> anchors_;
 };
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_axis_on_line(Making&& m) {
-    const Vector3d direction = m.direction(), point = m.point();
-    return std::make_unique<AxisOnLine>(m, direction, point);
+ConstraintPtr create(const kinds::AxisOnLine& kind, const ConstraintArguments& a) {
+    return std::make_unique<AxisOnLine>(a, kind);
 }
-
-std::unique_ptr<Constraint> make_means_on_level(Making&& m) { return std::make_unique<MeansOnLevel>(m, m.direction()); }
-
-std::unique_ptr<Constraint> make_mean_position(Making&& m) {
-    const Vector3d place = m.point();
-    return std::make_unique<MeanPosition>(m, place);
+ConstraintPtr create(const kinds::MeansOnLevel& kind, const ConstraintArguments& a) {
+    return std::make_unique<MeansOnLevel>(a, kind);
 }
-
-std::unique_ptr<Constraint> make_mirror_symmetry(Making&& m) {
-    if (!m.parameters.coefficients.empty()) {
-        const Vector3d normal = m.direction(), point = m.point();
-        return std::make_unique<MirroredInTriangles>(m, normal, point);
-    }
-    if (m.ids.size() % 2 != 0) m.fail("there is an odd number of points", "give pairs; a point of the plane is its own partner");
-    if (!m.parameters.direction) return std::make_unique<MirrorSymmetry>(std::move(m));
-    const Vector3d normal = m.direction(), point = m.point();
-    return std::make_unique<MirrorSymmetry>(std::move(m), normal, point);
+ConstraintPtr create(const kinds::MeanPosition& kind, const ConstraintArguments& a) {
+    return std::make_unique<MeanPosition>(a, kind);
 }
-
-std::unique_ptr<Constraint> make_proportion(Making&& m) {
-    if (!m.parameters.min && !m.parameters.max) m.fail("the range is missing");
-    const auto range = m.range(0, std::numeric_limits<double>::infinity());
-    return std::make_unique<Proportion>(std::move(m), range);
+ConstraintPtr create(const kinds::MirrorSymmetry& kind, const ConstraintArguments& a) {
+    if (a.ids.size() % 2 != 0) a.fail("there is an odd number of points", "give pairs; a point of the plane is its own partner");
+    return std::make_unique<MirrorSymmetry>(a, kind);
+}
+ConstraintPtr create(const kinds::MirrorInTriangles& kind, const ConstraintArguments& a) {
+    return std::make_unique<MirrorInTriangles>(a, kind);
+}
+ConstraintPtr create(const kinds::Proportion& kind, const ConstraintArguments& a) {
+    return std::make_unique<Proportion>(a, kind);
 }
 
 }  // namespace ostraka::solver

@@ -1,5 +1,5 @@
 // Groups that are rotated rigidly: to a plane normal, onto an axis, to an angle with a direction.
-#include "kinds.h"
+#include "create.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
 
@@ -81,21 +81,17 @@ Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, c
 }
 
 /// Direction of the axis in the rest state; by default the longest principal axis of the centred shape.
-Vector3d rest_axis_of(const Making& m, const Points& shape) {
-    if (!m.parameters.rest_direction) return principal(outer_sum(shape, shape)).eigenvectors().col(2);
-    const Vector3d& given = *m.parameters.rest_direction;
-    const double size = given.cwiseAbs().maxCoeff();
-    if (!given.allFinite() || !(size > 0)) m.fail("the rest axis has no direction");
-    return (given / size).normalized();
+Vector3d rest_axis_of(const ConstraintArguments& a, const std::optional<Vector3d>& direction, const Points& shape) {
+    return direction ? a.unit(*direction, "direction of the rest axis")
+                     : Vector3d(principal(outer_sum(shape, shape)).eigenvectors().col(2));
 }
 
 /// The mean, computed relative to the first point, so that no digits are lost in the sum far from the origin.
 Vector3d mean_of(const Points& points) { return points.col(0) + (points.colwise() - points.col(0).eval()).rowwise().mean(); }
 
-/// The points, rotated about their mean so that their fitted plane has the given normal, up to sign.
 class FittedPlaneOrientation final : public MomentConstraint {
 public:
-    FittedPlaneOrientation(const Making& m, const Vector3d& normal) : MomentConstraint(m), normal_(normal) {}
+    FittedPlaneOrientation(const ConstraintArguments& a, const Vector3d& normal) : MomentConstraint(a), normal_(normal) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Vector3d fitted = principal(moments.rows).eigenvectors().col(0);
         return {rotation_to(fitted, normal_, moments.rows), Matrix3d::Zero()};
@@ -105,20 +101,15 @@ private:
     Vector3d normal_;
 };
 
-/// The points, moved rigidly so that their axis lies on a line (the thesis, section 5.2.2). The axis is given in the rest state
-/// and transformed by the best rigid motion. Rows: the points.
 class CoAxiality final : public Constraint {
 public:
-    CoAxiality(Making&& m, const Vector3d& direction, const Vector3d& point)
-        : Constraint(m.kind, m.ids, m.weight), direction_(direction), point_(point) {
+    CoAxiality(const ConstraintArguments& a, const kinds::CoAxiality& kind)
+        : Constraint(a.kind, a.ids, a.weight), direction_(a.unit(kind.direction)), point_(a.finite(kind.point)) {
         map_.direct = map_.rows = static_cast<Index>(ids().size());
-        const Vector3d mean = mean_of(m.rest);
-        shape_ = m.rest.colwise() - mean;
-        rest_axis_ = rest_axis_of(m, shape_);
-        if (m.parameters.rest_point) {
-            if (!m.parameters.rest_point->allFinite()) m.fail("the rest axis's point is not finite");
-            to_mean_ = mean - *m.parameters.rest_point;
-        }
+        const Vector3d mean = mean_of(a.rest);
+        shape_ = a.rest.colwise() - mean;
+        rest_axis_ = rest_axis_of(a, kind.rest_direction, shape_);
+        if (kind.rest_point) to_mean_ = mean - a.finite(*kind.rest_point, "point of the rest axis");
     }
     void project(const RowsIn& rows, RowsOut projected) const override {
         const Vector3d first = rows.col(0);
@@ -141,17 +132,16 @@ private:
     Points shape_;
 };
 
-/// The points, rotated about their mean so that the angle between their axis and a direction is within a range. The axis is
-/// that of the rest state, transformed by the best rotation. Rows: the centred points.
 class AxisDirection final : public MomentConstraint {
 public:
-    AxisDirection(const Making& m, const Vector3d& direction, Making::Interval range)
-        : MomentConstraint(m), direction_(direction), range_(range) {
-        shape_ = m.rest.colwise() - mean_of(m.rest);
-        if (!(shape_.cwiseAbs().maxCoeff() > 0)) m.fail("the rest points are all at one place");
-        rest_axis_ = rest_axis_of(m, shape_);
-        if (!m.parameters.target) return;
-        const Points size = m.target_or(m.rest);
+    AxisDirection(const ConstraintArguments& a, const kinds::AxisDirection& kind)
+        : MomentConstraint(a), direction_(a.unit(kind.direction)), range_(a.checked(kind.angle)) {
+        if (range_.max > pi / 2) a.fail("an angle between axes is at most pi / 2", "angles are in radians");
+        shape_ = a.rest.colwise() - mean_of(a.rest);
+        if (!(shape_.cwiseAbs().maxCoeff() > 0)) a.fail("the rest points are all at one place");
+        rest_axis_ = rest_axis_of(a, kind.rest_direction, shape_);
+        if (!kind.min_size) return;
+        const Points size = a.given_or_rest(kind.min_size);
         minimum_ = (size.colwise() - mean_of(size)).squaredNorm() / 4;
     }
     [[nodiscard]] const Points& reference() const override { return shape_; }
@@ -171,26 +161,20 @@ public:
 private:
     Vector3d direction_, rest_axis_;
     double minimum_ = 0;  ///< lower bound of the sum of squared distances from the mean
-    Making::Interval range_;
+    Interval range_;
     Points shape_;
 };
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&& m) {
-    return std::make_unique<FittedPlaneOrientation>(m, m.direction());
+ConstraintPtr create(const kinds::FittedPlaneOrientation& kind, const ConstraintArguments& a) {
+    return std::make_unique<FittedPlaneOrientation>(a, a.unit(kind.normal, "normal"));
 }
-
-std::unique_ptr<Constraint> make_co_axiality(Making&& m) {
-    const Vector3d direction = m.direction(), point = m.point();
-    return std::make_unique<CoAxiality>(std::move(m), direction, point);
+ConstraintPtr create(const kinds::CoAxiality& kind, const ConstraintArguments& a) {
+    return std::make_unique<CoAxiality>(a, kind);
 }
-
-std::unique_ptr<Constraint> make_axis_direction(Making&& m) {
-    constexpr double right_angle = pi / 2;
-    const auto range = m.range(0, m.parameters.min ? right_angle : 0.0);
-    if (range.max > right_angle) m.fail("an angle between axes is at most pi / 2", "angles are in radians");
-    return std::make_unique<AxisDirection>(m, m.direction(), range);
+ConstraintPtr create(const kinds::AxisDirection& kind, const ConstraintArguments& a) {
+    return std::make_unique<AxisDirection>(a, kind);
 }
 
 }  // namespace ostraka::solver

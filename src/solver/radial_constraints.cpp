@@ -1,5 +1,5 @@
 // Circles and spheres: geometric least squares by damped Gauss-Newton, initialised by the algebraic fit.
-#include "kinds.h"
+#include "create.h"
 #include "ostraka/core/dense.h"
 
 #include <cmath>
@@ -45,11 +45,13 @@ double minimise(State& state, const Normal& normal, const Step& step) {
 
 /// Rows: the centred points.
 class RadialConstraint : public Constraint {
-protected:
-    explicit RadialConstraint(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight) {
+public:
+    explicit RadialConstraint(const ConstraintArguments& a) : Constraint(a.kind, a.ids, a.weight) {
         map_.direct = map_.rows = static_cast<Index>(ids().size());
         map_.centred = true;
     }
+
+protected:
     /// Root mean square distance from the mean.
     static double size_of(const RowsIn& rows) { return rows.norm() / std::sqrt(static_cast<double>(rows.cols())); }
     /// Centre of the circle or sphere in D dimensions that best fits |x|^2 = 2 c . x + e (Kasa).
@@ -68,10 +70,9 @@ protected:
     }
 };
 
-/// The points are on a sphere, or on a plane (the limit of spheres) if that is closer.
 class Sphere final : public RadialConstraint {
 public:
-    explicit Sphere(Making&& m) : RadialConstraint(std::move(m)) {}
+    using RadialConstraint::RadialConstraint;
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
         const double size = size_of(rows);
@@ -114,10 +115,9 @@ public:
     }
 };
 
-/// The points are on a circle, or on a line (the limit of circles) if that is closer.
 class Circle final : public RadialConstraint {
 public:
-    explicit Circle(Making&& m) : RadialConstraint(std::move(m)) {}
+    using RadialConstraint::RadialConstraint;
     void project(const RowsIn& rows, RowsOut projected) const override {
         projected = rows;
         const double size = size_of(rows);
@@ -191,7 +191,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_sphere(Making&& m) { return std::make_unique<Sphere>(std::move(m)); }
-std::unique_ptr<Constraint> make_circle(Making&& m) { return std::make_unique<Circle>(std::move(m)); }
+ConstraintPtr create(const kinds::Sphere&, const ConstraintArguments& a) { return std::make_unique<Sphere>(a); }
+ConstraintPtr create(const kinds::Circle&, const ConstraintArguments& a) { return std::make_unique<Circle>(a); }
 
 }  // namespace ostraka::solver

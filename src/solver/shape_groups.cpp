@@ -1,5 +1,5 @@
 // Groups of points that keep their shape up to a class of motions, and quadrilaterals.
-#include "kinds.h"
+#include "create.h"
 #include "ostraka/core/angles.h"
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 /// A reference shape, centred. Rows: the centred points.
 class ShapeGroup : public MomentConstraint {
 protected:
-    ShapeGroup(const Making& m, const Points& shape)
-        : MomentConstraint(m), shape_(centred(shape)), outer_(outer_sum(shape_, shape_)) {}
+    ShapeGroup(const ConstraintArguments& a, const Points& shape)
+        : MomentConstraint(a), shape_(centred(shape)), outer_(outer_sum(shape_, shape_)) {}
     static Points centred(const Points& shape) {
         const Points near = shape.colwise() - shape.col(0).eval();
         return near.colwise() - near.rowwise().mean().eval();
@@ -33,10 +33,9 @@ protected:
     Eigen::Matrix3d outer_;  ///< sum of q_i q_i^T
 };
 
-/// A copy of the reference shape, rotated, translated and scaled by a factor within a range. Rigid is the range [1, 1].
 class Similarity final : public ShapeGroup {
 public:
-    Similarity(const Making& m, const Points& shape, Making::Interval scale) : ShapeGroup(m, shape), scale_(scale) {}
+    Similarity(const ConstraintArguments& a, const Points& shape, Interval scale) : ShapeGroup(a, shape), scale_(scale) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Eigen::Matrix3d rotation = best_rotation(moments.reference);
         double scale = 1;
@@ -46,14 +45,13 @@ public:
     }
 
 private:
-    Making::Interval scale_;
+    Interval scale_;
 };
 
-/// A copy R (I + (s - 1) a a^T) of the reference shape: stretched by s along its own axis a, rotated and translated.
 class NonUniformScaling final : public ShapeGroup {
 public:
-    NonUniformScaling(const Making& m, const Points& shape, const Eigen::Vector3d& axis, Making::Interval scale)
-        : ShapeGroup(m, shape), axis_(axis), scale_(scale) {}
+    NonUniformScaling(const ConstraintArguments& a, const Points& shape, const Eigen::Vector3d& axis, Interval scale)
+        : ShapeGroup(a, shape), axis_(axis), scale_(scale) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         // The best rotation is known for a given s, and the best s for a given rotation. The squared distance as a function of
         // s alone is smooth but may have several minima, so that it is sampled first.
@@ -89,14 +87,14 @@ private:
         return along * s * s - 2 * best_rotation(m).cwiseProduct(m).sum();
     }
     Eigen::Vector3d axis_;
-    Making::Interval scale_;
+    Interval scale_;
 };
 
 /// Corners in cyclic order. Rows: the centred points. The closest parallelogram subtracts a quarter of the alternating sum from
 /// each corner; the closest rectangle also gives both diagonals their mean length.
 class Quadrilateral final : public Constraint {
 public:
-    Quadrilateral(Making&& m, bool rectangle) : Constraint(m.kind, std::move(m.ids), m.weight), rectangle_(rectangle) {
+    Quadrilateral(const ConstraintArguments& a, bool rectangle) : Constraint(a.kind, a.ids, a.weight), rectangle_(rectangle) {
         map_.direct = map_.rows = 4;
         map_.centred = true;
     }
@@ -126,33 +124,26 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_rigid(Making&& m) {
-    return std::make_unique<Similarity>(m, m.target_or(m.rest), Making::Interval{1, 1});
+ConstraintPtr create(const kinds::Rigid& kind, const ConstraintArguments& a) {
+    return std::make_unique<Similarity>(a, a.given_or_rest(kind.shape), Interval{1, 1});
 }
-
-std::unique_ptr<Constraint> make_similarity(Making&& m) {
-    const Points shape = m.target_or(m.rest);
-    const auto scale = m.range(0, std::numeric_limits<double>::infinity());
-    return std::make_unique<Similarity>(m, shape, scale);
+ConstraintPtr create(const kinds::Similarity& kind, const ConstraintArguments& a) {
+    return std::make_unique<Similarity>(a, a.given_or_rest(kind.shape), a.checked(kind.scale));
 }
-
-std::unique_ptr<Constraint> make_equilateral(Making&& m) {
-    Points shape(3, static_cast<Eigen::Index>(m.ids.size()));
+ConstraintPtr create(const kinds::Equilateral&, const ConstraintArguments& a) {
+    Points shape(3, a.rest.cols());
     for (Eigen::Index i = 0; i < shape.cols(); ++i) {
         const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(shape.cols());
         shape.col(i) << std::cos(angle), std::sin(angle), 0;
     }
-    return std::make_unique<Similarity>(m, shape, Making::Interval{0, std::numeric_limits<double>::infinity()});
+    return std::make_unique<Similarity>(a, shape, Interval{0, kinds::infinity});
 }
-
-std::unique_ptr<Constraint> make_non_uniform_scaling(Making&& m) {
-    const Points shape = m.target_or(m.rest);
-    const Eigen::Vector3d axis = m.direction();
-    const auto scale = m.range(0, std::numeric_limits<double>::infinity());
-    return std::make_unique<NonUniformScaling>(m, shape, axis, scale);
+ConstraintPtr create(const kinds::NonUniformScaling& kind, const ConstraintArguments& a) {
+    return std::make_unique<NonUniformScaling>(a, a.given_or_rest(kind.shape), a.unit(kind.axis, "axis"), a.checked(kind.scale));
 }
-
-std::unique_ptr<Constraint> make_parallelogram(Making&& m) { return std::make_unique<Quadrilateral>(std::move(m), false); }
-std::unique_ptr<Constraint> make_rectangle(Making&& m) { return std::make_unique<Quadrilateral>(std::move(m), true); }
+ConstraintPtr create(const kinds::Parallelogram&, const ConstraintArguments& a) {
+    return std::make_unique<Quadrilateral>(a, false);
+}
+ConstraintPtr create(const kinds::Rectangle&, const ConstraintArguments& a) { return std::make_unique<Quadrilateral>(a, true); }
 
 }  // namespace ostraka::solver

@@ -1,5 +1,5 @@
 // Edges, triangles and tetrahedra with limited strain (ShapeUp; Bouaziz et al. 2014, Projective Dynamics).
-#include "kinds.h"
+#include "create.h"
 
 #include <algorithm>
 #include <array>
@@ -9,11 +9,12 @@ namespace ostraka::solver {
 
 namespace {
 
-/// The length of x_1 - x_0 is within a range.
 class EdgeStrain final : public Constraint {
 public:
-    explicit EdgeStrain(Making&& m)
-        : Constraint(m.kind, m.ids, m.weight), rest_(m.rest.col(1) - m.rest.col(0)), range_(m.range_of(rest_.norm())) {
+    EdgeStrain(const ConstraintArguments& a, const kinds::EdgeStrain& kind)
+        : Constraint(a.kind, a.ids, a.weight),
+          rest_(a.rest.col(1) - a.rest.col(0)),
+          range_(a.range_of(kind.length, kind.absolute, rest_.norm())) {
         map_.rows = 1;
         map_.entries = {{0, 0, -1.0}, {0, 1, 1.0}};
     }
@@ -25,7 +26,7 @@ public:
 
 private:
     Eigen::Vector3d rest_;
-    Making::Interval range_;
+    Interval range_;
 };
 
 /// The s >= 0 with product t closest to a, for two factors a >= b >= 0: s_i = (a_i +- sqrt(a_i^2 + 4 mu)) / 2, where mu is a
@@ -112,9 +113,11 @@ class Simplex final : public Constraint {
     using Decomposition = std::conditional_t<N == 3, Svd3, SvdOfTwo>;
 
 public:
-    Simplex(Making&& m, Limits limits) : Constraint(m.kind, m.ids, m.weight), limits_(limits) {
+    /// An absolute range is in the unit of the area or volume.
+    Simplex(const ConstraintArguments& a, Limits limits, const Interval& range, bool absolute = false)
+        : Constraint(a.kind, a.ids, a.weight), limits_(limits) {
         Edges edges;
-        for (int i = 0; i < N; ++i) edges.col(i) = m.rest.col(i + 1) - m.rest.col(0);
+        for (int i = 0; i < N; ++i) edges.col(i) = a.rest.col(i + 1) - a.rest.col(0);
         // Edges in a local frame, by Gram-Schmidt orthogonalisation.
         Square local = Square::Zero();
         Edges frame = edges;
@@ -129,7 +132,7 @@ public:
         const double measure = std::abs(local.determinant()) / (N == 2 ? 2.0 : 6.0);
         const double size = edges.cwiseAbs().maxCoeff();
         if (!(measure > 1e-14 * std::pow(size, N)))
-            m.fail(N == 2 ? "the triangle has no area in the rest state" : "the tetrahedron has no volume in the rest state",
+            a.fail(N == 2 ? "the triangle has no area in the rest state" : "the tetrahedron has no volume in the rest state",
                    "leave it out");
         scale_ = std::pow(measure, 1.0 / N);
         const Square inverse = local.inverse();
@@ -139,9 +142,8 @@ public:
             map_.entries.push_back({c, 0, -scale_ * inverse.col(c).sum()});
             for (int i = 0; i < N; ++i) map_.entries.push_back({c, i + 1, scale_ * inverse(i, c)});
         }
-        if (limits == Limits::singular_values && m.parameters.absolute) m.fail("strain has no absolute range");
-        range_ = m.range(1, 1);
-        if (m.parameters.absolute) {
+        range_ = a.checked(range);
+        if (absolute) {
             range_.min /= measure;
             range_.max /= measure;
         }
@@ -181,19 +183,25 @@ private:
     Limits limits_;
     double scale_ = 1;
     bool flipped_ = false;
-    Making::Interval range_{1, 1};
+    Interval range_{1, 1};
 };
 
 }  // namespace
 
-std::unique_ptr<Constraint> make_edge_strain(Making&& m) { return std::make_unique<EdgeStrain>(std::move(m)); }
-std::unique_ptr<Constraint> make_triangle_strain(Making&& m) {
-    return std::make_unique<Simplex<2>>(std::move(m), Limits::singular_values);
+ConstraintPtr create(const kinds::EdgeStrain& kind, const ConstraintArguments& a) {
+    return std::make_unique<EdgeStrain>(a, kind);
 }
-std::unique_ptr<Constraint> make_tetrahedron_strain(Making&& m) {
-    return std::make_unique<Simplex<3>>(std::move(m), Limits::singular_values);
+ConstraintPtr create(const kinds::TriangleStrain& kind, const ConstraintArguments& a) {
+    return std::make_unique<Simplex<2>>(a, Limits::singular_values, kind.stretch);
 }
-std::unique_ptr<Constraint> make_area(Making&& m) { return std::make_unique<Simplex<2>>(std::move(m), Limits::product); }
-std::unique_ptr<Constraint> make_volume(Making&& m) { return std::make_unique<Simplex<3>>(std::move(m), Limits::product); }
+ConstraintPtr create(const kinds::TetrahedronStrain& kind, const ConstraintArguments& a) {
+    return std::make_unique<Simplex<3>>(a, Limits::singular_values, kind.stretch);
+}
+ConstraintPtr create(const kinds::Area& kind, const ConstraintArguments& a) {
+    return std::make_unique<Simplex<2>>(a, Limits::product, kind.area, kind.absolute);
+}
+ConstraintPtr create(const kinds::Volume& kind, const ConstraintArguments& a) {
+    return std::make_unique<Simplex<3>>(a, Limits::product, kind.volume, kind.absolute);
+}
 
 }  // namespace ostraka::solver

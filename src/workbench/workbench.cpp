@@ -442,7 +442,7 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
             if (relationship.is_constraint) graph.relationships.push_back(relationship);
     const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
     if (drag.weights.size() == 0) drag.weights = drag.coordinates.vertex.cast<float>();
-    drag.live = std::make_unique<LiveDeformation>(space, graph, drag.edit, drag.handles);
+    drag.live = std::make_unique<LiveDeformation>(space, graph, edit_from_json(drag.edit, "the drag"), drag.handles);
     const auto& cage = drag.live->cage();
     auto& a = result.GetAllocator();
     const WeightMatrix& weights = drag.coordinates.vertex;

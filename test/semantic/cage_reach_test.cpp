@@ -147,7 +147,7 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
 TEST(CageReach, TellsOfTheEditThatIsGiven) {
     const Caged& object = teapot();
     const RelationGraph graph = one(constraint(0, "same level", flowers, "{}"));
-    const Json strong = edit(stretched), none = edit(R"({"select": {"all": true}, "translate": [1, 2, 3]})");
+    const Edit strong = edit(stretched), none = edit(R"({"select": {"all": true}, "translate": [1, 2, 3]})");
     const auto far = cage_reach(object.handles(), graph, &strong), still = cage_reach(object.handles(), graph, &none);
     ASSERT_EQ(far.size(), 1u);
     ASSERT_EQ(still.size(), 1u);

@@ -12,8 +12,8 @@ namespace ostraka::test {
 
 using namespace ostraka::example;
 
-inline Json edit(const std::string& steps) {
-    return parse_json(R"({"format": "ostraka-edit", "version": 1, "steps": [)" + steps + "]}", "e");
+inline Edit edit(const std::string& steps, const std::string& name = "e") {
+    return edit_from_json(parse_json(R"({"format": "ostraka-edit", "version": 1, "steps": [)" + steps + "]}", name), name);
 }
 
 /// A synthetic object with the annotations of its recipe, a cage and mean value coordinates.
@@ -50,7 +50,7 @@ inline Relationship constraint(int id, const std::string& type, std::vector<int>
 
 inline std::string error_of(const HandleSpace& space, const std::string& steps, const RelationGraph& graph = {}) {
     try {
-        deform(space, graph, edit(steps), "e.edit.json");
+        deform(space, graph, edit(steps, "e.edit.json"), "e.edit.json");
     } catch (const Error& error) {
         return error.what();
     }

@@ -2,6 +2,7 @@
 #include "caged.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/SVD>
@@ -127,7 +128,7 @@ TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
             }();
             Points now = rest;
             for (const Vertex v : object.made.mesh.vertices()) now.col(v.idx()) = eigen(result.points[v]);
-            const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, rest);
+            const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
             const double off = std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size()));
             EXPECT_LT(off, (hard ? 1e-3 : 5e-3) * diagonal) << id;
         }
@@ -209,7 +210,7 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
         const Points rest = points_matrix(points_of(object.made.mesh)), now = points_matrix(result.points);
         for (const int id : flowers) {
             const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
-            const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, rest);
+            const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
             // It bends by no more than it may.
             EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())),
                       (bend ? 7.6e-4 : 1e-9) * diagonal)
@@ -269,7 +270,7 @@ TEST(Deform, AScannedBustKeepsWhatSitsOnIt) {
         ASSERT_TRUE(now.allFinite());
         for (const Annotation& patch : set.annotations) {
             const auto vertices = vertices_of(mesh, patch);
-            const auto rigid = make_constraint("Rigid", {vertices.begin(), vertices.end()}, 1, {}, rest);
+            const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
             EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())), 1e-3 * diagonal);
         }
     }

@@ -198,10 +198,9 @@ TEST(EditWords, StepsAndConstraints) {
     words.raise = {"seat=3,-x"};
     words.rotate = {"left arm=-5,z"};
     words.keep = {"seat thickness", "back"};
-    const Json steps = edit_of(words, chair.set);
-    validate(steps, "edit", "words");
-    ASSERT_EQ(steps["steps"].Size(), 3U);
-    EXPECT_EQ(steps["steps"][1]["translate"][0].GetDouble(), -3);
+    const std::vector<EditStep> steps = edit_of(words, chair.set).steps;
+    ASSERT_EQ(steps.size(), 3U);
+    EXPECT_EQ(std::get<EditStep::Translate>(steps[1].operation).by.x(), -3);
     RelationGraph graph;
     EXPECT_THROW(add_constraints(words, chair.set, graph), Error) << "the seat has no such measure yet";
     graph.relationships.clear();
@@ -241,7 +240,7 @@ TEST(EditWords, StepsAndConstraints) {
     add_constraints(counted, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 1U);
     EXPECT_NE(graph.relationships[0].constraint.find("\"thickness\""), std::string::npos) << graph.relationships[0].constraint;
-    EXPECT_EQ(edit_of(counted, chair.set)["steps"][0]["stretch"]["factor"].GetDouble(), 1.2);
+    EXPECT_EQ(std::get<EditStep::Stretch>(edit_of(counted, chair.set).steps[0].operation).factor, 1.2);
     chair.set.up.reset();
     refused(&EditWords::stretch, "back=1.2");
 }

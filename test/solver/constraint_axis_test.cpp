@@ -26,28 +26,23 @@ double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& d
 TEST(Constraint, LevelsWeighTheirPoints) {
     Points points(3, 4);
     points << 0, 1, 5, 6, 0, 0, 0, 0, 0, 4, 1, 2;
-    ConstraintParameters parameters;
-    parameters.direction = Vector3d(0, 0, 1);
-    parameters.stations = {0, 0, 1, 1};
-    parameters.coefficients = {3, 1, 2, 2};  // heights 1 and 1.5
-    const auto level = make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points);
+    kinds::MeansOnLevel kind{{0, 0, 1}, {0, 0, 1, 1}, {3, 1, 2, 2}};  // heights 1 and 1.5
+    const auto level = make_constraint(kind, {0, 1, 2, 3}, 1, points);
     EXPECT_NEAR(level->squared_distance(points), 2 * 0.25 * 0.25, 1e-12);
-    parameters.coefficients = {3, 1};
-    EXPECT_THROW(make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points), Error);
-    parameters.coefficients = {3, 1, 0, 2};
-    EXPECT_THROW(make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points), Error);
+    kind.weights = {3, 1};
+    EXPECT_THROW(make_constraint(kind, {0, 1, 2, 3}, 1, points), Error);
+    kind.weights = {3, 1, 0, 2};
+    EXPECT_THROW(make_constraint(kind, {0, 1, 2, 3}, 1, points), Error);
 }
 
 TEST(Constraint, APointIsNoWayOutForAnAxis) {
     Points rest = random_points(20, 6);
-    ConstraintParameters parameters;
-    parameters.direction = Vector3d(0, 0, 1);
-    parameters.rest_direction = Vector3d(0, 0, 1);
+    kinds::AxisDirection kind{{0, 0, 1}, {0, 0}, Vector3d(0, 0, 1)};
     const std::vector<int> ids = first_ids(20);
     const Points small = 0.1 * rest;
-    EXPECT_NEAR(make_constraint("AxisDirection", ids, 1, parameters, rest)->squared_distance(small), 0, 1e-12);
-    parameters.target = rest;
-    const auto bounded = make_constraint("AxisDirection", ids, 1, parameters, rest);
+    EXPECT_NEAR(make_constraint(kind, ids, 1, rest)->squared_distance(small), 0, 1e-12);
+    kind.min_size = rest;
+    const auto bounded = make_constraint(kind, ids, 1, rest);
     EXPECT_NEAR(bounded->squared_distance(rest), 0, 1e-12);
     EXPECT_NEAR(bounded->squared_distance(0.6 * rest), 0, 1e-12);
     const double size = (rest.colwise() - rest.rowwise().mean().eval()).norm();
@@ -71,11 +66,7 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
                     rotation = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
                 const Points rows = rotation * rest;
                 for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
-                    ConstraintParameters parameters;
-                    parameters.direction = d;
-                    parameters.rest_direction = own;
-                    parameters.min = parameters.max = wanted;
-                    const auto c = make_constraint("AxisDirection", first_ids(30), 1, parameters, rest);
+                    const auto c = make_constraint(kinds::AxisDirection{d, {wanted, wanted}, own}, first_ids(30), 1, rest);
                     const Outcome o = outcome(*c, rows);
                     const std::string what = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
                                              " angle " + std::to_string(wanted);
@@ -94,19 +85,14 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
 
 TEST(Constraint, AxesThatAreInRangeStay) {
     const Points rest = random_points(9, 12);
-    ConstraintParameters parameters;
-    parameters.direction = Vector3d(0, 0, 1);
-    parameters.rest_direction = Vector3d(1, 0, 1);  // at pi / 4
-    parameters.min = 0.7;
-    parameters.max = 0.8;
-    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
-    parameters.min.reset();
-    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
-    parameters.min = 0.7;
-    parameters.max.reset();  // up to a right angle
-    EXPECT_EQ(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0);
-    parameters.min.reset();  // parallel
-    EXPECT_GT(make_constraint("AxisDirection", first_ids(9), 1, parameters, rest)->residual(rest), 0.1);
+    const auto residual = [&](const kinds::Interval& range) {  // of an axis at pi / 4
+        const kinds::AxisDirection kind{{0, 0, 1}, range, Vector3d(1, 0, 1)};
+        return make_constraint(kind, first_ids(9), 1, rest)->residual(rest);
+    };
+    EXPECT_EQ(residual({0.7, 0.8}), 0);
+    EXPECT_EQ(residual({0, 0.8}), 0);
+    EXPECT_EQ(residual({0.7, std::numbers::pi / 2}), 0);
+    EXPECT_GT(residual({0, 0}), 0.1);
 }
 
 TEST(Constraint, PartnersInTrianglesMirror) {
@@ -116,11 +102,8 @@ TEST(Constraint, PartnersInTrianglesMirror) {
     rest.col(1) << 3, 0, 0;
     rest.col(2) << 3, 1, 0;
     rest.col(3) << 3, 0, 1;
-    ConstraintParameters parameters;
-    parameters.direction = Vector3d(2, 0, 0);
-    parameters.point = Vector3d(1, 7, 7);
-    parameters.coefficients = {0.5, 0.25, 0.25};
-    const auto exact = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, rest);
+    kinds::MirrorInTriangles kind{{{2, 0, 0}, {1, 7, 7}}, {0.5, 0.25, 0.25}};
+    const auto exact = make_constraint(kind, first_ids(4), 1, rest);
     EXPECT_LT(exact->residual(rest), 1e-15);
     Points bumped = rest;
     bumped.col(0) += Vector3d(-0.4, 0.2, 0.6);
@@ -130,8 +113,8 @@ TEST(Constraint, PartnersInTrianglesMirror) {
     EXPECT_LT((o.projected.col(1) - Vector3d(3.2, 0.35, 0.55)).norm(), 1e-15);
     // What is off at rest stays so.
     const Points off = Vector3d(0.4, 0.2, 0.6);
-    parameters.target = off;
-    const auto nearly = make_constraint("MirrorSymmetry", first_ids(4), 1, parameters, bumped);
+    kind.discrepancies = off;
+    const auto nearly = make_constraint(kind, first_ids(4), 1, bumped);
     EXPECT_LT(nearly->residual(bumped), 1e-15);
     EXPECT_NEAR(nearly->residual(rest), off.norm(), 1e-15);
     exact->set_target(off);

@@ -8,8 +8,8 @@ namespace {
 
 TEST(Constraint, EveryKindHasAnExample) {
     const auto list = examples();
-    for (const auto& kind : constraint_kinds())
-        EXPECT_TRUE(std::any_of(list.begin(), list.end(), [&](const Example& e) { return e.kind == kind.name; })) << kind.name;
+    for (std::size_t kind = 0; kind < std::variant_size_v<ConstraintKind>; ++kind)
+        EXPECT_TRUE(std::any_of(list.begin(), list.end(), [&](const Example& e) { return e.kind.index() == kind; })) << kind;
 }
 
 TEST(Constraint, ProjectingTwiceIsProjectingOnce) {
@@ -126,114 +126,97 @@ TEST(Constraint, DegeneratePointsGiveNumbers) {
 
 TEST(Constraint, RefusesWhatMakesNoSense) {
     const Points rest = random_points(8, 5);
-    const auto refused = [&](const std::string& kind, const std::vector<int>& ids, const ConstraintParameters& p,
-                             double weight = 1) {
+    const auto refused = [&](const ConstraintKind& kind, const std::vector<int>& ids, double weight = 1) {
+        const std::string name(name_of(kind));
         try {
-            make_constraint(kind, ids, weight, p, rest);
+            make_constraint(kind, ids, weight, rest);
         } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage) << kind;
-            EXPECT_NE(std::string(error.what()).find(kind), std::string::npos) << error.what();
+            EXPECT_EQ(error.kind(), ErrorKind::usage) << name;
+            EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
             return true;
         }
         return false;
     };
-    ConstraintParameters none, crossed, nan, no_length, few;
-    crossed.min = 2;
-    crossed.max = 1;
-    nan.min = std::nan("");
-    no_length.direction = Vector3d::Zero();
-    few.target = random_points(2, 3);
-    EXPECT_TRUE(refused("Planes", {0, 1, 2}, none));
-    EXPECT_TRUE(refused("Plane", {0, 1}, none));
-    EXPECT_TRUE(refused("EdgeStrain", {0, 1, 2}, none));
-    EXPECT_TRUE(refused("Plane", {0, 1, 8}, none));
-    EXPECT_TRUE(refused("Plane", {0, 1, -1}, none));
-    EXPECT_TRUE(refused("Plane", {0, 1, 2}, none, -1));
-    EXPECT_TRUE(refused("Plane", {0, 1, 2}, none, std::nan("")));
-    for (const char* kind : {"EdgeStrain", "PolylineLength"}) {
-        EXPECT_TRUE(refused(kind, {0, 1}, crossed));
-        EXPECT_TRUE(refused(kind, {0, 1}, nan));
+    const double nan = std::nan("");
+    const Vector3d none = Vector3d::Zero(), x(1, 0, 0);
+    EXPECT_TRUE(refused(kinds::Plane{}, {0, 1}));
+    EXPECT_TRUE(refused(kinds::EdgeStrain{}, {0, 1, 2}));
+    EXPECT_TRUE(refused(kinds::Plane{}, {0, 1, 8}));
+    EXPECT_TRUE(refused(kinds::Plane{}, {0, 1, -1}));
+    EXPECT_TRUE(refused(kinds::Plane{}, {0, 1, 2}, -1));
+    EXPECT_TRUE(refused(kinds::Plane{}, {0, 1, 2}, nan));
+    for (const kinds::Interval& range :
+         {kinds::Interval{2, 1}, {nan, 1}, {1, nan}, {-1, 1}, {kinds::infinity, kinds::infinity}}) {
+        EXPECT_TRUE(refused(kinds::EdgeStrain{range}, {0, 1}));
+        EXPECT_TRUE(refused(kinds::PolylineLength{range}, {0, 1}));
+        EXPECT_TRUE(refused(kinds::Volume{range}, {0, 1, 2, 3}));
+        EXPECT_TRUE(refused(kinds::Angle{range}, {0, 1, 2}));
     }
-    EXPECT_TRUE(refused("Volume", {0, 1, 2, 3}, crossed));
-    EXPECT_TRUE(refused("Angle", {0, 1, 2}, crossed));
-    EXPECT_TRUE(refused("Orientation", {0, 1, 2}, none));
-    EXPECT_TRUE(refused("Orientation", {0, 1, 2}, no_length));
-    EXPECT_TRUE(refused("CoAxiality", {0, 1, 2}, none));
-    EXPECT_TRUE(refused("OnSurface", {0}, none));
-    EXPECT_TRUE(refused("Closeness", {0}, few));
-    EXPECT_TRUE(refused("Proportion", {0, 1, 2, 3}, none));
-    EXPECT_TRUE(refused("EqualLengths", {0, 1, 2, 3, 4}, none));
-    EXPECT_TRUE(refused("Area", {0, 1, 1}, none));
-    EXPECT_TRUE(refused("Volume", {0, 1, 2, 2}, none));
-    EXPECT_FALSE(refused("Plane", {0, 1, 2}, none));
+    EXPECT_TRUE(refused(kinds::Orientation{none}, {0, 1, 2}));
+    EXPECT_TRUE(refused(kinds::CoAxiality{none, x}, {0, 1, 2}));
+    EXPECT_TRUE(refused(kinds::CoAxiality{x, Vector3d(nan, 0, 0)}, {0, 1, 2}));
+    EXPECT_TRUE(refused(kinds::OnSurface{}, {0}));
+    EXPECT_TRUE(refused(kinds::Closeness{random_points(2, 3)}, {0}));
+    EXPECT_TRUE(refused(kinds::EqualLengths{}, {0, 1, 2, 3, 4}));
+    EXPECT_TRUE(refused(kinds::EqualLength{1}, {0, 1, 2, 3, 4}));
+    EXPECT_TRUE(refused(kinds::Area{}, {0, 1, 1}));
+    EXPECT_TRUE(refused(kinds::Volume{}, {0, 1, 2, 2}));
+    EXPECT_FALSE(refused(kinds::Plane{}, {0, 1, 2}));
 
-    ConstraintParameters line;
-    line.direction = line.point = Vector3d(1, 0, 0);
-    line.stations = {0, 0, 1, 1};
-    line.coefficients = {0, 1, 0, 0};
-    EXPECT_FALSE(refused("AxisOnLine", {0, 1, 2, 3}, line));
+    kinds::AxisOnLine line{x, x, {0, 0, 1, 1}, {0, 1, 0, 0}};
+    EXPECT_FALSE(refused(line, {0, 1, 2, 3}));
     for (const std::vector<double>& shares :
-         {std::vector<double>{0, 1, 0}, {0, -0.1, 0, 0}, {0, 1.1, 0, 0}, {0, std::nan(""), 0, 0}, {1, 1, 0, 0}}) {
-        line.coefficients = shares;
-        EXPECT_TRUE(refused("AxisOnLine", {0, 1, 2, 3}, line)) << testing::PrintToString(shares);
+         {std::vector<double>{0, 1, 0}, {0, -0.1, 0, 0}, {0, 1.1, 0, 0}, {0, nan, 0, 0}, {1, 1, 0, 0}}) {
+        line.shares = shares;
+        EXPECT_TRUE(refused(line, {0, 1, 2, 3})) << testing::PrintToString(shares);
     }
 
-    ConstraintParameters length;
-    length.min = length.max = 1;
-    length.absolute = true;
-    length.pins = {0, 1};
-    EXPECT_FALSE(refused("Proportion", {0, 1}, length));
-    length.split = 2;
-    EXPECT_TRUE(refused("Proportion", {0, 1, 2}, length));
-    length.split = 0;
-    length.pins = {0, 2};
-    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
-    length.pins = {0, 0};
-    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
-    length.pins = {0, 1, 0, 1};
-    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
-    length.absolute = false;
-    EXPECT_FALSE(refused("Proportion", {0, 1}, length));
-    length.pins = {0, 1};
-    EXPECT_TRUE(refused("Proportion", {0, 1}, length));
+    kinds::Proportion proportion{{1, 1}, {{0, 1}}};
+    EXPECT_FALSE(refused(proportion, {0, 1}));
+    proportion.part = 2;
+    EXPECT_TRUE(refused(proportion, {0, 1, 2}));
+    proportion.part = 0;
+    proportion.measure.pins = {0, 2};
+    EXPECT_TRUE(refused(proportion, {0, 1}));
+    proportion.measure.pins = {0, 0};
+    EXPECT_TRUE(refused(proportion, {0, 1}));
+    proportion.measure.pins = {0, 1};
+    proportion.second = kinds::PinnedMeasure{{0, 1}};
+    EXPECT_FALSE(refused(proportion, {0, 1}));
+    proportion.second->pins = {1, 1};
+    EXPECT_TRUE(refused(proportion, {0, 1}));
 
-    ConstraintParameters axis;
-    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
-    axis.direction = Vector3d(1, 0, 0);
-    EXPECT_FALSE(refused("AxisDirection", {0, 1, 2}, axis));
-    EXPECT_TRUE(refused("AxisDirection", {2, 2, 2}, axis));
-    EXPECT_TRUE(refused("AxisDirection", {2}, axis));
-    axis.rest_direction = Vector3d::Zero();
-    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    kinds::AxisDirection axis{x};
+    EXPECT_FALSE(refused(axis, {0, 1, 2}));
+    EXPECT_TRUE(refused(axis, {2, 2, 2}));
+    EXPECT_TRUE(refused(axis, {2}));
+    axis.rest_direction = none;
+    EXPECT_TRUE(refused(axis, {0, 1, 2}));
     axis.rest_direction.reset();
-    axis.max = 1.6;
-    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
-    axis.max = 0.1;
-    axis.min = 0.2;
-    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
-    axis.min = -0.1;
-    EXPECT_TRUE(refused("AxisDirection", {0, 1, 2}, axis));
+    for (const kinds::Interval& range : {kinds::Interval{0, 1.6}, {0.2, 0.1}, {-0.1, 0.1}}) {
+        axis.angle = range;
+        EXPECT_TRUE(refused(axis, {0, 1, 2}));
+    }
+    EXPECT_TRUE(refused(kinds::AxisDirection{none}, {0, 1, 2}));
 
-    ConstraintParameters mirror;
-    mirror.direction = mirror.point = Vector3d(1, 0, 0);
-    mirror.coefficients = {0.5, 0.25, 0.25};
-    EXPECT_FALSE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2}, mirror));
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3, 4, 5, 6, 7}, mirror));
-    mirror.target = random_points(2, 3);
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
-    mirror.target.reset();
-    mirror.coefficients = {0.5, 0.5, 0.25};
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
-    mirror.coefficients = {0.5, 0.5, std::nan("")};
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
-    mirror.coefficients = {0.5, 0.25, 0.25};
-    mirror.direction.reset();
-    EXPECT_TRUE(refused("MirrorSymmetry", {0, 1, 2, 3}, mirror));
+    kinds::MirrorInTriangles mirror{{x, x}, {0.5, 0.25, 0.25}};
+    EXPECT_FALSE(refused(mirror, {0, 1, 2, 3}));
+    EXPECT_TRUE(refused(mirror, {0, 1, 2}));
+    EXPECT_TRUE(refused(mirror, {0, 1, 2, 3, 4, 5, 6, 7}));
+    mirror.discrepancies = random_points(2, 3);
+    EXPECT_TRUE(refused(mirror, {0, 1, 2, 3}));
+    mirror.discrepancies.reset();
+    mirror.barycentric = {0.5, 0.5, 0.25};
+    EXPECT_TRUE(refused(mirror, {0, 1, 2, 3}));
+    mirror.barycentric = {0.5, 0.5, nan};
+    EXPECT_TRUE(refused(mirror, {0, 1, 2, 3}));
+    mirror.barycentric = {0.5, 0.25, 0.25};
+    mirror.plane.normal = none;
+    EXPECT_TRUE(refused(mirror, {0, 1, 2, 3}));
     Points broken = rest;
     broken(1, 2) = std::numeric_limits<double>::infinity();
-    EXPECT_THROW(make_constraint("Plane", {0, 1, 2}, 1, {}, broken), Error);
-    EXPECT_THROW(make_constraint("Plane", {0, 1, 2}, 1, {}, rest)->set_target(rest), Error);
+    EXPECT_THROW(make_constraint(kinds::Plane{}, {0, 1, 2}, 1, broken), Error);
+    EXPECT_THROW(make_constraint(kinds::Plane{}, {0, 1, 2}, 1, rest)->set_target(rest), Error);
 }
 
 }  // namespace

@@ -20,37 +20,53 @@ JsonValue columns(const Points& points, JsonAllocator& allocator) {
     return list;
 }
 
-template <class Number>
-JsonValue numbers(const std::vector<Number>& values, JsonAllocator& allocator) {
+template <class Numbers>
+JsonValue numbers(const Numbers& values, JsonAllocator& allocator) {
     JsonValue list(rapidjson::kArrayType);
-    for (const Number value : values) list.PushBack(value, allocator);
+    for (const auto value : values) list.PushBack(value, allocator);
     return list;
 }
 
-JsonValue parameters_of(const Example& e, JsonAllocator& allocator) {
-    const ConstraintParameters& p = e.parameters;
+/// Writes the parameters of a kind that are given.
+struct ParameterWriter {
+    JsonValue& object;
+    JsonAllocator& allocator;
+    void add(const char* name, JsonValue value) { add_member(object, name, std::move(value), allocator); }
+    void place(const char* name, const Points& points) { add(name, columns(points, allocator)); }
+    void place(const char* name, const Eigen::Vector3d& vector) { add(name, numbers(vector, allocator)); }
+    void direction(const char* name, const Points& points) { place(name, points); }
+    void direction(const char* name, const Eigen::Vector3d& vector) { place(name, vector); }
+    template <class Matrix>
+    void place(const char* name, const std::optional<Matrix>& given) {
+        if (given) place(name, *given);
+    }
+    template <class Matrix>
+    void direction(const char* name, const std::optional<Matrix>& given) {
+        if (given) place(name, *given);
+    }
+    void value(const char* name, double number) {
+        if (std::isfinite(number)) add(name, JsonValue(number));
+    }
+    void value(const char* name, int number) {
+        if (number != 0) add(name, JsonValue(number));
+    }
+    void value(const char* name, bool flag) {
+        if (flag) add(name, JsonValue(true));
+    }
+    template <class Numbers>
+    void value(const char* name, const Numbers& values) {
+        if (!values.empty()) add(name, numbers(values, allocator));
+    }
+    template <class Function>
+    void surface(const char* name, const Function&) {
+        add(name, JsonValue("sphere of radius 0.7 about (0.1, 0.2, 0.3)"));
+    }
+};
+
+JsonValue parameters_of(ConstraintKind kind, JsonAllocator& allocator) {
     JsonValue object(rapidjson::kObjectType);
-    if (p.min) add_member(object, "min", JsonValue(*p.min), allocator);
-    if (p.max) add_member(object, "max", JsonValue(*p.max), allocator);
-    if (p.absolute) add_member(object, "absolute", JsonValue(true), allocator);
-    if (p.target) add_member(object, "target", columns(*p.target, allocator), allocator);
-    const std::pair<const char*, const std::optional<Eigen::Vector3d>*> vectors[] = {{"direction", &p.direction},
-                                                                                     {"point", &p.point},
-                                                                                     {"rest_direction", &p.rest_direction},
-                                                                                     {"rest_point", &p.rest_point},
-                                                                                     {"second_direction", &p.second_direction}};
-    for (const auto& [name, vector] : vectors)
-        if (*vector) {
-            JsonValue list(rapidjson::kArrayType);
-            for (int k = 0; k < 3; ++k) list.PushBack((**vector)[k], allocator);
-            add_member(object, name, std::move(list), allocator);
-        }
-    if (!p.coefficients.empty()) add_member(object, "coefficients", numbers(p.coefficients, allocator), allocator);
-    if (p.split != 0) add_member(object, "split", JsonValue(p.split), allocator);
-    if (!p.pins.empty()) add_member(object, "pins", numbers(p.pins, allocator), allocator);
-    if (!p.anchors.empty()) add_member(object, "anchors", numbers(p.anchors, allocator), allocator);
-    if (!p.stations.empty()) add_member(object, "stations", numbers(p.stations, allocator), allocator);
-    if (p.closest_point) add_member(object, "surface", "sphere of radius 0.7 about (0.1, 0.2, 0.3)", allocator);
+    ParameterWriter writer{object, allocator};
+    std::visit(VisitParameters<ParameterWriter>{writer}, kind);
     return object;
 }
 
@@ -74,9 +90,9 @@ Json golden() {
         c->project(rows, projected);
         JsonValue object(rapidjson::kObjectType);
         add_member(object, "name", e.name, allocator);
-        add_member(object, "kind", e.kind, allocator);
+        add_member(object, "kind", std::string(name_of(e.kind)), allocator);
         add_member(object, "ids", numbers(e.ids, allocator), allocator);
-        add_member(object, "parameters", parameters_of(e, allocator), allocator);
+        add_member(object, "parameters", parameters_of(e.kind, allocator), allocator);
         add_member(object, "rest", columns(e.rest, allocator), allocator);
         add_member(object, "points", columns(e.points, allocator), allocator);
         add_member(object, "direct", JsonValue(static_cast<int>(c->map().direct)), allocator);

@@ -17,16 +17,14 @@ struct Chain {
     Chain() {
         for (int i = 0; i < n; ++i) rest.col(i) << std::cos(i * 0.2094), std::sin(i * 0.2094), 0.1 * std::sin(i * 0.6);
         for (int i = 0; i < n; ++i)
-            add(false, make_constraint("LaplacianDisplacement", {i, (i + 1) % n, (i + n - 1) % n}, 1, {}, rest));
+            add(false, make_constraint(kinds::LaplacianDisplacement{}, {i, (i + 1) % n, (i + n - 1) % n}, 1, rest));
     }
     void add(bool must, std::unique_ptr<Constraint> c) {
         list.push_back(std::move(c));
         hard.push_back(must);
     }
     void pin(bool must, int i, const Eigen::Vector3d& by) {
-        ConstraintParameters p;
-        p.target = rest.col(i) + by;
-        add(must, make_constraint("Closeness", {i}, 0.1, p, rest));
+        add(must, make_constraint(kinds::Closeness{rest.col(i) + by}, {i}, 0.1, rest));
     }
 };
 
@@ -71,12 +69,10 @@ TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(18, 3 * n);
     Eigen::VectorXd values(18);
     for (int line = 0; line < 2; ++line) {
-        ConstraintParameters p;
-        p.direction = directions[line];
-        p.point = points[line];
+        kinds::AxisOnLine kind{directions[line], points[line]};
         std::vector<int> ids;
-        for (int k = 0; k < 9; ++k) ids.push_back(3 + 12 * line + k), p.stations.push_back(k / 3);
-        chain.add(true, make_constraint("AxisOnLine", ids, 3, p, chain.rest));
+        for (int k = 0; k < 9; ++k) ids.push_back(3 + 12 * line + k), kind.stations.push_back(k / 3);
+        chain.add(true, make_constraint(kind, ids, 3, chain.rest));
         const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - directions[line] * directions[line].transpose();
         for (int k = 0; k < 9; ++k) rows.block<3, 3>(9 * line + 3 * (k / 3), 3 * ids[static_cast<std::size_t>(k)]) = across / 3;
         for (int s = 0; s < 3; ++s) values.segment<3>(9 * line + 3 * s) = across * points[line];
@@ -115,10 +111,8 @@ TEST(Hard, LinesThatContradictEachOtherAreSaid) {
     Chain chain;
     chain.pin(false, 0, {0, 0, 0});
     for (const double height : {-1.0, 1.0}) {
-        ConstraintParameters p;
-        p.direction = Eigen::Vector3d::UnitX();
-        p.point = Eigen::Vector3d(0, 0, height);
-        chain.add(true, make_constraint("AxisOnLine", {4, 5}, 1, p, chain.rest));
+        const kinds::AxisOnLine kind{Eigen::Vector3d::UnitX(), {0, 0, height}};
+        chain.add(true, make_constraint(kind, {4, 5}, 1, chain.rest));
     }
     HardSolver solver(std::move(chain.list), chain.hard, chain.rest);
     Points x = chain.rest;
@@ -133,11 +127,9 @@ TEST(Hard, ShapesHold) {
     Chain chain;
     chain.pin(false, 3, {0, 0, 0});
     chain.pin(false, 20, {0.4, 0.3, 0.2});
-    chain.add(true, make_constraint("Plane", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14}, 0.5, {}, chain.rest));
-    chain.add(true, make_constraint("Rigid", {18, 19, 20, 21, 22}, 0.5, {}, chain.rest));
-    ConstraintParameters longer;
-    longer.min = longer.max = 1.5;
-    chain.add(true, make_constraint("EdgeStrain", {25, 26}, 0.5, longer, chain.rest));
+    chain.add(true, make_constraint(kinds::Plane{}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14}, 0.5, chain.rest));
+    chain.add(true, make_constraint(kinds::Rigid{}, {18, 19, 20, 21, 22}, 0.5, chain.rest));
+    chain.add(true, make_constraint(kinds::EdgeStrain{{1.5, 1.5}}, {25, 26}, 0.5, chain.rest));
     HardSolver solver(std::move(chain.list), chain.hard, chain.rest);
     Points x = chain.rest;
     const HardSummary summary = solver.solve(x);
@@ -166,7 +158,7 @@ TEST(Hard, RefusesWhatMakesNoSense) {
     Chain chain;
     EXPECT_THROW(HardSolver(std::move(chain.list), {true}, chain.rest), Error);
     Chain other;
-    other.add(true, make_constraint("Closeness", {0}, 0, {}, other.rest));
+    other.add(true, make_constraint(kinds::Closeness{}, {0}, 0, other.rest));
     EXPECT_THROW(HardSolver(std::move(other.list), other.hard, other.rest), Error);
 }
 

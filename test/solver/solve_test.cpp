@@ -1,6 +1,7 @@
 // The solver: against a dense reference, on singular and contradictory systems, for any number of threads.
 #include "ostraka/solver/solve.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/solver/make_constraint.h"
 
 #include <gtest/gtest.h>
 
@@ -36,14 +37,10 @@ std::vector<int> ring(int n, int i, int j) {
 
 void add_laplacians(List& list, int n, const Points& rest, double weight) {
     for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) list.push_back(make_constraint("LaplacianDisplacement", ring(n, i, j), weight, {}, rest));
+        for (int j = 0; j < n; ++j) list.push_back(make_constraint(kinds::LaplacianDisplacement{}, ring(n, i, j), weight, rest));
 }
 
-ConstraintParameters at(const Eigen::Vector3d& p) {
-    ConstraintParameters parameters;
-    parameters.target = p;
-    return parameters;
-}
+kinds::Closeness at(const Eigen::Vector3d& p) { return {Points(p)}; }
 
 /// Matrix of a constraint's rows over all points, dense, from its documented map.
 Eigen::MatrixXd dense_rows(const Constraint& c, Eigen::Index points) {
@@ -82,14 +79,11 @@ List mixed(int n, const Points& rest) {
     std::vector<int> plane, rigid;
     for (int i = 0; i < n * n / 2; ++i) plane.push_back(i);
     for (int i = 0; i < 9; ++i) rigid.push_back(n * n - 1 - i);
-    list.push_back(make_constraint("Plane", plane, 3, {}, rest));
-    list.push_back(make_constraint("Rigid", rigid, 1.5, {}, rest));
-    ConstraintParameters longer;
-    longer.min = 1.2;
-    longer.max = 1.3;
-    list.push_back(make_constraint("EdgeStrain", {0, n + 1}, 4, longer, rest));
-    list.push_back(make_constraint("Closeness", {3}, 5, at(rest.col(3) + Eigen::Vector3d(0.1, 0, 0.3)), rest));
-    list.push_back(make_constraint("Closeness", {n * n - 1}, 5, {}, rest));
+    list.push_back(make_constraint(kinds::Plane{}, plane, 3, rest));
+    list.push_back(make_constraint(kinds::Rigid{}, rigid, 1.5, rest));
+    list.push_back(make_constraint(kinds::EdgeStrain{{1.2, 1.3}}, {0, n + 1}, 4, rest));
+    list.push_back(make_constraint(at(rest.col(3) + Eigen::Vector3d(0.1, 0, 0.3)), {3}, 5, rest));
+    list.push_back(make_constraint(kinds::Closeness{}, {n * n - 1}, 5, rest));
     return list;
 }
 
@@ -220,7 +214,7 @@ TEST(CageSpace, GroupsAloneAreDrawnToRest) {
     List list;
     std::vector<int> all;
     for (int i = 0; i < n * n; ++i) all.push_back(i);
-    list.push_back(make_constraint("Plane", all, 1, {}, rest));
+    list.push_back(make_constraint(kinds::Plane{}, all, 1, rest));
     CageSpaceSolver solver(std::move(list), w, rest_cage);
     Points c = rest_cage;
     const SolveSummary summary = solver.solve(c, steps(50));
@@ -295,7 +289,7 @@ TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {
     for (int part = 0; part < 2; ++part) {
         std::vector<int> ids;
         for (int i = 0; i < n * n; ++i) ids.push_back(part * n * n + i);
-        list.push_back(make_constraint("Plane", ids, 2, {}, rest));
+        list.push_back(make_constraint(kinds::Plane{}, ids, 2, rest));
     }
     MeshSpaceSolver solver(std::move(list), rest);
     Points x = rest.colwise() + Eigen::Vector3d(5, 5, 5);
@@ -313,9 +307,9 @@ TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
     // Two Laplacians over six points leave much open.
     const Points rest = grid(4);
     List list;
-    list.push_back(make_constraint("Laplacian", ring(4, 1, 1), 1, {}, rest));
-    list.push_back(make_constraint("Laplacian", ring(4, 1, 2), 1, {}, rest));
-    list.push_back(make_constraint("Closeness", {5}, 1, at(rest.col(5) + Eigen::Vector3d(0, 0, 1)), rest));
+    list.push_back(make_constraint(kinds::Laplacian{}, ring(4, 1, 1), 1, rest));
+    list.push_back(make_constraint(kinds::Laplacian{}, ring(4, 1, 2), 1, rest));
+    list.push_back(make_constraint(at(rest.col(5) + Eigen::Vector3d(0, 0, 1)), {5}, 1, rest));
     MeshSpaceSolver solver(std::move(list), rest);
     Points x = rest;
     const SolveSummary summary = solver.solve(x, steps(5));
@@ -336,9 +330,7 @@ TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
             const double a = 2 * 3.14159265358979 * i / sides;
             rest.col(k * sides + i) << std::cos(a), std::sin(a), 0.25 * k;
         }
-    ConstraintParameters line;
-    line.direction = Eigen::Vector3d(0.3, 0, 1);
-    line.point = Eigen::Vector3d::Zero();
+    const kinds::AxisOnLine line{{0.3, 0, 1}, Eigen::Vector3d::Zero()};
     const auto farthest = [&](bool shares) {
         List list;
         std::vector<int> all;
@@ -348,23 +340,23 @@ TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
                 if (k > 0) ids.push_back((k - 1) * sides + i);
                 if (k + 1 < rings) ids.push_back((k + 1) * sides + i);
                 all.push_back(ids.front());
-                list.push_back(make_constraint("Closeness", {ids.front()}, 0.1, {}, rest));
-                if (k > 0 && k + 1 < rings) list.push_back(make_constraint("LaplacianDisplacement", ids, 1, {}, rest));
+                list.push_back(make_constraint(kinds::Closeness{}, {ids.front()}, 0.1, rest));
+                if (k > 0 && k + 1 < rings) list.push_back(make_constraint(kinds::LaplacianDisplacement{}, ids, 1, rest));
             }
-        ConstraintParameters parameters = line;
+        kinds::AxisOnLine tube = line;
         for (const int id : all) {
             const int k = id / sides;
-            parameters.stations.push_back(shares ? k / step : std::min(k / step, rings / step - 1));
-            if (shares) parameters.coefficients.push_back(static_cast<double>(k % step) / step);
+            tube.stations.push_back(shares ? k / step : std::min(k / step, rings / step - 1));
+            if (shares) tube.shares.push_back(static_cast<double>(k % step) / step);
         }
-        list.push_back(make_constraint("AxisOnLine", all, 1e6, parameters, rest));
+        list.push_back(make_constraint(tube, all, 1e6, rest));
         MeshSpaceSolver solver(std::move(list), rest);
         Points x = rest;
         EXPECT_TRUE(solver.solve(x).usable);
         double maximum = 0;
         for (int k = 0; k < rings; ++k) {
             const Eigen::Vector3d mean = x.middleCols(k * sides, sides).rowwise().mean();
-            maximum = std::max(maximum, mean.cross(line.direction->normalized()).norm());
+            maximum = std::max(maximum, mean.cross(line.direction.normalized()).norm());
         }
         return maximum;
     };
@@ -375,8 +367,8 @@ TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
 TEST(MeshSpace, ContradictoryPositionsMeetInTheMiddle) {
     const Points rest = grid(3);
     List list;
-    list.push_back(make_constraint("Closeness", {4}, 1, at({0, 0, 0}), rest));
-    list.push_back(make_constraint("Closeness", {4}, 3, at({4, 0, 0}), rest));
+    list.push_back(make_constraint(at({0, 0, 0}), {4}, 1, rest));
+    list.push_back(make_constraint(at({4, 0, 0}), {4}, 3, rest));
     MeshSpaceSolver solver(std::move(list), rest);
     Points x = rest;
     const SolveSummary summary = solver.solve(x);
@@ -451,10 +443,10 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
 TEST(Solver, RefusesWhatMakesNoSense) {
     const Points rest = grid(3);
     List beyond;
-    beyond.push_back(make_constraint("Closeness", {8}, 1, {}, rest));
+    beyond.push_back(make_constraint(kinds::Closeness{}, {8}, 1, rest));
     EXPECT_THROW(MeshSpaceSolver(std::move(beyond), rest.leftCols(4)), Error);
     List list;
-    list.push_back(make_constraint("Closeness", {8}, 1, {}, rest));
+    list.push_back(make_constraint(kinds::Closeness{}, {8}, 1, rest));
     MeshSpaceSolver solver(std::move(list), rest);
     Points few = rest.leftCols(4), nan = rest;
     nan(0, 0) = std::nan("");

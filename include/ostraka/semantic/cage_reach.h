@@ -34,7 +34,7 @@ struct ConstraintReach {
 /// edits; returns the worst result for each constraint. Default edits: the object stretched by a tenth along x, y and z.
 /// Constraints solved without the cage (seated parts) and constraints that cannot be evaluated are omitted. Throws as deform
 /// does, and Error (usage) without a cage.
-std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const RelationGraph& graph, const JsonValue* edit = nullptr,
+std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const RelationGraph& graph, const Edit* edit = nullptr,
                                         const std::string& edit_name = "the edit",
                                         const RelationOptions& tolerances = deform_tolerances(),
                                         const std::string& graph_name = "graph");

@@ -133,7 +133,7 @@ struct DeformResult {
 /// Constraints are then solved over the mesh's points or over the cage's, as options.space says. Throws Error
 /// as follow_edit does, (input) for constraints that cannot be made sense of: a missing annotation, attribute or measure, a range
 /// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
-DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,
+DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const Edit& edit, const std::string& edit_name,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {},
                     const std::string& graph_name = "graph");
 

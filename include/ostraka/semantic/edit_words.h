@@ -2,9 +2,9 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/graph.h"
+#include "ostraka/semantic/edit.h"
 
 namespace ostraka {
 
@@ -23,11 +23,11 @@ struct EditWords {
 /// Error (input), naming the nearest tag, if there are none.
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words);
 
-/// An edit (format of doc/schema/edit.schema.json) with one step per text. The parts of a text are together stretched along the
+/// An edit with one step per text. The parts of a text are together stretched along the
 /// axis from their base, moved along it by a length, or rotated about it through the mean of their handles. The axis is up, x,
 /// y, z, -x, -y or -z, by default up. Throws Error (usage) for a text without "=", an invalid number, a stretch that is not
 /// positive, an unknown axis, and a missing upward direction; Error (input) as parts_named.
-Json edit_of(const EditWords& words, const AnnotationSet& set);
+Edit edit_of(const EditWords& words, const AnnotationSet& set);
 
 /// Adds the measures "height" and "thickness" (extent along up) if the words keep them and parts lack them.
 void take_measures(const EditWords& words, const Mesh& mesh, AnnotationSet& set);

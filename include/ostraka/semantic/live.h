@@ -14,7 +14,7 @@ class LiveDeformation {
 public:
     /// `edit`: the steps so far. `handles`: the vertices of the cage to be dragged. Throws as deform; Error (usage) without a
     /// cage, or for a handle that is not a vertex of the cage.
-    LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, std::vector<Index> handles,
+    LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const Edit& edit, std::vector<Index> handles,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {});
     ~LiveDeformation();
 

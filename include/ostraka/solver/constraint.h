@@ -4,7 +4,7 @@
 // and a projection P from rows to the closest rows that C admits. A solver minimises the sum of w |B x - P(B x)|^2 over its
 // constraints: the shape proximity function of ShapeUp (Bouaziz et al. 2012; the thesis, equation 4.7), where the weight w
 // multiplies the SQUARED norm; the rows of Q in equation 4.8 are sqrt(w) B. Where ShapeOp (Deuss et al. 2015) has the
-// constraint, its name and order of ids are used. doc/solver.md describes what each constraint admits.
+// constraint, its name and order of ids are used. kinds.h and part_kinds.h describe what each kind admits.
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -114,57 +114,5 @@ private:
     std::vector<int> ids_;
     double weight_ = 1;
 };
-
-/// Parameters of constraints besides ids, weight and rest points; doc/solver.md lists which kind uses which.
-struct ConstraintParameters {
-    /// Range. For EdgeStrain, TriangleStrain, TetrahedronStrain, Area, Volume, Bending, PolylineLength: relative to the rest
-    /// state's value, or in the measure's own unit with `absolute`. For Similarity and NonUniformScaling: the factor. For Angle
-    /// and AxisDirection: radians. For Proportion: first measure / second, or with `absolute` the first measure.
-    std::optional<double> min, max;
-    bool absolute = false;
-    /// Target positions or displacements, or the reference shape; default: the rest points'. MirrorSymmetry with coefficients:
-    /// for each group the mirrored point minus its partner (default zero). MeansOnLevel: one point per group, whose height
-    /// differences the means keep (default none). AxisDirection: a shape; the size of the points is kept at least at half of
-    /// its size (default: no lower bound, so that contradictory constraints may shrink the points).
-    std::optional<Points> target;
-    /// Normal of planes, direction of axes and measures; need not be a unit vector.
-    std::optional<Eigen::Vector3d> direction;
-    /// A point of an axis or plane.
-    std::optional<Eigen::Vector3d> point;
-    /// Axis in the rest state, for CoAxiality and (direction only) AxisDirection; default: the longest principal axis of the
-    /// rest points.
-    std::optional<Eigen::Vector3d> rest_direction, rest_point;
-    /// Cotangent Laplacians: weights of the neighbours (default: the neighbours must be the closed ring in order). AxisOnLine:
-    /// share of each point that counts for the next station. MeansOnLevel: weights of the points in the means of their groups.
-    /// MirrorSymmetry: three barycentric coordinates of each partner.
-    std::vector<double> coefficients;
-    /// Positions in ids. split: start of the second part (EqualLength, Proportion). pins: ends of the first and of the second
-    /// measure (Proportion; the first two lie in the first part; with `absolute` there are no others). anchors: points whose
-    /// mean is fixed (Proportion).
-    int split = 0;
-    std::vector<int> pins, anchors;
-    /// Direction of the second measure (Proportion); default: the distance between its ends.
-    std::optional<Eigen::Vector3d> second_direction;
-    /// Proportion with a target: scales its copies uniformly instead of stretching them along the measure.
-    bool uniform = false;
-    /// For each id its station along the axis, from 0 on (AxisOnLine), or its group (MeansOnLevel); default: a separate one for
-    /// each id.
-    std::vector<int> stations;
-    /// Closest point of a surface (OnSurface). Must be thread-safe.
-    std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_point;
-};
-
-/// A kind of constraint known to make_constraint.
-struct ConstraintKind {
-    std::string_view name;
-    int min_ids, max_ids;  ///< max_ids 0: any number
-};
-const std::vector<ConstraintKind>& constraint_kinds();
-
-/// Creates a constraint of a kind. `rest` holds all points of the shape in their rest state. Throws Error (usage) for an
-/// unknown kind, ids out of range, too few or too many ids, weights that are negative or not finite, min > max, values that are
-/// not finite, a direction of zero length, a missing parameter, and a degenerate rest state for which the kind is undefined.
-std::unique_ptr<Constraint> make_constraint(std::string_view kind, std::vector<int> ids, double weight,
-                                            const ConstraintParameters& parameters, const Points& rest);
 
 }  // namespace ostraka

@@ -1,0 +1,70 @@
+// What constraints of each type mean.
+#pragma once
+
+#include "constraint_members.h"
+
+#include "ostraka/axis/axis.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/rigid_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace ostraka::semantic {
+
+/// The verdict from deviations and their tolerances.
+Measured verdict_of(std::vector<Deviation> deviations);
+
+// Functions that translate relationships to statements, for one or several types each: shapes.cpp, axis_constraints.cpp,
+// measures.cpp, places.cpp, parts_kept.cpp, low_level.cpp.
+Statement keep_shape(const MembersPtr&, const spec::KeepShape&, const RelationOptions&);
+Statement same_level(const MembersPtr&, const spec::SameLevel&, const RelationOptions&);
+Statement co_axiality(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement axis_angle(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement structural_continuity(const MembersPtr&, const spec::StructuralContinuity&, const RelationOptions&);
+Statement proportion(const MembersPtr&, const spec::Proportion&, const RelationOptions&);
+Statement keep_measure(const MembersPtr&, const spec::KeepMeasure&, const RelationOptions&);
+Statement same_measure(const MembersPtr&, const spec::SameMeasure&, const RelationOptions&);
+Statement co_planarity(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement co_linearity(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement mirror_symmetry(const MembersPtr&, const spec::MirrorSymmetry&, const RelationOptions&);
+Statement adjacency(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement selections_kept(const MembersPtr&, const spec::None&, const RelationOptions&);
+Statement support(const MembersPtr&, const spec::Upward&, const RelationOptions&);
+Statement contact(const MembersPtr&, const spec::Upward&, const RelationOptions&);
+Statement part_similarity(const MembersPtr&, const spec::Alike&, const RelationOptions&);
+Statement same_length(const MembersPtr&, const spec::Alike&, const RelationOptions&);
+Statement keep_direction(const MembersPtr&, const spec::KeepDirection&, const RelationOptions&);
+Statement keep_position(const MembersPtr&, const spec::KeepPosition&, const RelationOptions&);
+/// Whether the type has the name of one of the solver's kinds ("edge strain").
+bool is_low_level(const std::string& type);
+/// Reads the parameters, including those that the kind does not use.
+Statement low_level(const MembersPtr&, const ParameterReader&, const RelationOptions&);
+
+/// The rigid motion from the current positions of vertices to their positions at rest.
+Motion motion_back(const ConstraintMembers& members, const std::vector<Index>& vertices, const State& now);
+/// The axis of a member as measured on the current shape, transformed to the part at rest by the best rigid motion, so that a
+/// constraint that transforms it forward reproduces the measured axis. The axis at rest if the current shape has none.
+Axis axis_carried_back(const ConstraintMembers& members, std::size_t i, const Axis& rest, const State& now);
+/// What keeps the surface around each of some vertices as `shape` has it, so many times as large, but lets it turn.
+Statement::Constraints stars_kept(const ConstraintMembers& members, const std::vector<Index>& vertices, const Points& shape,
+                                  double grown = 1);
+/// The first members keep their surface by stars: displacements from neighbours, which do not turn, would shear what turns far.
+void let_turn(const MembersPtr& members, std::size_t count, Statement& statement);
+/// Measures as the relation of this type does. doubt_axes: an angle within its tolerance gets the verdict unknown if the axis
+/// of a part is less certain than the tolerance, that is, if the axis of its slices and the longest principal axis of its area
+/// differ by more, for a part at least twice as long as wide.
+void doubt_axes(const ConstraintMembers& members, const State& deformed, double tolerance, Measured& measured);
+
+std::function<Measured(const State&)> as_related(const MembersPtr& members, Relationship stated,
+                                                 const RelationOptions& tolerances);
+/// The mean of vertices, and the unit normal of their fitted plane.
+Vector3d mean_of(const std::vector<Index>& vertices, const Points& points);
+Vector3d normal_of(const Points& points, const std::vector<Index>& vertices);
+/// Distance tolerance in the mesh's unit.
+double length_tolerance(const ConstraintMembers& members, const RelationOptions& tolerances);
+
+}  // namespace ostraka::semantic
