@@ -68,10 +68,10 @@ void Call::no_such_name(const std::string& name, const std::vector<std::string>&
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
     // Bounds were named least and most before version 0.2.
-    const std::string current_name = name.starts_with("least-")  ? "min-" + name.substr(6)
-                                     : name.starts_with("most-") ? "max-" + name.substr(5)
-                                                                 : name;
-    const std::string nearest = nearest_name(current_name, names);
+    std::string current_name = "-" + name;
+    for (const auto& [word, bound] : {std::pair<std::string, const char*>("-least-", "-min-"), {"-most-", "-max-"}})
+        if (const auto at = current_name.find(word); at != std::string::npos) current_name.replace(at, word.size(), bound);
+    const std::string nearest = nearest_name(current_name.substr(1), names);
     throw Error(ErrorKind::usage, entry_->name, fmt::format("has no option '{}'", printable(name, 60)),
                 nearest.empty()                     ? fmt::format("'ostraka {} --help' shows them", entry_->name)
                 : nearest == name && !flags.empty() ? "options begin with --"

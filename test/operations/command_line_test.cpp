@@ -30,6 +30,9 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
     expect_refusal("mesh simplify " + vase + " " + out + " --verticess 500", "did you mean 'vertices'");
     expect_refusal("mesh simplify " + vase + " " + out + " -vertices 500", "options begin with --");
     expect_refusal("annotation transfer --no-overlop a b c d", "did you mean 'no-overlap'");
+    // Former names of bounds are answered with the current ones.
+    expect_refusal("fit --search-least-scale 1 a b", "did you mean 'search-min-scale'");
+    expect_refusal("assemble --least-join 0.5 a b", "did you mean 'min-join'");
     expect_refusal("mesh info " + vase + " --input x", "input is given without a flag");
     expect_refusal("mesh info " + vase + " more", "one argument too many");
     expect_refusal("--quiet mesh info " + vase, "precedes the command");
