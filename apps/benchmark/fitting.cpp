@@ -60,10 +60,10 @@ const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark 
     const Statuette statuette = generate_statuette(parameters);
     const auto top = std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
                                   [&](const StatuetteLandmark& candidate) { return candidate.name == landmark; });
-    BreakOptions options;
+    FragmentOptions options;
     options.share = share;
     options.noise = 0.001;
-    BrokenPiece piece = break_off(statuette.mesh, position(whole.mesh, top->place), options);
+    SyntheticFragment piece = generate_fragment(statuette.mesh, position(whole.mesh, top->place), options);
     Fragment& fragment = entry->second;
     fragment.name = landmark;
     for (Annotation& annotation : landmarks_of(statuette).annotations) {

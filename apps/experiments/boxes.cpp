@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-Mesh whole_of(const std::string& source) {
+Mesh parse_int(const std::string& source) {
     const std::size_t colon = source.find(':');
     const std::string kind = source.substr(0, colon), rest = colon == std::string::npos ? "" : source.substr(colon + 1);
     if (kind == "pot") {
@@ -67,7 +67,7 @@ Box scanned_box(const std::string& folder, FacetChoice facets) {
 Box broken_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
     Box box;
     box.name = source;
-    const Mesh whole = whole_of(source);
+    const Mesh whole = parse_int(source);
     ShatterOptions breaking;
     breaking.pieces = pieces;
     breaking.seed = seed;

@@ -2,7 +2,7 @@
 #include "sherds.h"
 
 #include "ostraka/core/json.h"
-#include "ostraka/fracture/break_pair.h"
+#include "ostraka/fracture/pair_registration.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/reconstruction/fragment_file.h"
 
@@ -84,7 +84,7 @@ void bottle(const SherdOptions& options, Rows& csv) {
     const Json solution = read_json(folder / "solution.json");
     const Motion truth = motion_of(solution["T"]).inverse(), published = published_pose(folder / "best_registration.csv");
     const Stopwatch watch;
-    const BreakPair pair = pair_breaks(first, second);
+    const PairRegistration pair = register_fractures(first, second);
     const double seconds = watch.seconds().processor;
     if (pair.candidates.empty()) {
         fmt::print("bottle: no pose\n");
@@ -124,7 +124,7 @@ void sherd_pairs(const SherdOptions& options, Rows& csv) {
         Fragment there = b;
         there.mesh = moved(b.mesh, motion);
         const Stopwatch watch;
-        const BreakPair pair = pair_breaks(a, there);
+        const PairRegistration pair = register_fractures(a, there);
         const double seconds = watch.seconds().processor;
         double degrees = 180, percent = 100;
         if (!pair.candidates.empty()) {

@@ -78,7 +78,7 @@ std::optional<RotationMatch> place(const BrokenPot& pot, CommonPlacement& placem
     for (std::size_t k = 0; k < pot.fragments.size(); ++k) {
         FragmentPlacement& one = placement.fragments[k];
         if (!one.problem.empty()) continue;
-        one.pose = align_part(pot.fragments[k].mesh, not_broken(pot.fragments[k].facets), surface, one.pose).pose;
+        one.pose = align_part(pot.fragments[k].mesh, intact_faces(pot.fragments[k].facets), surface, one.pose).pose;
     }
     return decide_open_rotations(pot.whole, pointers, searched, placement.fragments);
 }
@@ -116,7 +116,7 @@ void judge(const BrokenPot& pot, const CommonPlacement& placement, const std::op
         counts.overlap = std::max(counts.overlap, 100 * rotations->overlap[k]);
     }
     counts.together += *std::max_element(size.begin(), size.end());
-    for (const BreakJoint& joint : rotations->joints) {
+    for (const FractureJoint& joint : rotations->joints) {
         const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
         const Motion off = back(a).inverse().after(back(b));
         const double percent = 100 * off_of(pot.home(b), off) / diagonal;

@@ -1,6 +1,6 @@
 #include "class_leave_one_out.h"
 
-#include "ostraka/shape_classes/unlikeness.h"
+#include "ostraka/shape_classes/dissimilarity.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>

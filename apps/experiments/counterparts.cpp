@@ -256,13 +256,13 @@ struct Scene {
 };
 
 Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
-    BreakOptions breaking;
+    FragmentOptions breaking;
     breaking.share = what.share;
     breaking.noise = what.noise;
     breaking.seed = seed;
     Random random(seed, 99);
     const Point at = members.other.point(Vertex(static_cast<Index>(random.below(members.other.number_of_vertices()))));
-    const BrokenPiece piece = break_off(members.other, at, breaking);
+    const SyntheticFragment piece = generate_fragment(members.other, at, breaking);
     std::vector<bool> keep(piece.mesh.number_of_faces(), true);
     for (int hole = 0; what.holes > 0 && hole < 5; ++hole) {
         const auto middle = static_cast<Index>(random.below(piece.mesh.number_of_vertices()));

@@ -116,7 +116,7 @@ OtherParts other_parts(const Mesh& mesh, const AnnotationSet& set, const std::st
 SolveSummary solve_nested(Constraints list, const CageWeights& weights, const Points& rest, const Points& cage_rest,
                           const std::vector<CageLevel>& levels, const std::vector<Index>& region, Points& x,
                           const SolveOptions& how) {
-    const std::size_t own = level_that_holds(weights, region, levels, carrying_weights(levels));
+    const std::size_t own = governing_level(weights, region, levels, carrying_weights(levels));
     CageWeights extended(weights.rows() + weights.cols(), weights.cols());
     extended.topRows(weights.rows()) = weights;
     extended.bottomRows(weights.cols()).setIdentity();

@@ -137,16 +137,16 @@ ShapePrior learn_canon(const Canon& canon) {
 
 /// A piece of `whole` around a part, with its landmarks.
 struct Broken {
-    BrokenPiece piece;
+    SyntheticFragment piece;
     Fragment fragment;
 };
 
 Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at,
-                     const BreakOptions& options) {
+                     const FragmentOptions& options) {
     const std::vector<Index>& faces = tagged(canon.set, at).faces;
     Vector3d centre = Vector3d::Zero();
     for (const Index f : faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(faces.size());
-    Broken broken{break_off(whole, point_of(centre), options), {}};
+    Broken broken{generate_fragment(whole, point_of(centre), options), {}};
     broken.fragment.name = name;
     broken.fragment.mesh = broken.piece.mesh;
     std::map<Index, Index> of_piece;
@@ -169,13 +169,13 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
         return p;
     });
     const double diagonal = box_diagonal(whole);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = what.share;
     options.noise = what.noise;
     options.erosion = what.erosion;
     options.seed = seed;
     const Broken broken = make_fragment(canon, whole, "fragment", what.at, options);
-    const BrokenPiece& piece = broken.piece;
+    const SyntheticFragment& piece = broken.piece;
     std::vector<bool> seen(mesh.number_of_vertices(), false);
     for (const Index v : piece.vertices) seen[v] = true;
     const Stopwatch watch;
@@ -257,11 +257,11 @@ void verdicts(const VerdictOptions& options) {
         const Mesh first = make_member(canon, random, size, planted == Planted::proportion);
         Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
         const auto seed = static_cast<std::uint64_t>(pair) + 1;
-        BreakOptions options_top;
+        FragmentOptions options_top;
         options_top.share = 0.3;
         options_top.noise = 0.001;
         options_top.seed = seed;
-        BreakOptions options_bottom = options_top;
+        FragmentOptions options_bottom = options_top;
         options_bottom.seed = seed + 100000;
         const Broken top = make_fragment(canon, first, "top", "head", options_top),
                      bottom = make_fragment(canon, second, "bottom", "base", options_bottom);
@@ -311,7 +311,7 @@ void fragments(const FragmentOptions& options) {
     set_option(how.fit, "space", options.space);
     const bool in_mesh = how.fit.space == NonRigidOptions::Space::mesh;
     const std::optional<ShapePrior> prior = in_mesh ? std::optional(learn_canon(canon)) : std::nullopt;
-    const std::optional<TemplateCage> made = in_mesh ? std::nullopt : std::optional(made_cage(canon.statuette.mesh));
+    const std::optional<TemplateCage> made = in_mesh ? std::nullopt : std::optional(generated_cage(canon.statuette.mesh));
     const TemplateCage* cage = made ? &*made : nullptr;
     TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
                      "missing/rigid", "missing with class", "with class/rigid", "constraint before", "after", "crossings",

@@ -5,7 +5,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
-#include "ostraka/fracture/break_pair.h"
+#include "ostraka/fracture/pair_registration.h"
 #include "ostraka/stats/boosted_trees.h"
 
 #include <algorithm>
@@ -48,8 +48,8 @@ struct Row {
     double seconds = 0;
 };
 
-Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const PreparedBreak& a, const PreparedBreak& moved_b,
-             const Motion& motion) {
+Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const PreparedFracture& a,
+             const PreparedFracture& moved_b, const Motion& motion) {
     Row row;
     row.box = of.name;
     row.other = with.name;
@@ -57,7 +57,7 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
     row.stranger = &of != &with;
     if (!row.stranger) row.contact = of.contact[std::min(i, j)][std::max(i, j)];
     const Stopwatch watch;
-    const BreakPair pair = pair_breaks(a, moved_b);
+    const PairRegistration pair = register_fractures(a, moved_b);
     row.seconds = watch.seconds().processor;
     const Mesh& mesh = with.fragments[j].mesh;
     for (const PairCandidate& one : pair.candidates) {
@@ -288,7 +288,7 @@ void report_left_out(const std::vector<Row>& rows, Table& table) {
 /// The fragments of a box that can be compared, as they are and moved at random.
 struct PreparedBox {
     Box box;
-    std::vector<PreparedBreak> given, moved;
+    std::vector<PreparedFracture> given, moved;
     std::vector<Motion> motions;
     std::vector<std::size_t> index;  ///< in the box
 };
@@ -303,7 +303,7 @@ PreparedBox prepare(Box&& box, std::uint64_t seed) {
         Fragment away = fragment;
         away.mesh = moved(away.mesh, motion);
         try {
-            PreparedBreak here(fragment), there(away);
+            PreparedFracture here(fragment), there(away);
             prepared.given.push_back(std::move(here));
             prepared.moved.push_back(std::move(there));
         } catch (const Error& error) {

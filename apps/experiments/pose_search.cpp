@@ -101,24 +101,24 @@ public:
     }
 
 private:
-    [[nodiscard]] std::optional<BrokenPiece> broken(double share, double noise, std::uint64_t seed) const {
+    [[nodiscard]] std::optional<SyntheticFragment> broken(double share, double noise, std::uint64_t seed) const {
         Random random(seed, 77);
         const Mesh& source = case_.kind == Case::Kind::same ? whole_ : other_;
         const Point centre = source.point(Vertex(static_cast<Index>(random.below(source.number_of_vertices()))));
-        BreakOptions breaking;
+        FragmentOptions breaking;
         breaking.share = share;
         breaking.noise = noise;
         breaking.erosion = options_.erosion;
         breaking.seed = seed;
         try {
-            return break_off(source, centre, breaking);
+            return generate_fragment(source, centre, breaking);
         } catch (const Error&) {
             return std::nullopt;
         }
     }
 
     /// True position of a piece on the whole.
-    [[nodiscard]] Motion truth_of(const BrokenPiece& piece) const {
+    [[nodiscard]] Motion truth_of(const SyntheticFragment& piece) const {
         if (case_.kind != Case::Kind::member) return piece.pose;
         if (whole_.number_of_vertices() == other_.number_of_vertices()) {
             std::vector<Vector3d> from, to;
@@ -135,7 +135,7 @@ private:
         return align_part(piece.mesh, {}, surface_, piece.pose, {}, aligning).pose;
     }
 
-    void judge(const BrokenPiece& piece, double share, double noise, std::uint64_t seed, Count& count) const {
+    void judge(const SyntheticFragment& piece, double share, double noise, std::uint64_t seed, Count& count) const {
         const Vector3d middle = surface_centre(piece.mesh);
         const Motion truth = truth_of(piece);
         const double diagonal = box_diagonal(whole_);

@@ -45,11 +45,11 @@ namespace {
 
 /// Prints the decided joints; returns the number of decided and of right ones, and the largest relative rotation of decided
 /// ones.
-std::tuple<std::size_t, std::size_t, double> judge_joints(const std::vector<BreakJoint>& joints, const std::vector<Motion>& back,
-                                                          int round) {
+std::tuple<std::size_t, std::size_t, double> judge_joints(const std::vector<FractureJoint>& joints,
+                                                          const std::vector<Motion>& back, int round) {
     std::size_t decided = 0, right = 0;
     double worst = 0;
-    for (const BreakJoint& joint : joints) {
+    for (const FractureJoint& joint : joints) {
         const double off =
             degrees_of(back[static_cast<std::size_t>(joint.first)].inverse().after(back[static_cast<std::size_t>(joint.second)]));
         fmt::print(stderr,
@@ -108,7 +108,7 @@ void sherd_rotations(const SherdOptions& options) {
         }
         const Motion common = fit_motion(from, to).inverse();
         const auto [decided, right, worst] =
-            judge_joints(result.rotations ? result.rotations->joints : std::vector<BreakJoint>(), back, round);
+            judge_joints(result.rotations ? result.rotations->joints : std::vector<FractureJoint>(), back, round);
         double degrees = 0, percent = 0, overlap = 0;
         for (std::size_t k = 0; k < given.size(); ++k) {
             const Motion off = common.after(back[k]);

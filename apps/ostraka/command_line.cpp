@@ -5,10 +5,10 @@
 #include "workbench.h"
 
 #include "ostraka/core/file.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/operations/table.h"
 
@@ -28,7 +28,7 @@ namespace ostraka::app {
 
 namespace {
 
-std::vector<std::string> words_of(const std::string& name) {
+std::vector<std::string> split_words(const std::string& name) {
     std::vector<std::string> words;
     std::istringstream stream(name);
     for (std::string word; stream >> word;) words.push_back(word);
@@ -157,7 +157,7 @@ const OperationEntry* named_operation(const std::vector<std::string>& arguments)
     std::size_t maximum = 0, max_matching = 0;
     std::vector<std::string> next_words;  // possible next words
     for (const OperationEntry& entry : operations()) {
-        const auto words = words_of(entry.name);
+        const auto words = split_words(entry.name);
         std::size_t matching = 0;
         while (matching < words.size() && matching < command_words.size() && words[matching] == command_words[matching])
             ++matching;
@@ -456,7 +456,7 @@ int run_command_line(int argc, char** argv) {
     };
     for (const OperationEntry& entry : operations()) {
         CLI::App* parent = &tool;
-        const auto parts = words_of(entry.name);
+        const auto parts = split_words(entry.name);
         std::string path;
         for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
             path += (path.empty() ? "" : " ") + parts[i];
@@ -480,7 +480,7 @@ int run_command_line(int argc, char** argv) {
     }
     tool.add_subcommand("workbench", workbench_help);
     if (call) {
-        const auto after_command = arguments.begin() + static_cast<long>(words_of(call->entry().name).size());
+        const auto after_command = arguments.begin() + static_cast<long>(split_words(call->entry().name).size());
         const std::vector<std::string> checked = checked_words(*call, {after_command, arguments.end()});
         arguments.erase(after_command, arguments.end());
         arguments.insert(arguments.end(), checked.begin(), checked.end());

@@ -1,7 +1,7 @@
 #include "command_line.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <csignal>
 #include <cstdlib>
@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
         return app::run_command_line(argc, argv);
     } catch (const Error& error) {
         std::cerr << "ostraka: " << printable(error.what()) << '\n';
-        // All outputs are undone; detached work of other libraries may still be running (core/run_apart.h).
+        // All outputs are undone; detached work of other libraries may still be running (core/run_interruptibly.h).
         if (error.kind() == ErrorKind::cancelled) std::_Exit(app::cancelled);
         return error.kind() == ErrorKind::usage ? app::wrong_usage : app::failed;
     } catch (const std::bad_alloc&) {

@@ -5,8 +5,8 @@
 #include "signals.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 #include "ostraka/workbench/server.h"
 
 #include <fmt/core.h>

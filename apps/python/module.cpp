@@ -4,9 +4,9 @@
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 #include "ostraka/operation/operation.h"
 #include "ostraka/operations/table.h"
 

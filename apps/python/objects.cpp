@@ -5,7 +5,7 @@
 
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"

@@ -32,7 +32,7 @@ struct Held {
 /// A unique in-memory file name; its folder is removed on destruction.
 struct InMemory {
     explicit InMemory(const std::string& name) : folder("memory:.python-" + std::to_string(++count)), file(folder / name) {}
-    ~InMemory() { forget_memory(folder); }
+    ~InMemory() { remove_memory_files(folder); }
     InMemory(const InMemory&) = delete;
     InMemory& operator=(const InMemory&) = delete;
     static inline std::atomic<std::size_t> count{0};

@@ -5,10 +5,10 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <set>

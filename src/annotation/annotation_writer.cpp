@@ -20,13 +20,13 @@ JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
     JsonValue locations = json_list(measure.locations, allocator, [&](const SurfacePoint& location) {
         return json_object(allocator, "face", location.element[0], "barycentric", numbers_of(location.weights, allocator));
     });
-    add_given(object, allocator, "locations", std::move(locations));
+    add_nonempty_members(object, allocator, "locations", std::move(locations));
     if (measure.direction) add_member(object, "direction", numbers_of(*measure.direction, allocator), allocator);
     if (measure.exact) add_member(object, "geodesic", "exact", allocator);
-    add_given(object, allocator, "repeats", measure.repeats);
+    add_nonempty_members(object, allocator, "repeats", measure.repeats);
     if (measure.value) add_member(object, "value", json_number(*measure.value), allocator);
     if (measure.uncertainty) add_member(object, "uncertainty", json_number(*measure.uncertainty), allocator);
-    add_given(object, allocator, "unit", measure.unit, "stale", measure.stale);
+    add_nonempty_members(object, allocator, "unit", measure.unit, "stale", measure.stale);
     return object;
 }
 
@@ -35,7 +35,7 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
     switch (attribute.type) {
         case AttributeType::semantic:
             add_members(object, allocator, "type", "semantic", "note", attribute.note);
-            add_given(object, allocator, "origin", attribute.origin);
+            add_nonempty_members(object, allocator, "origin", attribute.origin);
             break;
         case AttributeType::measure:
             add_members(object, allocator, "type", "measure", "measure", json_of(attribute.measure, allocator));
@@ -45,8 +45,8 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
             add_member(object, "type", "descriptor", allocator);
             if (descriptor.is_list) add_member(object, "value", numbers_of(descriptor.values, allocator), allocator);
             else if (!descriptor.values.empty()) add_member(object, "value", json_number(descriptor.values.front()), allocator);
-            add_given(object, allocator, "file", descriptor.file, "sha256", descriptor.sha256, "unit", descriptor.unit, "stale",
-                      descriptor.stale);
+            add_nonempty_members(object, allocator, "file", descriptor.file, "sha256", descriptor.sha256, "unit", descriptor.unit,
+                                 "stale", descriptor.stale);
             break;
         }
     }
@@ -109,15 +109,15 @@ JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAl
     if (annotation.type == AnnotationType::region) {
         add_members(object, allocator, "boundaries", parts.outlines);
         if (annotation.all) add_member(object, "all", JsonValue(true), allocator);
-        add_given(object, allocator, "seeds", parts.seeds);
+        add_nonempty_members(object, allocator, "seeds", parts.seeds);
         if (!parts.complete && !is_free(annotation)) add_members(object, allocator, "faces", annotation.faces);
     }
-    add_given(object, allocator, "note", annotation.note);
+    add_nonempty_members(object, allocator, "note", annotation.note);
     if (!annotation.information.empty())
         add_members(object, allocator, "information", json_list(annotation.information, allocator, [&](const Information& one) {
                         JsonValue entry = json_object(allocator, "kind", to_string(one.kind), "value", one.value);
-                        add_given(entry, allocator, "title", one.title);
-                        add_given(entry, allocator, "sha256", one.sha256);
+                        add_nonempty_members(entry, allocator, "title", one.title);
+                        add_nonempty_members(entry, allocator, "sha256", one.sha256);
                         return entry;
                     }));
     add_members(object, allocator, "attributes",
@@ -133,11 +133,11 @@ Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::
     auto& allocator = document.GetAllocator();
     if (any_free(set)) document["version"] = 2;
     JsonValue made_for(rapidjson::kObjectType);
-    add_given(made_for, allocator, "file", Path(mesh_file).filename().string());
+    add_nonempty_members(made_for, allocator, "file", Path(mesh_file).filename().string());
     add_members(made_for, allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
                 mesh_checksum(mesh));
     add_members(document, allocator, "mesh", std::move(made_for));
-    add_given(document, allocator, "unit", set.unit, "class", set.object_class);
+    add_nonempty_members(document, allocator, "unit", set.unit, "class", set.object_class);
     if (set.up) add_member(document, "up", numbers_of(*set.up, allocator), allocator);
     std::vector<RegionParts> parts(set.annotations.size());
     parallel_for(

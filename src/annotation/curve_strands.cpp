@@ -45,8 +45,10 @@ Places turned_to_junction(const Places& curve, const std::set<SurfacePoint>& jun
 
 }  // namespace
 
-std::vector<std::vector<std::vector<StrandUse>>> take_apart(const Mesh& mesh, const std::vector<std::vector<Places>>& curves,
-                                                            const std::vector<bool>& chosen, std::vector<CurveStrand>& strands) {
+std::vector<std::vector<std::vector<StrandUse>>> separate_nonmanifold(const Mesh& mesh,
+                                                                      const std::vector<std::vector<Places>>& curves,
+                                                                      const std::vector<bool>& chosen,
+                                                                      std::vector<CurveStrand>& strands) {
     const std::set<SurfacePoint> junctions = find_junctions(mesh, curves, chosen);
     std::map<Places, std::size_t> known;
     const auto use_of = [&](Places piece) {

@@ -137,7 +137,7 @@ private:
         for (const bool regions : {true, false}) {
             std::vector<bool> chosen;
             for (const Annotation* annotation : annotations) chosen.push_back(is_region(*annotation) == regions);
-            auto uses = take_apart(mesh_, curves, chosen, found);
+            auto uses = separate_nonmanifold(mesh_, curves, chosen, found);
             for (std::size_t i = 0; i < curves.size(); ++i)
                 if (chosen[i]) uses_[i] = std::move(uses[i]);
         }

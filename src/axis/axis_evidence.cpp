@@ -1,7 +1,7 @@
 // Evidence of one part on an axis.
 #include "ostraka/axis/axis_evidence.h"
 
-#include "turned_profile.h"
+#include "revolved_profile.h"
 
 #include "ostraka/core/dense.h"
 
@@ -13,7 +13,7 @@ namespace ostraka {
 
 using namespace detail;
 
-struct AxisWitness::State {
+struct AxisEvidenceEvaluator::State {
     Vector3d centroid = Vector3d::Zero();
     double scale = 1, area = 0, tolerance = 0;
     std::vector<RoundSample> samples;
@@ -24,7 +24,7 @@ namespace {
 /// Effective number of independent samples among `count`: the variance of the means over patches of the wall (a bin of heights,
 /// as wide as high) is at least that of single samples divided by their number.
 double independent(const std::vector<RoundSample>& samples, const AxisGuess& guess, const AxisLine& line,
-                   const TurnedProfile& profile, const std::vector<double>& error, double count) {
+                   const RevolvedProfile& profile, const std::vector<double>& error, double count) {
     double lowest = 1e300, highest = -1e300;
     for (std::size_t i = 0; i < samples.size(); ++i)
         if (profile.bin_of[i] >= 0) lowest = std::min(lowest, profile.height[i]), highest = std::max(highest, profile.height[i]);
@@ -55,7 +55,7 @@ double independent(const std::vector<RoundSample>& samples, const AxisGuess& gue
 
 }  // namespace
 
-AxisWitness::AxisWitness(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options)
+AxisEvidenceEvaluator::AxisEvidenceEvaluator(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options)
     : state_(std::make_unique<State>()) {
     const AreaMoments moments = part_moments(mesh, faces, options);
     state_->area = moments.area;
@@ -64,15 +64,15 @@ AxisWitness::AxisWitness(const Mesh& mesh, const std::vector<Index>& faces, cons
     state_->tolerance = options.tolerance;
     state_->samples = take_samples(mesh, faces, options.smoothing, state_->centroid, state_->scale);
 }
-AxisWitness::~AxisWitness() = default;
-AxisWitness::AxisWitness(AxisWitness&&) noexcept = default;
+AxisEvidenceEvaluator::~AxisEvidenceEvaluator() = default;
+AxisEvidenceEvaluator::AxisEvidenceEvaluator(AxisEvidenceEvaluator&&) noexcept = default;
 
-bool AxisWitness::enough() const { return state_->samples.size() >= 12; }
-const Vector3d& AxisWitness::centroid() const { return state_->centroid; }
-double AxisWitness::area() const { return state_->area; }
-double AxisWitness::diagonal() const { return state_->scale; }
+bool AxisEvidenceEvaluator::enough() const { return state_->samples.size() >= 12; }
+const Vector3d& AxisEvidenceEvaluator::centroid() const { return state_->centroid; }
+double AxisEvidenceEvaluator::area() const { return state_->area; }
+double AxisEvidenceEvaluator::diagonal() const { return state_->scale; }
 
-AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
+AxisEvidence AxisEvidenceEvaluator::at(const AxisGuess& guess) const {
     const double scale = state_->scale;
     AxisEvidence evidence;
     const Vector3d along = guess.direction.normalized();
@@ -80,7 +80,7 @@ AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
     if (!enough()) return evidence;
     const auto& samples = state_->samples;
     const AxisLine line{(evidence.place - state_->centroid) / scale, along};
-    const TurnedProfile profile(samples, line);
+    const RevolvedProfile profile(samples, line);
     const AxisRefinement system(samples, line, profile, guess.u, guess.w);
     // Samples of a floor count by their normals alone.
     constexpr double max_sine = 0.2;

@@ -34,7 +34,7 @@ Axis axis_to_cut_along(const Mesh& mesh, const std::vector<Index>& faces, const 
 
 }  // namespace
 
-CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
+SlicedObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
     require_surface(mesh, faces);
     const auto box = bounding_box(mesh);
     Point through((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
@@ -42,23 +42,23 @@ CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const Cu
     if (options.direction) {
         const Axis axis = axis_to_cut_along(mesh, faces, options);
         if (!axis.found) {
-            CutObject unsliced;
+            SlicedObject unsliced;
             unsliced.reason = fmt::format("no {} axis to slice along: {}", to_string(*options.direction), axis.reason);
             return unsliced;
         }
-        if (options.direction == AxisMethod::skeleton) return cut_across(mesh, axis.lines.at(0), options.places.count, faces);
+        if (options.direction == AxisMethod::skeleton) return slice_across(mesh, axis.lines.at(0), options.places.count, faces);
         along = axis.direction * along < 0 ? -axis.direction : axis.direction;
         through = axis.point;
     }
     SliceFrame frame = slice_frame(through, along);
     const auto [low, high] = height_range(mesh, frame, faces);
     frame.origin = through + low * frame.normal;
-    CutObject cut = cut_parallel(mesh, frame, options.places.in(high - low), faces);
+    SlicedObject cut = slice_parallel(mesh, frame, options.places.in(high - low), faces);
     cut.lowest = 0, cut.highest = high - low;  // without the rounding of the origin
     return cut;
 }
 
-std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const CutObject& cut, bool by_shape,
+std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const SlicedObject& cut, bool by_shape,
                                         const AxisOptions& options) {
     std::vector<ComparedAxis> axes;
     const std::vector<Point> centres = cut.centres();

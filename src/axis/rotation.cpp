@@ -1,6 +1,6 @@
 // Axis of a surface of revolution from normals, refined on positions.
 #include "axis_methods.h"
-#include "turned_profile.h"
+#include "revolved_profile.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -18,7 +18,7 @@ namespace {
 
 using Sample = RoundSample;
 using Line = AxisLine;
-using Profile = TurnedProfile;
+using Profile = RevolvedProfile;
 using Refinement = AxisRefinement;
 
 Line line_of(const LineComplex& complex) {

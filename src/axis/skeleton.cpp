@@ -2,7 +2,7 @@
 #include "axis_methods.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/run_apart.h"
+#include "ostraka/core/run_interruptibly.h"
 #include "ostraka/geom/submesh.h"
 
 // The library orders the edges of its working mesh by their addresses, so that the result depends on its allocator. This one
@@ -182,8 +182,9 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const double scale = part_diagonal(mesh, piece);
     // The library's flow does not check for cancellation.
     using Job = std::pair<Mesh, Graph>;
-    const Graph graph =
-        run_apart_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) { job.second = skeleton_of(job.first); }).second;
+    const Graph graph = run_interruptibly_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) {
+                            job.second = skeleton_of(job.first);
+                        }).second;
     Axis axis;
     const std::vector<std::size_t> path = graph.points.empty() ? std::vector<std::size_t>() : longest_path(graph);
     double length = 0;

@@ -61,7 +61,7 @@ std::vector<ReadObject> readable(const Collection& collection, const std::vector
 
 /// Moves objects for which `reason_of` returns a reason to the outliers.
 template <class ReasonOf>
-void move_outliers(std::vector<ReadObject>& objects, std::vector<OddSpecimen>& outliers, ReasonOf&& reason_of) {
+void move_outliers(std::vector<ReadObject>& objects, std::vector<ShapeOutlier>& outliers, ReasonOf&& reason_of) {
     std::vector<ReadObject> kept;
     for (ReadObject& object : objects) {
         if (std::string reason = reason_of(object); !reason.empty())
@@ -71,7 +71,7 @@ void move_outliers(std::vector<ReadObject>& objects, std::vector<OddSpecimen>& o
     objects = std::move(kept);
 }
 
-void move_incomplete(std::vector<ReadObject>& objects, std::vector<OddSpecimen>& outliers) {
+void move_incomplete(std::vector<ReadObject>& objects, std::vector<ShapeOutlier>& outliers) {
     std::map<std::string, std::size_t> counts;
     for (const ReadObject& object : objects)
         for (const auto& [name, place] : object.places) ++counts[name];
@@ -91,7 +91,7 @@ void move_incomplete(std::vector<ReadObject>& objects, std::vector<OddSpecimen>&
     });
 }
 
-void move_other_units(std::vector<ReadObject>& objects, std::vector<OddSpecimen>& outliers) {
+void move_other_units(std::vector<ReadObject>& objects, std::vector<ShapeOutlier>& outliers) {
     std::map<std::string, std::size_t> counts;
     for (const ReadObject& object : objects) ++counts[object.unit];
     const auto usual_unit =
@@ -151,9 +151,9 @@ LandmarkShapes common_landmarks(const Collection& collection, const std::vector<
     return shapes;
 }
 
-std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes) {
+std::vector<ShapeOutlier> shape_outliers(const LandmarkShapes& shapes) {
     constexpr double times = 3, nearer = 0.5;
-    std::vector<OddSpecimen> outliers;
+    std::vector<ShapeOutlier> outliers;
     const std::size_t n = shapes.configurations.size();
     if (n < 3) return outliers;
     std::vector<double> sizes;
@@ -183,7 +183,7 @@ std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes) {
     return outliers;
 }
 
-LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<OddSpecimen>& outliers) {
+LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<ShapeOutlier>& outliers) {
     LandmarkShapes kept = shapes;
     kept.objects.clear();
     kept.labels.clear();

@@ -35,7 +35,7 @@ Heading heading_of(const std::string& text) {
     std::string unit(trimmed(text.substr(open + 1, text.size() - open - 2)));
     int power = 1;
     if (const std::size_t caret = unit.find('^'); caret != std::string::npos) {
-        if (const auto number = whole_of(unit.substr(caret + 1)); number && *number >= 1 && *number <= 3) {
+        if (const auto number = parse_int(unit.substr(caret + 1)); number && *number >= 1 && *number <= 3) {
             power = *number;
             unit.resize(caret);
         }
@@ -106,7 +106,7 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 }
 
 std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
-                                        const ResultStore& store, const TagWords* words, const std::string& words_checksum) {
+                                        const ResultStore& store, const TagMatcher* words, const std::string& words_checksum) {
     std::vector<std::string> key_parts{"measures", definitions.text};
     if (words != nullptr) key_parts.push_back("words " + words_checksum);
     return for_each_object(collection, store, key_parts, [&](const CollectionObject& object) {
@@ -150,7 +150,7 @@ MeasureTable read_measure_table(const Path& file) {
     const auto& headings = rows.front().cells;
     std::set<std::string> measure_names;
     for (std::size_t c = 1; c < headings.size(); ++c) {
-        const std::string name(trimmed(unguarded(headings[c])));
+        const std::string name(trimmed(unescape_formula(headings[c])));
         const std::string at = fmt::format("{}, line {}", file.string(), rows.front().line);
         if (name == "unit") {
             unit_column = c;
@@ -183,7 +183,7 @@ MeasureTable read_measure_table(const Path& file) {
         if (rows[r].cells.size() != headings.size())
             fail_input(at, fmt::format("there are {} cells for {} headings", rows[r].cells.size(), headings.size()),
                        "check the line for a missing separator");
-        const std::string name = unguarded(rows[r].cells[0]);
+        const std::string name = unescape_formula(rows[r].cells[0]);
         if (!names.insert(name).second)
             fail_input(at, fmt::format("the object '{}' occurs twice", name), "give one line per object");
         table.objects.push_back(name);

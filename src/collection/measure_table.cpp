@@ -1,7 +1,7 @@
 #include "ostraka/collection/measure_table.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>

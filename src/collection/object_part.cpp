@@ -3,13 +3,13 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/part.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/select/scalars.h"
-#include "ostraka/slicing/cut_object.h"
+#include "ostraka/slicing/sliced_object.h"
 
 #include <fmt/core.h>
 
@@ -28,14 +28,14 @@ struct Band {
 /// Maximum width of a neck, as a fraction of the largest widths below and above it.
 constexpr double max_neck = 0.8;
 
-Band find_tube(const CutObject& cut) {
+Band find_tube(const SlicedObject& cut) {
     const Tube tube = tubular_part(cut.stack(), cut.descriptors);
     if (!tube.found) fail_input("mesh", "no tubular part was found: " + tube.reason, "annotate the part and name it instead");
     const std::vector<double> heights = cut.sorted_heights();
     return {heights.at(tube.first), heights.at(tube.last)};
 }
 
-Band above_neck(const CutObject& cut) {
+Band above_neck(const SlicedObject& cut) {
     const std::size_t n = cut.slices.size();
     std::vector<double> radius(n), below(n, 0), above(n, 0);
     for (std::size_t i = 0; i < n; ++i)
@@ -111,7 +111,7 @@ void PartOptions::describe(OptionList& visit) {
           Choices{"none", "tube", "top", "segment"});
 }
 
-ObjectParts::ObjectParts(PartOptions options, TagWords words, std::string words_checksum)
+ObjectParts::ObjectParts(PartOptions options, TagMatcher words, std::string words_checksum)
     : options_(std::move(options)), words_(std::move(words)), checksum_(std::move(words_checksum)) {
     if (options_.proposed != PartOptions::Proposal::none && !(options_.annotations.empty() && options_.without.empty()))
         fail_usage("--proposed is given with --annotation or --without", "use either a detected part or an annotated one");
@@ -173,7 +173,7 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
         part.mesh = with_file_context(object.mesh, [&] {
             const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(up_direction[0], up_direction[1], up_direction[2]));
             const auto [lowest, highest] = height_range(file.mesh, frame);
-            const CutObject cut = cut_parallel(file.mesh, frame, slice_heights(lowest, highest, 100));
+            const SlicedObject cut = slice_parallel(file.mesh, frame, slice_heights(lowest, highest, 100));
             return cut_band(file.mesh, frame, options_.proposed == PartOptions::Proposal::tube ? find_tube(cut) : above_neck(cut),
                             origin);
         });

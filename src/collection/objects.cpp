@@ -2,10 +2,10 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 
@@ -217,8 +217,8 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
         const std::string at = fmt::format("{}, line {}", where, rows[i].line);
         if (cells.size() <= std::max(name_column, label_column))
             fail_input(at, "the row has too few cells", "give every row a cell for each column");
-        const std::string name = unguarded(std::string(trimmed(cells[name_column])));
-        if (!labels.emplace(name, unguarded(std::string(trimmed(cells[label_column])))).second)
+        const std::string name = unescape_formula(std::string(trimmed(cells[name_column])));
+        if (!labels.emplace(name, unescape_formula(std::string(trimmed(cells[label_column])))).second)
             fail_input(at, fmt::format("the object '{}' has two labels", without_controls(name, "?")), "remove one of them");
     }
     return labels;

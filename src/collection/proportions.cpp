@@ -230,7 +230,7 @@ std::string to_string(Fixedness fixedness) {
     return words[static_cast<std::size_t>(fixedness)];
 }
 
-std::string not_fixed_because(const RatioRow& ratio, double false_discoveries) {
+std::string reason_not_fixed(const RatioRow& ratio, double false_discoveries) {
     switch (ratio.fixedness) {
         case Fixedness::fixed:
             return "";

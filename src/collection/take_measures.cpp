@@ -34,14 +34,14 @@ struct MeasuredValue {
 std::pair<std::string, int> length_power(const std::string& unit) {
     const std::size_t caret = unit.find('^');
     if (caret == std::string::npos) return {unit, 1};
-    const std::optional<int> power = whole_of(unit.substr(caret + 1));
+    const std::optional<int> power = parse_int(unit.substr(caret + 1));
     return power && *power >= 1 && *power <= 3 ? std::pair(unit.substr(0, caret), *power) : std::pair(unit, 0);
 }
 
 /// The files of one object, read on demand.
 class MeasureReader {
 public:
-    MeasureReader(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagWords* words)
+    MeasureReader(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagMatcher* words)
         : mesh_(mesh), set_(set), landmarks_(landmarks), words_(words) {}
 
     MeasuredValue value_of(const MeasureDefinition& definition) {
@@ -100,7 +100,7 @@ private:
         const Annotation* annotation = find(tag);
         if (annotation == nullptr) {
             const std::size_t blank = tag.rfind(' ');
-            const std::optional<int> last = blank == std::string::npos ? std::nullopt : whole_of(tag.substr(blank + 1));
+            const std::optional<int> last = blank == std::string::npos ? std::nullopt : parse_int(tag.substr(blank + 1));
             if (last && *last >= 1) annotation = find(tag.substr(0, blank)), number = static_cast<std::size_t>(*last - 1);
         }
         if (annotation == nullptr) throw MissingMeasure{fmt::format("nothing is called '{}'", place.name)};
@@ -221,12 +221,12 @@ private:
     const Mesh* mesh_;
     const AnnotationSet* set_;
     const LandmarkSet* landmarks_;
-    const TagWords* words_;
+    const TagMatcher* words_;
     std::optional<ClayVolume> clay_;
 };
 
 ObjectMeasures measure_object(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks,
-                              const MeasureDefinitions& definitions, const TagWords* words) {
+                              const MeasureDefinitions& definitions, const TagMatcher* words) {
     ObjectMeasures result;
     MeasureReader reader(mesh, set, landmarks, words);
     for (const MeasureDefinition& definition : definitions.measures) {
@@ -266,7 +266,7 @@ bool needs_only_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions
 
 }  // namespace
 
-ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions, const TagWords* words) {
+ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions, const TagMatcher* words) {
     std::optional<LandmarkSet> landmarks;
     if (!object.landmarks.empty()) landmarks = read_landmarks(object.landmarks, LandmarkFormat::mrk);
     std::optional<MeshFile> file;
@@ -285,7 +285,7 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
 }
 
 ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
-                             const TagWords* words) {
+                             const TagMatcher* words) {
     ObjectMeasures result = measure_object(&mesh, &set, nullptr, definitions, words);
     result.unit = set.unit;
     return result;

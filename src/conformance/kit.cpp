@@ -1,8 +1,8 @@
 #include "ostraka/conformance/kit.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 #include <pugixml.hpp>

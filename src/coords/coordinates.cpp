@@ -5,8 +5,8 @@
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 

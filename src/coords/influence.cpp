@@ -11,9 +11,9 @@
 
 namespace ostraka {
 
-std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points, InfluenceBy by) {
+std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points, InfluenceMeasure by) {
     if (points.empty()) fail_input("points", "none are selected", "select at least one point");
-    const bool sum = by == InfluenceBy::sum;
+    const bool sum = by == InfluenceMeasure::sum;
     const WeightMatrix& W = coordinates.vertex;
     std::vector<double> result(static_cast<std::size_t>(W.cols()), sum ? 0 : -INFINITY);
     for (const Index i : points) {

@@ -228,8 +228,8 @@ WeightMatrix weights_of_level(const WeightMatrix& vertex, const std::vector<Cage
     return weights;
 }
 
-std::size_t level_that_holds(const WeightMatrix& vertex, const std::vector<Index>& points, const std::vector<CageLevel>& levels,
-                             const std::vector<WeightMatrix>& carrying) {
+std::size_t governing_level(const WeightMatrix& vertex, const std::vector<Index>& points, const std::vector<CageLevel>& levels,
+                            const std::vector<WeightMatrix>& carrying) {
     if (levels.size() < 2) return 0;
     WeightMatrix rows(static_cast<Eigen::Index>(points.size()), vertex.cols());
     for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = vertex.row(points[i]);

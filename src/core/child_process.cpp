@@ -164,7 +164,7 @@ void kill_children() {
     for (const int group : running_children().groups) ::kill(-group, SIGKILL);
 }
 
-Path own_program_folder() {
+Path executable_folder() {
     std::error_code code;
     const Path program = std::filesystem::read_symlink("/proc/self/exe", code);
     return code ? Path(".") : program.parent_path();

@@ -1,7 +1,7 @@
 #include "ostraka/core/cholesky.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/run_apart.h"
+#include "ostraka/core/run_interruptibly.h"
 
 #include <dlfcn.h>
 #include <suitesparse/cholmod.h>
@@ -149,15 +149,15 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
 
 }  // namespace
 
-/// Calls work(state, matrix). CHOLMOD cannot be interrupted: long calls use run_apart with a copy of the matrix. If cancelled,
-/// the factor is discarded.
+/// Calls work(state, matrix). CHOLMOD cannot be interrupted: long calls use run_interruptibly with a copy of the matrix. If
+/// cancelled, the factor is discarded.
 template <class Work>
 void SparseCholesky::work_on(const LowerTriangle& matrix, Work work) {
     constexpr Eigen::Index large = 20000;
     if (matrix.rows() < large) return work(*state_, matrix);
     using Job = std::pair<std::unique_ptr<State>, LowerTriangle>;
     try {
-        Job job = run_apart_on(Job(std::move(state_), matrix), [work](Job& data) { work(*data.first, data.second); });
+        Job job = run_interruptibly_on(Job(std::move(state_), matrix), [work](Job& data) { work(*data.first, data.second); });
         state_ = std::move(job.first);
     } catch (...) {
         state_ = std::make_unique<State>();

@@ -38,8 +38,8 @@ bool dangerous(std::string_view text) {
     return false;
 }
 
-/// Whether `guarded` adds an apostrophe. Any number of apostrophes may precede the dangerous text, so that `unguarded` is the
-/// inverse.
+/// Whether `escape_formula` adds an apostrophe. Any number of apostrophes may precede the dangerous text, so that
+/// `unescape_formula` is the inverse.
 bool needs_guard(std::string_view text) {
     const std::size_t first = text.find_first_not_of('\'');
     return first != std::string_view::npos && dangerous(text.substr(first));
@@ -47,9 +47,9 @@ bool needs_guard(std::string_view text) {
 
 }  // namespace
 
-std::string guarded(const std::string& text) { return needs_guard(text) ? "'" + text : text; }
+std::string escape_formula(const std::string& text) { return needs_guard(text) ? "'" + text : text; }
 
-std::string unguarded(const std::string& text) {
+std::string unescape_formula(const std::string& text) {
     return text.size() > 1 && text.front() == '\'' && needs_guard(std::string_view(text).substr(1)) ? text.substr(1) : text;
 }
 
@@ -58,7 +58,7 @@ std::string csv_row(const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (i > 0) row += ',';
         const std::string cell =
-            number_of(cells[i]) && trimmed(cells[i]).size() == cells[i].size() ? cells[i] : guarded(cells[i]);
+            number_of(cells[i]) && trimmed(cells[i]).size() == cells[i].size() ? cells[i] : escape_formula(cells[i]);
         const bool has_outer_blank = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ');
         const bool quoted = has_outer_blank || cell.find_first_of(",;\"\r\n\t'") != std::string::npos;
         if (!quoted) {

@@ -207,7 +207,7 @@ Path resolve_links(Path file) {
 
 bool is_memory(const Path& file) { return file.native().starts_with("memory:"); }
 
-void forget_memory(const Path& file) {
+void remove_memory_files(const Path& file) {
     memory_files().remove(file);
     for (const std::string& name : memory_files().below(file)) memory_files().remove(file / name);
 }

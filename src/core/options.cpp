@@ -1,9 +1,9 @@
 #include "ostraka/core/options.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 

@@ -90,7 +90,7 @@ std::string_view line_at(std::string_view text, std::size_t& position) {
     return text.substr(begin, end - begin);
 }
 
-std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks) {
+std::vector<std::string_view> split_words(std::string_view text, std::string_view blanks) {
     std::vector<std::string_view> words;
     for (std::size_t end = 0, begin = 0; (begin = text.find_first_not_of(blanks, end)) != std::string_view::npos;) {
         end = std::min(text.find_first_of(blanks, begin), text.size());
@@ -108,7 +108,7 @@ std::optional<double> number_of(std::string_view text) {
     return value;
 }
 
-std::optional<int> whole_of(std::string_view text) {
+std::optional<int> parse_int(std::string_view text) {
     text = trimmed(text);
     int value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

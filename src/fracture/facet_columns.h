@@ -72,6 +72,6 @@ double area_quantile(const std::vector<double>& values, const std::vector<double
 inline double feature_level(double x) { return std::log10(1e-4 + x); }
 
 /// Means of patch values over the samples around each patch with similar normals.
-std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values);
+std::vector<double> neighbourhood_means(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values);
 
 }  // namespace ostraka

@@ -23,7 +23,7 @@ public:
         columns_.add("log odds", [&](std::size_t p) { return odds_[p]; });
         columns_.add("rank of log odds", [&](std::size_t p) { return rank[p]; });
         for (const std::size_t s : {std::size_t{0}, std::size_t{2}}) {
-            const std::vector<double> mean = mean_about(evidence_, s + 1, likely_);
+            const std::vector<double> mean = neighbourhood_means(evidence_, s + 1, likely_);
             columns_.add("likely about, at " + std::to_string(s + 1), [&](std::size_t p) { return mean[p]; });
         }
         const double mean = std::inner_product(likely_.begin(), likely_.end(), graph_.areas.begin(), 0.0) / graph_.area;
@@ -34,7 +34,7 @@ public:
         std::vector<double> behind(n, -1);
         for (std::size_t p = 0; p < n; ++p)
             if (evidence_.walls.behind[p] != no_index) behind[p] = likely_[evidence_.walls.behind[p]];
-        const std::vector<double> behind_about = mean_about(evidence_, 1, behind);
+        const std::vector<double> behind_about = neighbourhood_means(evidence_, 1, behind);
         columns_.add("likely behind", [&](std::size_t p) { return behind_about[p]; });
         parts("part", evidence_.parts[0]);
         parts("small part", evidence_.parts[1]);

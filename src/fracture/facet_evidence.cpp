@@ -157,7 +157,7 @@ private:
 
     /// Relief finer than the patches, or noise of the scan.
     void ruffle() {
-        std::vector<double> ruffle = mean_about(evidence_, 1, graph_.ruffle);
+        std::vector<double> ruffle = neighbourhood_means(evidence_, 1, graph_.ruffle);
         for (double& value : ruffle) value = feature_level(value);
         const double usual = area_quantile(ruffle, graph_.areas, 0.5);
         const std::vector<double> rank = area_ranks(ruffle, graph_.areas);
@@ -169,7 +169,7 @@ private:
 
     [[nodiscard]] std::vector<double> averaged(const std::vector<double>& values, std::size_t s) const {
         const std::size_t larger = std::min<std::size_t>(s + 1, 2);
-        return mean_about(evidence_, larger, values);
+        return neighbourhood_means(evidence_, larger, values);
     }
 
     [[nodiscard]] bool over_wall(std::size_t p) const {
@@ -313,7 +313,7 @@ private:
 
 FeatureColumns measure(const Mesh& mesh, FacetEvidence& evidence) {
     evidence.graph = facet_graph(mesh);
-    evidence.walls = walls_under(mesh, evidence.graph);
+    evidence.walls = measure_walls(mesh, evidence.graph);
     evidence.samples = patch_samples(mesh, evidence.graph);
     evidence.around = neighbourhoods(evidence.graph, evidence.samples);
     evidence.parts = {convex_parts(evidence.graph, 40 * degree), convex_parts(evidence.graph, 25 * degree)};

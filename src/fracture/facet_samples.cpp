@@ -56,7 +56,7 @@ std::array<Neighbourhoods, scale_count> neighbourhoods(const FacetGraph& graph, 
     return result;
 }
 
-std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values) {
+std::vector<double> neighbourhood_means(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values) {
     const FacetGraph& graph = evidence.graph;
     const Neighbourhoods& around = evidence.around[scale];
     std::vector<double> result(values.size());

@@ -12,7 +12,7 @@
 
 namespace ostraka {
 
-Walls walls_under(const Mesh& mesh, const FacetGraph& graph) {
+Walls measure_walls(const Mesh& mesh, const FacetGraph& graph) {
     const SurfaceSearch search(mesh);
     const double diagonal = search.diagonal();
     constexpr int count = 7;

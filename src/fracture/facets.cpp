@@ -3,7 +3,7 @@
 #include "facet_sides.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/submesh.h"
 
 #include <algorithm>
@@ -181,7 +181,7 @@ double Facets::area(Facet facet) const {
     return sum;
 }
 
-std::string to_string(Facets::Answer answer) { return word_for(answer, {"broken", "whole", "unclear"}); }
+std::string to_string(Facets::Answer answer) { return enum_name(answer, {"broken", "whole", "unclear"}); }
 
 Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds,
                    const FacetOptions& options) {

@@ -1,7 +1,7 @@
 #include "ostraka/fracture/fragment.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/eigen.h"
 
 #include <fmt/core.h>
@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-std::string to_string(Facet facet) { return word_for(facet, {"outer", "inner", "fracture"}); }
+std::string to_string(Facet facet) { return enum_name(facet, {"outer", "inner", "fracture"}); }
 
 std::optional<Facet> named_facet(const Annotation& annotation) {
     if (annotation.type != AnnotationType::region) return std::nullopt;
@@ -47,7 +47,7 @@ Mesh moved(const Mesh& mesh, const Motion& motion) {
     return result;
 }
 
-std::vector<bool> not_broken(const std::vector<Facet>& facets) {
+std::vector<bool> intact_faces(const std::vector<Facet>& facets) {
     std::vector<bool> marks(facets.size());
     for (std::size_t f = 0; f < marks.size(); ++f) marks[f] = facets[f] != Facet::fracture;
     return marks;

@@ -1,9 +1,9 @@
 #include "ostraka/fracture/join_evidence.h"
 
-#include "break_parts.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/summary.h"
+#include "prepared_fracture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ struct Contact {
     double area = 0, could = 0, square = 0, facing = 0;
 };
 
-Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
+Contact contact(const PreparedFracture::Parts& on, const PreparedFracture::Parts& from, const Motion& pose, double tolerance,
                 std::size_t max_samples) {
     Contact result;
     const SurfaceSamples& samples = from.side.fracture;
@@ -48,7 +48,7 @@ Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from
 }
 
 /// Area of `from` that lies deeper inside `on` than the tolerance.
-void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
+void penetrate(const PreparedFracture::Parts& on, const PreparedFracture::Parts& from, const Motion& pose, double tolerance,
                std::size_t max_samples, double& area, double& depth) {
     const auto add_samples = [&](const SurfaceSamples& samples) {
         const std::size_t count = std::min<std::size_t>({600, max_samples / 3, samples.places.size()});
@@ -120,7 +120,7 @@ double surface_noise(const SurfaceSamples& intact) {
     return residuals.empty() ? 0 : upper_median(std::move(residuals));
 }
 
-double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose) {
+double common_axis_deviation(const PreparedFracture::Parts& a, const PreparedFracture::Parts& b, const Motion& pose) {
     Motion about_middles = pose;
     about_middles.translation = pose(b.middle) - a.middle;
     LineComplex joint_lines = b.lines.moved(about_middles);
@@ -129,9 +129,9 @@ double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts
     return std::sqrt(std::max(0.0, both * both - alone));
 }
 
-JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
+JoinEvidence measure_join(const PreparedFracture& first, const PreparedFracture& second, const Motion& pose, double tolerance,
                           std::size_t samples) {
-    const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
+    const PreparedFracture::Parts &a = first.parts(), &b = second.parts();
     JoinEvidence evidence;
     const Motion back = pose.inverse();
     const Contact on_a = contact(a, b, pose, tolerance, samples), on_b = contact(b, a, back, tolerance, samples);
@@ -206,14 +206,14 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     evidence.noise = std::hypot(a.noise, b.noise) / tolerance;
     evidence.edge = std::max(a.edge, b.edge) / tolerance;
     evidence.roughness = std::min(a.relief, b.relief) / tolerance;
-    evidence.axis = off_common_axis(a, b, pose) / std::min(a.size, b.size);
+    evidence.axis = common_axis_deviation(a, b, pose) / std::min(a.size, b.size);
     evidence.own_axis = std::hypot(a.off_axis, b.off_axis) / std::min(a.size, b.size);
     return evidence;
 }
 
-std::vector<ContactPoint> contact_points(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose,
+std::vector<ContactPoint> contact_points(const PreparedFracture& first, const PreparedFracture& second, const Motion& pose,
                                          double search_radius, std::size_t samples) {
-    const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
+    const PreparedFracture::Parts &a = first.parts(), &b = second.parts();
     std::vector<ContactPoint> result;
     const SurfaceSamples& from = b.side.fracture;
     const std::size_t count = std::min(samples, from.places.size());

@@ -56,7 +56,7 @@ double join_probability(double log_odds, double lead) {
            (1 + std::exp(-(model.pair[0] + model.pair[1] * log_odds + model.pair[2] * std::clamp(lead, -max_lead, max_lead))));
 }
 
-double log_odds_of_a_join_among(std::size_t fragments) {
+double join_log_odds_correction(std::size_t fragments) {
     constexpr double neighbours = 4;  // of a sherd, about
     const double usual = join_model().joined,
                  joined_share = std::min(usual, neighbours / std::max(1.0, static_cast<double>(fragments) - 1));
@@ -74,7 +74,7 @@ std::string weakest_evidence(const JoinEvidence& evidence) {
     std::size_t worst = 0;
     const auto below = [&](std::size_t k) { return (model.usual[k] - features[k]) / model.spread[k]; };
     for (std::size_t k = 1; k < features.size(); ++k)
-        if (JoinEvidence::of_the_join(k) && below(k) > below(worst)) worst = k;
+        if (JoinEvidence::is_join_feature(k) && below(k) > below(worst)) worst = k;
     return fmt::format("there is too little evidence of \"{}\"", JoinEvidence::names()[worst]);
 }
 

@@ -1,7 +1,7 @@
 // Matching stretches of two rims.
 #pragma once
 
-#include "break_side.h"
+#include "fracture_side.h"
 
 namespace ostraka {
 

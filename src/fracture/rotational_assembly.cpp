@@ -69,8 +69,8 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
     return result;
 }
 
-RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
-                     const std::vector<bool>& side, int steps) {
+RotationLead rotation_lead(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
+                           const std::vector<bool>& side, int steps) {
     RotationLead lead;
     double tolerance = 0;
     std::vector<std::pair<std::size_t, std::size_t>> across;

@@ -57,12 +57,12 @@ private:
             sherd.mesh = moved(fragment.mesh, pose);
             try {
                 const double radius = 0.04 * fragment_size(fragment.mesh);
-                sherd.side = BreakSide(fragment, radius, options_.frames, options_.samples).moved(pose);
+                sherd.side = FractureSide(fragment, radius, options_.frames, options_.samples).moved(pose);
                 walls.push_back(2 * sherd.side.fracture.area / sherd.side.rim_length);
             } catch (const Error& error) {  // without a fracture it meets nothing, but it covers area
                 if (error.kind() != ErrorKind::input) throw;
                 result_.notes[k] = "has no fracture surface that could meet another one";
-                sherd.side = BreakSide();
+                sherd.side = FractureSide();
             }
         }
         if (walls.empty()) return;
@@ -109,7 +109,7 @@ private:
     /// The joints of the assembly; the maximum spanning tree of them carries it.
     void join(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
-        std::vector<std::pair<double, BreakJoint>> scored_joints;
+        std::vector<std::pair<double, FractureJoint>> scored_joints;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 1; j < n; ++j) {
                 if (!assembly_.joined[i] || !assembly_.joined[j]) continue;
@@ -117,7 +117,7 @@ private:
                 const RotationPair& pair = pairs_->at(i, j);
                 const MeetingRotation* meeting = pair.meeting(rotation);
                 if (meeting == nullptr || !(pair.value(rotation) > 0)) continue;
-                BreakJoint joint;
+                FractureJoint joint;
                 joint.first = static_cast<int>(i), joint.second = static_cast<int>(j);
                 scored_joints.emplace_back(pair.value(rotation), joint);
             }
@@ -133,16 +133,16 @@ private:
             result_.joints.push_back(joint);
         }
         std::stable_sort(result_.joints.begin(), result_.joints.end(),
-                         [](const BreakJoint& x, const BreakJoint& y) { return x.carries > y.carries; });
-        for (BreakJoint& joint : result_.joints)
+                         [](const FractureJoint& x, const FractureJoint& y) { return x.carries > y.carries; });
+        for (FractureJoint& joint : result_.joints)
             if (joint.carries) decide(joint, fixed);
-        for (const BreakJoint& joint : result_.joints)
+        for (const FractureJoint& joint : result_.joints)
             if (joint.decided) groups.unite(static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second));
         for (std::size_t k = 0; k < n; ++k) result_.group.push_back(static_cast<int>(groups.find(k)));
     }
 
     /// Rotates all sherds connected to the second sherd against all others.
-    void decide(BreakJoint& joint, const std::vector<bool>& fixed) {
+    void decide(FractureJoint& joint, const std::vector<bool>& fixed) {
         std::vector<bool> side(given_.size(), false);
         side[static_cast<std::size_t>(joint.second)] = true;
         for (bool grown = true; grown;) {
@@ -154,13 +154,13 @@ private:
             }();
             for (std::size_t k = 0; k < side.size(); ++k)
                 if (anchored && fixed[k] && !side[k]) side[k] = grown = true;
-            for (const BreakJoint& other : result_.joints) {
+            for (const FractureJoint& other : result_.joints) {
                 if (!other.carries || &other == &joint) continue;
                 const auto a = static_cast<std::size_t>(other.first), b = static_cast<std::size_t>(other.second);
                 if (side[a] != side[b]) side[a] = side[b] = grown = true;
             }
         }
-        const RotationLead lead = lead_of(*pairs_, assembly_.rotations, assembly_.joined, side, steps_);
+        const RotationLead lead = rotation_lead(*pairs_, assembly_.rotations, assembly_.joined, side, steps_);
         double fracture[2] = {0, 0};
         for (std::size_t k = 0; k < side.size(); ++k)
             if (assembly_.joined[k]) fracture[side[k] ? 1 : 0] += sherds_[k].side.fracture.area;
@@ -201,7 +201,7 @@ private:
             note += overlap > little ? "; it overlaps other sherds at every rotation"
                                      : "; it is placed where it overlaps no other sherd";
         }
-        std::erase_if(result_.joints, [&](const BreakJoint& joint) {
+        std::erase_if(result_.joints, [&](const FractureJoint& joint) {
             return !assembly_.joined[static_cast<std::size_t>(joint.first)] ||
                    !assembly_.joined[static_cast<std::size_t>(joint.second)];
         });
@@ -215,21 +215,21 @@ private:
         for (int sweep = 0; sweep < sweeps; ++sweep)
             for (std::size_t k = 0; k < n; ++k) {
                 if (fixed[k] || k == anchor || sherds_[k].side.frames.empty()) continue;
-                BreakSide joined_side;
-                for (const BreakJoint& joint : result_.joints) {
+                FractureSide joined_side;
+                for (const FractureJoint& joint : result_.joints) {
                     const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
                     if (a != k && b != k) continue;
                     const std::size_t q = a == k ? b : a;
                     if (result_.group[q] != result_.group[k]) continue;
-                    const BreakSide side = sherds_[q].side.moved(motions_[q]);
+                    const FractureSide side = sherds_[q].side.moved(motions_[q]);
                     joined_side.frames.insert(joined_side.frames.end(), side.frames.begin(), side.frames.end());
                     auto& target = joined_side.fracture;
                     target.places.insert(target.places.end(), side.fracture.places.begin(), side.fracture.places.end());
                     target.normals.insert(target.normals.end(), side.fracture.normals.begin(), side.fracture.normals.end());
                 }
                 if (joined_side.frames.empty()) continue;
-                const BreakTrees trees(Mesh(), joined_side);
-                const BreakAligner aligner(trees.target(), sherds_[k].side, wall_, 0.5 * wall_, 1);
+                const FractureTrees trees(Mesh(), joined_side);
+                const FractureAligner aligner(trees.target(), sherds_[k].side, wall_, 0.5 * wall_, 1);
                 // Starts from the rotation alone, so that offsets do not accumulate over the sweeps.
                 const double rotation = rotation_about_axis(motions_[k]);
                 motions_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
@@ -238,10 +238,10 @@ private:
 
     void measure() {
         const std::size_t n = given_.size();
-        for (BreakJoint& joint : result_.joints) {
+        for (FractureJoint& joint : result_.joints) {
             const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
-            const BreakTrees trees(sherds_[a].mesh, sherds_[a].side);
-            const BreakAligner aligner(trees.target(), sherds_[b].side, wall_, 0.5 * wall_, 1);
+            const FractureTrees trees(sherds_[a].mesh, sherds_[a].side);
+            const FractureAligner aligner(trees.target(), sherds_[b].side, wall_, 0.5 * wall_, 1);
             const PairCandidate fit =
                 aligner.judge(motions_[a].inverse().after(motions_[b]), static_cast<std::size_t>(options_.samples), 0.6);
             joint.rotation = 180 / pi * wrapped(rotation_about_axis(motions_[b]) - rotation_about_axis(motions_[a]));

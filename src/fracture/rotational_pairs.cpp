@@ -103,8 +103,8 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     if (tops.size() > static_cast<std::size_t>(options.candidates)) tops.resize(static_cast<std::size_t>(options.candidates));
     if (tops.empty()) return pair;
 
-    const BreakTrees trees(a.mesh, a.side);
-    const BreakAligner aligner(trees.target(), b.side, wall, 0.5 * wall, 1);
+    const FractureTrees trees(a.mesh, a.side);
+    const FractureAligner aligner(trees.target(), b.side, wall, 0.5 * wall, 1);
     const double area = std::min(a.side.fracture.area, b.side.fracture.area);
     std::vector<MeetingRotation> meetings(tops.size());
     parallel_for(

@@ -1,7 +1,7 @@
 // Pairwise scores of sherds of a vessel over their relative rotations, and the rotations of all sherds at once.
 #pragma once
 
-#include "break_align.h"
+#include "fracture_align.h"
 #include "ostraka/fracture/rotational_matching.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -48,7 +48,7 @@ private:
 /// A sherd in the frame whose vertical axis through the origin is the vessel's axis.
 struct UprightSherd {
     Mesh mesh;
-    BreakSide side;     ///< without fracture: it meets no other sherd
+    FractureSide side;  ///< without fracture: it meets no other sherd
     double radius = 0;  ///< root mean square distance from the axis
     std::unique_ptr<RotationMap> map;
 };
@@ -119,8 +119,8 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
 struct RotationLead {
     double current = 0, best_other = 0;
 };
-RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
-                     const std::vector<bool>& side, int steps);
+RotationLead rotation_lead(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
+                           const std::vector<bool>& side, int steps);
 
 /// The rotation of one sherd at which it overlaps least with the others that count.
 double least_shared_rotation(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,

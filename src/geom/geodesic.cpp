@@ -3,7 +3,7 @@
 #include "exact_search.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/run_apart.h"
+#include "ostraka/core/run_interruptibly.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
@@ -63,7 +63,7 @@ auto searched(SurfacePatch patch, Search search) {
     const auto work = [search](Job& job) { job.second = search(job.first); };
     constexpr std::size_t large = 20000;
     Job job(std::move(patch), {});
-    if (job.first.faces.size() >= large) return run_apart_on(std::move(job), work);
+    if (job.first.faces.size() >= large) return run_interruptibly_on(std::move(job), work);
     work(job);
     return job;
 }

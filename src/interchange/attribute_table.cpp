@@ -95,10 +95,10 @@ private:
     [[nodiscard]] std::string cell(const std::string& column) const {
         const auto column_entry = columns_.find(column);
         if (column_entry == columns_.end() || column_entry->second >= row_->cells.size()) return {};
-        return as_utf8(unguarded(row_->cells[column_entry->second]));
+        return as_utf8(unescape_formula(row_->cells[column_entry->second]));
     }
     [[nodiscard]] int integer_cell(const std::string& column) const {
-        const auto value = whole_of(cell(column));
+        const auto value = parse_int(cell(column));
         if (!value)
             fail(column, fmt::format("'{}' is not a whole number", one_line(cell(column)).substr(0, 40)), "correct the cell");
         return *value;
@@ -106,7 +106,7 @@ private:
     [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
     [[nodiscard]] std::vector<double> numbers(const std::string& column, const std::string& text) const {
         std::vector<double> values;
-        for (const std::string_view word : words_of(text)) {
+        for (const std::string_view word : split_words(text)) {
             const auto value = number_of(word);
             if (!value)
                 fail(column, fmt::format("'{}' is not a number", one_line(word.substr(0, 40))),

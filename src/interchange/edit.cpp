@@ -9,8 +9,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
-#include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
 #include <fmt/core.h>

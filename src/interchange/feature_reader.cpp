@@ -11,8 +11,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
 #include <fmt/core.h>
@@ -181,7 +181,7 @@ private:
             notes_.push_back(fmt::format("'{}' could not be placed on this mesh and was left out", one_line(placement.tag)));
             return {};
         }
-        if (row < file_.remarks.size()) add_given(result, a(), "note", file_.remarks[row]);
+        if (row < file_.remarks.size()) add_nonempty_members(result, a(), "note", file_.remarks[row]);
         JsonValue attributes(rapidjson::kArrayType);
         if (row < file_.attributes.size()) {
             const Json parsed = parse_json(file_.attributes[row], fmt::format("{}, attributes of feature {}", where_, row));
@@ -258,7 +258,7 @@ private:
                 for (const auto& picked : list_in(measure, "repeats"))
                     if (const auto mapped = mapped_vertices(&picked)) mapped_repeats.push_back(*mapped);
                 for (const char* name : {"points", "locations", "stale", "repeats"}) measure.RemoveMember(name);
-                add_given(measure, a(), "repeats", mapped_repeats);
+                add_nonempty_members(measure, a(), "repeats", mapped_repeats);
                 add_members(measure, a(), "points", *vertices, "stale", true);
                 continue;
             }

@@ -10,8 +10,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/glb.h"
 #include "ostraka/vocabulary/text_match.h"
@@ -278,7 +278,7 @@ private:
     }
     JsonValue described(const std::string& type, const std::string& component, const std::string& name, bool required) {
         JsonValue property(rapidjson::kObjectType);
-        add_given(property, a(), "name", name, "type", type, "componentType", component, "required", required);
+        add_nonempty_members(property, a(), "name", name, "type", type, "componentType", component, "required", required);
         return property;
     }
     JsonValue stored(const std::string& bytes) { return json_object(a(), "values", builder_.add_view(bytes)); }

@@ -3,7 +3,7 @@
 #include "landmark_formats.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/interchange/attribute_table.h"
 #include "ostraka/interchange/feature_glb.h"
 #include "ostraka/interchange/prototype_files.h"

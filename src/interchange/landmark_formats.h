@@ -1,7 +1,7 @@
 // The readers and writers behind landmarks_from_text and landmarks_to_text, one pair per format.
 #pragma once
 
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/interchange/landmarks.h"
 
 namespace ostraka::interchange {
@@ -26,6 +26,6 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optiona
                                     AnatomicalSpace mesh_space);
 
 /// Throws Error (input), naming `location`, if the position exceeds the limit for mesh coordinates.
-void check_place(const std::array<double, 3>& position, const std::string& location);
+void check_position(const std::array<double, 3>& position, const std::string& location);
 
 }  // namespace ostraka::interchange

@@ -30,7 +30,8 @@ constexpr std::size_t not_found = static_cast<std::size_t>(-1);
 
 std::optional<Columns> columns_of(const std::vector<std::string>& header) {
     std::map<std::string, std::size_t> column_indices;
-    for (std::size_t i = 0; i < header.size(); ++i) column_indices.try_emplace(lower_case(trimmed(unguarded(header[i]))), i);
+    for (std::size_t i = 0; i < header.size(); ++i)
+        column_indices.try_emplace(lower_case(trimmed(unescape_formula(header[i]))), i);
     const auto find = [&](std::initializer_list<const char*> names) -> std::size_t {
         for (const char* name : names)
             if (const auto column = column_indices.find(name); column != column_indices.end()) return column->second;
@@ -55,7 +56,7 @@ double coordinate(const CsvRow& row, std::size_t column, const std::string& wher
     const std::string location = at_line(where, row.line);
     if (column >= row.cells.size())
         fail_input(location, fmt::format("has {} cells", row.cells.size()), "give a number for x, y and z in each row");
-    if (const auto value = number_of(unguarded(row.cells[column]))) return *value;
+    if (const auto value = number_of(unescape_formula(row.cells[column]))) return *value;
     fail_input(location, fmt::format("'{}' is not a number", one_line(row.cells[column]).substr(0, 40)),
                "give x, y and z with a decimal point");
 }
@@ -69,10 +70,10 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optiona
     return position;
 }
 
-void check_place(const std::array<double, 3>& position, const std::string& location) {
+void check_position(const std::array<double, 3>& position, const std::string& location) {
     if (!is_place(position[0], position[1], position[2]))
         fail_input(location,
-                   fmt::format("the position exceeds the supported range (coordinates up to {})", digits(largest_coordinate)),
+                   fmt::format("the position exceeds the supported range (coordinates up to {})", digits(max_coordinate)),
                    "check its numbers, or choose another unit");
 }
 
@@ -87,7 +88,7 @@ LandmarkSet read_landmark_table(const std::string& bytes, const std::string& whe
         first = 1;
     } else {  // without a header: three numbers, optionally preceded by a name
         const std::size_t cells = rows.front().cells.size();
-        if ((cells != 3 && cells != 4) || !number_of(unguarded(rows.front().cells.back())))
+        if ((cells != 3 && cells != 4) || !number_of(unescape_formula(rows.front().cells.back())))
             fail_input(at_line(where, rows.front().line), "is not a header with the columns x, y and z",
                        "name the columns, e.g. name,x,y,z");
         columns.position = {cells - 3, cells - 2, cells - 1};
@@ -97,7 +98,7 @@ LandmarkSet read_landmark_table(const std::string& bytes, const std::string& whe
     for (std::size_t i = first; i < rows.size(); ++i) {
         const CsvRow& row = rows[i];
         const auto cell = [&](std::optional<std::size_t> column) {
-            return column && *column < row.cells.size() ? unguarded(row.cells[*column]) : std::string();
+            return column && *column < row.cells.size() ? unescape_formula(row.cells[*column]) : std::string();
         };
         if (columns.defined && trimmed(cell(columns.defined)) == "0") {
             ++undefined;
@@ -106,9 +107,9 @@ LandmarkSet read_landmark_table(const std::string& bytes, const std::string& whe
         Landmark landmark;
         landmark.name = columns.name ? as_utf8(cell(columns.name)) : to_string(i - first + 1);
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns.position[k], where);
-        check_place(landmark.position, at_line(where, row.line));
+        check_position(landmark.position, at_line(where, row.line));
         landmark.position = in_mesh_space(landmark.position, columns.space, options.mesh_space);
-        landmark.group = whole_of(cell(columns.id));
+        landmark.group = parse_int(cell(columns.id));
         set.landmarks.push_back(std::move(landmark));
     }
     if (undefined > 0) set.notes.push_back(counted(undefined, "landmark") + " not yet placed in the file, left out");
@@ -139,7 +140,7 @@ std::optional<std::array<double, 3>> tps_point(std::string_view line, const std:
     const auto refuse = [&] {
         fail_input(location, "does not contain three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
     };
-    for (const std::string_view word : words_of(line, " \t,")) {
+    for (const std::string_view word : split_words(line, " \t,")) {
         const auto value = number_of(word);
         const bool no_value = lower_case(word) == "na" || lower_case(word) == "nan";
         if ((!value && !no_value) || count == 3) refuse();
@@ -172,7 +173,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
         const std::string_view value = trimmed(line.substr(equals + 1));
         if (key == "lm") fail_input(location, "contains two-dimensional landmarks", "give a file with LM3=");
         if (key == "lm3") {
-            const auto count = whole_of(value);
+            const auto count = parse_int(value);
             if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
                 fail_input(location, "the number of landmarks is invalid or exceeds the file", "correct LM3=");
             specimens.emplace_back();
@@ -200,7 +201,7 @@ const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, co
     if (specimens.size() == 1 && requested.empty()) return specimens.front();
     for (const TpsSpecimen& specimen : specimens)
         if (!requested.empty() && specimen.id == requested) return specimen;
-    if (const auto index = whole_of(requested); index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
+    if (const auto index = parse_int(requested); index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
         return specimens[static_cast<std::size_t>(*index) - 1];
     fail_input(where,
                requested.empty() ? fmt::format("contains {} specimens", specimens.size())
@@ -238,7 +239,7 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
         Landmark landmark;
         landmark.name = names.empty() ? to_string(i + 1) : names[i];
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = specimen.scale * (*specimen.points[i])[k];
-        check_place(landmark.position, at_line(where, specimen.lines[i]));
+        check_position(landmark.position, at_line(where, specimen.lines[i]));
         set.landmarks.push_back(std::move(landmark));
     }
     if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
@@ -296,10 +297,10 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
     const auto rows = csv_rows(body, ',', where);
     for (const CsvRow& row : rows) {
         Landmark landmark;
-        landmark.name = columns->name && *columns->name < row.cells.size() ? as_utf8(unguarded(row.cells[*columns->name]))
+        landmark.name = columns->name && *columns->name < row.cells.size() ? as_utf8(unescape_formula(row.cells[*columns->name]))
                                                                            : to_string(set.landmarks.size() + 1);
         for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = coordinate(row, columns->position[k], where);
-        check_place(landmark.position, at_line(where, row.line));
+        check_position(landmark.position, at_line(where, row.line));
         landmark.position = in_mesh_space(landmark.position, space, options.mesh_space);
         set.landmarks.push_back(std::move(landmark));
     }

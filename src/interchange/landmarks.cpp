@@ -73,7 +73,7 @@ public:
     PlacedAnnotations assemble(const LandmarkSet& input, const PlaceOptions& options) {
         std::vector<Entry> entries;
         const auto add = [&](const std::string& name, const char* kind, const std::array<double, 3>& position) {
-            interchange::check_place(position, where_);
+            interchange::check_position(position, where_);
             entries.push_back({name, kind, &position, placer_.place(point_of(position))});
         };
         for (const Landmark& landmark : input.landmarks) add(landmark.name, "landmark", landmark.position);

@@ -44,7 +44,7 @@ struct Reader {
             if (!position)
                 fail_input(where, fmt::format("at {}/controlPoints/{}/position: not three numbers", pointer, i),
                            "give the position, or \"positionStatus\": \"undefined\"");
-            check_place(*position, fmt::format("{}, at {}/controlPoints/{}/position", where, pointer, i));
+            check_position(*position, fmt::format("{}, at {}/controlPoints/{}/position", where, pointer, i));
             points.push_back({text_in(point, "label"), in_mesh_space(*position, space, options.mesh_space), {}});
         }
         return points;

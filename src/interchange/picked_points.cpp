@@ -65,7 +65,7 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
             if (!value) fail_input(location, fmt::format("the attribute {} is not a number", name), "give x, y and z");
             landmark.position[k] = *value;
         }
-        check_place(landmark.position, location);
+        check_position(landmark.position, location);
         landmark.name = as_utf8(point.attribute("name").as_string(std::to_string(number).c_str()));
         set.landmarks.push_back(std::move(landmark));
     }

@@ -68,7 +68,7 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
                     ++unevaluated;
                 }
                 add_members(flat, a, "type", "Geometric", "value", value, "points", measure.points, "tool", measure.tool);
-                add_given(flat, a, "direction", measure.direction);
+                add_nonempty_members(flat, a, "direction", measure.direction);
             } else {
                 const bool semantic = attribute.type == AttributeType::semantic;
                 descriptors += semantic ? 0 : 1;

@@ -35,7 +35,7 @@ public:
 
     AnnotationSet read() {
         (void)field("Filename:");
-        const auto count = whole_of(field("Number of Facets:"));
+        const auto count = parse_int(field("Number of Facets:"));
         if (!count || *count < 0) fail("the number of facets is not a number", "correct the header");
         AnnotationSet set;
         for (int i = 0; i < *count; ++i) set.annotations.push_back(facet(i));
@@ -69,8 +69,8 @@ private:
 
     std::vector<Index> indices() const {
         std::vector<Index> result;
-        for (const std::string_view word : words_of(line_, " \t,;[]")) {
-            const auto value = whole_of(word);
+        for (const std::string_view word : split_words(line_, " \t,;[]")) {
+            const auto value = parse_int(word);
             if (!value) fail(fmt::format("'{}' is not a vertex index", one_line(word.substr(0, 40))), "give vertex indices");
             if (*value < 0 || static_cast<std::size_t>(*value) >= mesh_.number_of_vertices())
                 fail(fmt::format("vertex {} does not exist: the mesh has {} vertices", *value, mesh_.number_of_vertices()),

@@ -251,7 +251,7 @@ private:
             if (!position)
                 fail_input(where_, fmt::format("in {}: a position that is not finite", pointer),
                            "correct or regenerate the file");
-            check_place(*position, fmt::format("{}, in {}", where_, pointer));
+            check_position(*position, fmt::format("{}, in {}", where_, pointer));
             const Placed p = placer().place(Point((*position)[0], (*position)[1], (*position)[2]));
             if (p.to_surface > limit) {
                 const std::string problem =
@@ -307,7 +307,7 @@ private:
                 if (!inside)
                     fail_input(where_, fmt::format("in {}: a position that is not finite", pointer),
                                "correct or regenerate the file");
-                check_place(*inside, fmt::format("{}, in {}", where_, pointer));
+                check_position(*inside, fmt::format("{}, in {}", where_, pointer));
                 region_part.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
                 for (const auto& outline : part["outlines"].GetArray()) {
                     const auto placed_points = placed(outline, placement, pointer);
@@ -360,7 +360,7 @@ private:
             for (const auto& picked : list_in(*repeats, std::to_string(id->GetInt())))
                 if (const auto placed_picking = placed(picked, pinned, pointer))
                     placed_repeats.push_back(vertices(*placed_picking));
-            add_given(measure, a(), "repeats", placed_repeats);
+            add_nonempty_members(measure, a(), "repeats", placed_repeats);
         }
     }
 

@@ -180,9 +180,9 @@ private:
             add_members(pins, a(), std::to_string(attribute.id),
                         measure.locations.empty() ? vertex_list(measure.points) : json_list(measure.locations, a(), pin));
             const auto picking = [&](const std::vector<Index>& picked) { return vertex_list(picked); };
-            add_given(repeats, a(), std::to_string(attribute.id), json_list(measure.repeats, a(), picking));
+            add_nonempty_members(repeats, a(), std::to_string(attribute.id), json_list(measure.repeats, a(), picking));
         }
-        add_given(result, a(), "pins", std::move(pins), "repeats", std::move(repeats));
+        add_nonempty_members(result, a(), "pins", std::move(pins), "repeats", std::move(repeats));
         return result;
     }
 

@@ -69,7 +69,7 @@ Builder::Builder(std::size_t alignment, bool escapes) : alignment_(alignment), e
 int Builder::view(std::size_t size, int target, int stride) {
     size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
     JsonValue entry = json_object(allocator(), "buffer", 0, "byteOffset", size_, "byteLength", size);
-    add_given(entry, allocator(), "byteStride", stride, "target", target);
+    add_nonempty_members(entry, allocator(), "byteStride", stride, "target", target);
     size_ += size;
     views_.PushBack(entry, allocator());
     return static_cast<int>(views_.Size()) - 1;
@@ -104,7 +104,7 @@ int Builder::add_compressed_accessor(const Compressed& data, int target, int com
     add_members(packed, allocator(), "byteStride", data.stride, "count", data.count, "mode", data.mode);
     entry = json_object(allocator(), "buffer", 1, "byteOffset", decoded_size_, "byteLength", data.count * data.stride,
                         "extensions", json_object(allocator(), "EXT_meshopt_compression", std::move(packed)));
-    add_given(entry, allocator(), "byteStride", attributes ? static_cast<int>(data.stride) : 0, "target", target);
+    add_nonempty_members(entry, allocator(), "byteStride", attributes ? static_cast<int>(data.stride) : 0, "target", target);
     decoded_size_ += (data.count * data.stride + 7) / 8 * 8;
     return accessor(stored, component, count, type, min, max);
 }

@@ -138,7 +138,7 @@ MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     double largest = 0;
     for (const auto& point : triangles.soup.points)
         for (const double x : point) largest = std::max(largest, std::abs(x));
-    if (largest > largest_coordinate || box_diagonal(result.mesh) < 1e-60)
+    if (largest > max_coordinate || box_diagonal(result.mesh) < 1e-60)
         fail_input(name, "has coordinates outside the supported range (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
     result.triangle_polygon = std::move(triangles.triangle_polygon);

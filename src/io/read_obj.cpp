@@ -1,5 +1,5 @@
 #include "formats.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "text_reader.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/io/ply.h"
 #include "ply_rows.h"
 

@@ -15,7 +15,7 @@
 
 namespace ostraka {
 
-using detail::Worksoup;
+using detail::RepairSoup;
 
 namespace {
 
@@ -58,7 +58,7 @@ void check_extras(const TriangleSoup& soup, const MeshExtras& extras) {
     check(extras.corner_texture.size(), 3 * soup.triangles.size(), "corner texture");
 }
 
-MeshExtras carry_extras(const MeshExtras& old, const Worksoup& work) {
+MeshExtras carry_extras(const MeshExtras& old, const RepairSoup& work) {
     MeshExtras extras;
     extras.vertex_colours = carried(old.vertex_colours, work.vertex_like);
     extras.vertex_labels = carried(old.vertex_labels, work.vertex_like);
@@ -99,11 +99,11 @@ Point middle(const TriangleSoup& soup, Index t) {
 }
 
 /// Replaces the soup by its wrap; attributes and maps are taken from the nearest triangle and its nearest corner.
-void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& options, RepairResult& result) {
+void wrap(RepairSoup& work, const TriangleSoup& original, const RepairOptions& options, RepairResult& result) {
     const double size = detail::diagonal(detail::box_of_triangles(work.soup));
     TriangleSoup wrapped = wrap_soup(work.soup, options.wrap_alpha * size, options.wrap_offset * size);
     const detail::TriangleTree old_tree(original), new_tree(wrapped);
-    Worksoup made(wrapped);
+    RepairSoup made(wrapped);
     parallel_for(wrapped.points.size(), [&](std::size_t v) {
         const Point p = detail::point(wrapped, static_cast<Index>(v));
         const Index t = old_tree.nearest(p).triangle;
@@ -165,11 +165,11 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
         result.steps.push_back({name, std::move(counts)});
         return result.steps.back().counts;
     };
-    Worksoup work(original);
+    RepairSoup work(original);
     const double size = detail::diagonal(detail::box_of_triangles(original));
     double crack = 0;
     step("merge points", detail::merge_points(work, {options.merge_distance * size, options.merge_gap}, crack));
-    step("drop triangles", detail::drop_bad_triangles(work));
+    step("drop triangles", detail::drop_invalid_triangles(work));
     if (work.soup.triangles.empty())
         fail_input("mesh", "has no face left after points were merged", "use a smaller --merge-distance or --merge-gap");
     // Coordinates in text files have six digits.
@@ -177,19 +177,19 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     const auto& orientation = step("orient", detail::orient_patches(work));
     if (count_of(orientation, "edges cut because the surface has one side only") > 0)
         result.notes.emplace_back("a part of the surface is one-sided (a Moebius strip) and was cut open to be oriented");
-    step("take apart", detail::take_apart(work));
+    step("take apart", detail::separate_nonmanifold(work));
     if (options.keep_largest || options.min_component_share > 0)
         step("drop components", detail::drop_components(work, options.keep_largest, options.min_component_share));
     const auto& degenerate = step("triangles without area", detail::flip_degenerate(work));
-    if (count_of(degenerate, "border triangles dropped") > 0) step("take apart again", detail::take_apart(work));
-    step("turn outwards", detail::turn_outwards(work));
+    if (count_of(degenerate, "border triangles dropped") > 0) step("take apart again", detail::separate_nonmanifold(work));
+    step("turn outwards", detail::orient_outwards(work));
     step("isolated vertices", {{"dropped", work.drop_isolated(options.keep_isolated)}});
     if (options.fill_holes > 0) {
         step("fill holes",
              detail::fill_holes(work, {static_cast<std::size_t>(options.fill_holes), options.fill_holes_size, false}));
-        step("turn outwards, once closed", detail::turn_outwards(work));
+        step("turn outwards, once closed", detail::orient_outwards(work));
         const auto& flat = step("fillings without area", detail::flip_degenerate(work));
-        if (count_of(flat, "border triangles dropped") > 0) detail::take_apart(work);
+        if (count_of(flat, "border triangles dropped") > 0) detail::separate_nonmanifold(work);
     }
     if (work.soup.triangles.empty()) fail_input("mesh", "has no face with non-zero area left", "check the file's coordinates");
     if (options.remove_self_intersections || options.wrap) result.before = diagnose(work.soup, {.skip_self_intersections = true});

@@ -216,7 +216,7 @@ namespace {
 
 /// Fills the holes within the limits except those in `skip` (given by their first halfedge). `hole_of` receives, for each added
 /// triangle, the first halfedge of its hole.
-Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Index>& skip, std::vector<Index>& hole_of) {
+Counts fill_once(RepairSoup& work, const HoleLimits& limits, const std::vector<Index>& skip, std::vector<Index>& hole_of) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
     const std::vector<Index> place = same_place(soup.points);
@@ -271,7 +271,7 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
     if (rejoined > 0) {
         for (auto& t : soup.triangles)
             for (Index& v : t) v = copies.find(v);
-        take_apart(work);  // needed if two merged copies were neighbours of the same vertex
+        separate_nonmanifold(work);  // needed if two merged copies were neighbours of the same vertex
         work.drop_isolated(true);
     }
     return {{"holes", limits.only_touched ? chosen.size() + too_long + too_wide : holes.size()},
@@ -285,10 +285,10 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
 
 }  // namespace
 
-Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
+Counts fill_holes(RepairSoup& work, const HoleLimits& limits) {
     std::vector<Index> skip, hole_of;
     if (limits.only_touched) return fill_once(work, limits, skip, hole_of);  // the caller checks the result
-    const Worksoup before = work;
+    const RepairSoup before = work;
     Counts counts = fill_once(work, limits, skip, hole_of);
     if (!hole_of.empty()) {
         // A filling that intersects the surface or another filling is worse than a hole.

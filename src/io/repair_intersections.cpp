@@ -31,7 +31,7 @@ std::vector<std::uint8_t> neighbourhood(const TriangleSoup& soup, const std::vec
 }
 
 /// Removes the common wall of two adjacent solids, which is contained twice in the soup: without it they form one solid.
-std::size_t drop_walls(Worksoup& work) {
+std::size_t drop_walls(RepairSoup& work) {
     const std::vector<Index> place = same_place(work.soup.points);
     std::vector<std::pair<std::array<Index, 3>, Index>> keyed;  // positions in increasing order, triangle
     for (Index t = 0; t < work.triangle_count(); ++t) {
@@ -63,7 +63,7 @@ std::size_t drop_walls(Worksoup& work) {
     work.keep_triangles(keep);
     for (auto& t : work.soup.triangles)
         for (Index& v : t) v = joined[v];
-    take_apart(work);
+    separate_nonmanifold(work);
     work.drop_isolated(true);
     return dropped;
 }
@@ -141,7 +141,7 @@ std::vector<std::uint8_t> wide_folds(const TriangleSoup& soup, const Folds& fold
 
 /// Smooths folds without changing the topology. The new positions are kept only if a fold is removed completely. Returns the
 /// number of moved vertices.
-std::size_t relax(Worksoup& work, Pairs& intersections) {
+std::size_t relax(RepairSoup& work, Pairs& intersections) {
     constexpr int max_rings = 2;
     std::vector<std::uint8_t> moved(work.soup.points.size(), 0);
     for (int rings = 0; rings <= max_rings && !intersections.empty(); ++rings) {
@@ -188,15 +188,15 @@ Topology topology(const TriangleSoup& soup) {
 }
 
 struct Attempt {
-    Worksoup work;
+    RepairSoup work;
     std::size_t removed = 0;
     bool too_much = false;
 };
 
 /// Cuts out the triangles of the pairs and the given number of rings around them, and fills the gaps.
-Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>& pairs, int rings) {
+Attempt cut_out(const RepairSoup& work, const std::vector<std::pair<Index, Index>>& pairs, int rings) {
     Attempt attempt{work};
-    Worksoup& trial = attempt.work;
+    RepairSoup& trial = attempt.work;
     const double area_before = total_area(trial.soup);
     auto cut = neighbourhood(trial.soup, pairs, rings);
     std::fill(trial.touched.begin(), trial.touched.end(), 0);
@@ -210,11 +210,11 @@ Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>
     trial.keep_triangles(cut);
     attempt.too_much = total_area(trial.soup) < 0.8 * area_before;
     if (attempt.too_much) return attempt;
-    take_apart(trial);
+    separate_nonmanifold(trial);
     drop_components(trial, false, 1e-4);  // small fragments that were connected only through the removed triangles
     trial.drop_isolated(true);
     fill_holes(trial, {1'000'000, 1.0, true});
-    turn_outwards(trial);
+    orient_outwards(trial);
     return attempt;
 }
 
@@ -225,7 +225,7 @@ namespace {
 /// Cuts with 0 to 5 rings, more only if fewer did not help. An attempt is accepted if fewer pairs are left and the border has
 /// not grown and, with `same_topology`, if the number of components and the Euler characteristic are unchanged. Returns the
 /// number of removed triangles.
-std::size_t cut_and_close(Worksoup& work, Pairs& intersections, bool same_topology, std::vector<std::string>& notes) {
+std::size_t cut_and_close(RepairSoup& work, Pairs& intersections, bool same_topology, std::vector<std::string>& notes) {
     constexpr int max_rings = 6, max_tries = 12;
     std::size_t removed = 0;
     Topology before = topology(work.soup);
@@ -254,7 +254,7 @@ std::size_t cut_and_close(Worksoup& work, Pairs& intersections, bool same_topolo
 
 }  // namespace
 
-Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes) {
+Counts remove_self_intersections(RepairSoup& work, std::vector<std::string>& notes) {
     Pairs intersections = ostraka::self_intersections(work.soup, pair_limit).pairs;
     const std::size_t before = intersections.size();
     std::size_t walls = 0;

@@ -11,7 +11,7 @@
 
 namespace ostraka::detail {
 
-Worksoup::Worksoup(const TriangleSoup& original)
+RepairSoup::RepairSoup(const TriangleSoup& original)
     : soup(original),
       vertex_source(original.points.size()),
       face_source(original.triangles.size()),
@@ -25,7 +25,7 @@ Worksoup::Worksoup(const TriangleSoup& original)
     face_like = duplicate_of = face_source;
 }
 
-Index Worksoup::add_vertex(const std::array<double, 3>& position, Index source, Index like, bool is_touched) {
+Index RepairSoup::add_vertex(const std::array<double, 3>& position, Index source, Index like, bool is_touched) {
     soup.points.push_back(position);
     vertex_source.push_back(source);
     vertex_like.push_back(like);
@@ -33,8 +33,8 @@ Index Worksoup::add_vertex(const std::array<double, 3>& position, Index source, 
     return static_cast<Index>(soup.points.size() - 1);
 }
 
-void Worksoup::add_triangle(const std::array<Index, 3>& corners, Index source, Index like,
-                            const std::array<Index, 3>& corners_like, bool is_flipped) {
+void RepairSoup::add_triangle(const std::array<Index, 3>& corners, Index source, Index like,
+                              const std::array<Index, 3>& corners_like, bool is_flipped) {
     soup.triangles.push_back(corners);
     face_source.push_back(source);
     face_like.push_back(like);
@@ -42,7 +42,7 @@ void Worksoup::add_triangle(const std::array<Index, 3>& corners, Index source, I
     flipped.push_back(is_flipped ? 1 : 0);
 }
 
-void Worksoup::flip(Index t) {
+void RepairSoup::flip(Index t) {
     std::swap(soup.triangles[t][1], soup.triangles[t][2]);
     std::swap(corner_like[t][1], corner_like[t][2]);
     flipped[t] ^= 1;
@@ -64,11 +64,11 @@ void keep_flagged(const std::vector<std::uint8_t>& keep, Lists&... lists) {
 
 }  // namespace
 
-void Worksoup::keep_triangles(const std::vector<std::uint8_t>& keep) {
+void RepairSoup::keep_triangles(const std::vector<std::uint8_t>& keep) {
     keep_flagged(keep, soup.triangles, face_source, face_like, corner_like, flipped);
 }
 
-std::size_t Worksoup::drop_isolated(bool keep_original) {
+std::size_t RepairSoup::drop_isolated(bool keep_original) {
     std::vector<std::uint8_t> keep(soup.points.size(), 0);
     for (const auto& t : soup.triangles)
         for (const Index v : t) keep[v] = 1;
@@ -316,7 +316,7 @@ double merge_near(const TriangleSoup& soup, const MergeDistances& limits, Disjoi
 
 }  // namespace
 
-Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack) {
+Counts merge_points(RepairSoup& work, const MergeDistances& limits, double& crack) {
     auto& soup = work.soup;
     const std::vector<std::uint8_t> in_open_component = vertices_of_open_components(soup);
     const std::vector<Index> place = same_place(soup.points);
@@ -346,7 +346,7 @@ Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack)
 
 double crack_width(const TriangleSoup& soup) { return crack_of(find_border(soup, 0.5), 0.9); }
 
-Counts sew_junctions(Worksoup& work, double tolerance) {
+Counts sew_junctions(RepairSoup& work, double tolerance) {
     auto& soup = work.soup;
     std::size_t sewn = 0;
     constexpr int max_passes = 8;  // each pass splits a triangle at one of its sides
@@ -417,7 +417,7 @@ using OppositePair = std::pair<Index, Index>;
 
 /// Among triangles with the same three vertices, keeps the first of each orientation; returns the number of dropped ones. Pairs
 /// that remain in both orientations are appended to `opposite`.
-std::size_t drop_repeated(Worksoup& work, const SoupEdges& edges, std::vector<std::uint8_t>& keep,
+std::size_t drop_repeated(RepairSoup& work, const SoupEdges& edges, std::vector<std::uint8_t>& keep,
                           std::vector<OppositePair>& opposite) {
     const auto& soup = work.soup;
     struct Entry {
@@ -496,7 +496,7 @@ std::vector<std::uint8_t> single_sides(const TriangleSoup& soup, const SoupEdges
 
 }  // namespace
 
-Counts drop_bad_triangles(Worksoup& work) {
+Counts drop_invalid_triangles(RepairSoup& work) {
     const auto& soup = work.soup;
     std::vector<std::uint8_t> keep(soup.triangles.size(), 1);
     std::size_t repeated = 0, walls = 0;
@@ -523,7 +523,7 @@ Counts drop_bad_triangles(Worksoup& work) {
     return {{"triangles that repeat a corner", repeated}, {"duplicate triangles", duplicates}, {"double walls kept", walls}};
 }
 
-Counts drop_components(Worksoup& work, bool only_largest, double smallest_share) {
+Counts drop_components(RepairSoup& work, bool only_largest, double smallest_share) {
     auto& soup = work.soup;
     DisjointSets sets = joined_vertices(soup);
     std::vector<double> share(soup.points.size(), 0);

@@ -8,7 +8,7 @@ namespace ostraka::detail {
 
 /// A soup that tracks the origin of its elements. "Source" is the identical old element (for the maps), no_index for new
 /// elements; "like" is the old element that provides colour, label and texture coordinates.
-struct Worksoup {
+struct RepairSoup {
     TriangleSoup soup;
     std::vector<Index> vertex_source, vertex_like;
     std::vector<Index> face_source, face_like;
@@ -18,7 +18,7 @@ struct Worksoup {
     std::vector<Index> merged_into;                 ///< old vertex -> old vertex it was merged into (or itself)
     std::vector<Index> duplicate_of;                ///< old triangle -> old triangle kept instead (or itself)
 
-    explicit Worksoup(const TriangleSoup& original);
+    explicit RepairSoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
     Index add_vertex(const std::array<double, 3>& place, Index source, Index like, bool is_touched);
     void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
@@ -40,26 +40,26 @@ struct MergeDistances {
     double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
 };
 /// `crack`: receives the width of cracks along the edges, 0 if there are none.
-Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack);
+Counts merge_points(RepairSoup& work, const MergeDistances& limits, double& crack);
 /// Width of cracks if nine in ten border vertices have a mate closer than half of their shortest edge; else 0.
 double crack_width(const TriangleSoup& soup);
 /// Inserts border vertices into triangle edges on which they lie within the tolerance (T-junctions).
-Counts sew_junctions(Worksoup& work, double tolerance);
-Counts drop_bad_triangles(Worksoup& work);
-Counts orient_patches(Worksoup& work);
+Counts sew_junctions(RepairSoup& work, double tolerance);
+Counts drop_invalid_triangles(RepairSoup& work);
+Counts orient_patches(RepairSoup& work);
 /// Joins triangles at edges in pairs and gives each fan of triangles its own vertex.
-Counts take_apart(Worksoup& work);
-Counts drop_components(Worksoup& work, bool only_largest, double smallest_share);
-Counts flip_degenerate(Worksoup& work);
-Counts turn_outwards(Worksoup& work);
+Counts separate_nonmanifold(RepairSoup& work);
+Counts drop_components(RepairSoup& work, bool only_largest, double smallest_share);
+Counts flip_degenerate(RepairSoup& work);
+Counts orient_outwards(RepairSoup& work);
 
 struct HoleLimits {
     std::size_t edges;
     double share;       ///< maximum width, as a fraction of the component's diagonal
     bool only_touched;  ///< only holes created by cutting out triangles
 };
-Counts fill_holes(Worksoup& work, const HoleLimits& limits);
+Counts fill_holes(RepairSoup& work, const HoleLimits& limits);
 
-Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes);
+Counts remove_self_intersections(RepairSoup& work, std::vector<std::string>& notes);
 
 }  // namespace ostraka::detail

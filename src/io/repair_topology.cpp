@@ -7,7 +7,7 @@
 
 namespace ostraka::detail {
 
-Counts orient_patches(Worksoup& work) {
+Counts orient_patches(RepairSoup& work) {
     auto& soup = work.soup;
     const SoupEdges edges = group_edges(soup);
     // Only edges with exactly two triangles determine the relative orientation of their triangles.
@@ -60,7 +60,7 @@ void join_halfedges(std::vector<Index>& opposite, Index h, Index o) {
 
 /// A triangle soup with explicit adjacency, not derived from the vertex indices.
 struct Joints {
-    Worksoup& work;
+    RepairSoup& work;
     std::vector<Index> opposite;
 
     void join(Index h, Index o) { join_halfedges(opposite, h, o); }
@@ -147,7 +147,7 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
 
 /// One vertex per fan; the first fan keeps the vertex, the others get copies.
 std::size_t separate_fans(Joints& joints) {
-    Worksoup& work = joints.work;
+    RepairSoup& work = joints.work;
     auto& soup = work.soup;
     const auto corners = static_cast<Index>(3 * soup.triangles.size());
     DisjointSets fans(corners);
@@ -205,7 +205,7 @@ std::size_t separate_edges(Joints& joints) {
 
 }  // namespace
 
-Counts take_apart(Worksoup& work) {
+Counts separate_nonmanifold(RepairSoup& work) {
     const SoupEdges edges = group_edges(work.soup);
     Joints joints{work, std::vector<Index>(3 * work.soup.triangles.size(), no_index)};
     std::size_t nonmanifold = 0, cut = 0;
@@ -230,7 +230,7 @@ Counts take_apart(Worksoup& work) {
             {"edges split", split}};
 }
 
-Counts turn_outwards(Worksoup& work) {
+Counts orient_outwards(RepairSoup& work) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
     DisjointSets sets = joined_vertices(soup);
@@ -291,7 +291,7 @@ bool joined_by_edge(const TriangleSoup& soup, const std::vector<Index>& opposite
 }
 }  // namespace
 
-Counts flip_degenerate(Worksoup& work) {
+Counts flip_degenerate(RepairSoup& work) {
     auto& soup = work.soup;
     std::vector<Index> opposite = pair_manifold(soup);
     std::vector<Index> queue;

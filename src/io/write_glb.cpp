@@ -67,7 +67,7 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     JsonValue mesh = json_object(allocator, "primitives", in_list(std::move(primitive)));
     JsonValue material =
         json_object(allocator, "pbrMetallicRoughness", json_object(allocator, "metallicFactor", 0, "roughnessFactor", 1));
-    add_given(material, allocator, "alphaMode", std::string(translucent ? "BLEND" : ""), "doubleSided", true);
+    add_nonempty_members(material, allocator, "alphaMode", std::string(translucent ? "BLEND" : ""), "doubleSided", true);
     add_members(root, allocator, "scene", 0, "scenes", in_list(json_object(allocator, "nodes", std::array{0})), "nodes",
                 in_list(json_object(allocator, "mesh", 0)), "meshes", in_list(std::move(mesh)), "materials",
                 in_list(std::move(material)));

@@ -323,7 +323,7 @@ std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure) {
     return pins;
 }
 
-std::vector<Point> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
+std::vector<Point> path_of_measure(PathSearch& search, const Mesh& mesh, const Measure& measure) {
     std::vector<Point> path;
     if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return path;
     for (std::size_t i = 1; i < measure.points.size(); ++i)

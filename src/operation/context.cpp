@@ -26,7 +26,7 @@ const Object::Checksums& Object::checksums() const {
         static std::atomic<std::size_t> count{0};
         struct Folder {
             const Path path = "memory:.checksum/" + std::to_string(++count);
-            ~Folder() { forget_memory(path); }
+            ~Folder() { remove_memory_files(path); }
         } const folder;
         const Path file = folder.path / Path(name).filename();
         OutputTransaction transaction;
@@ -120,7 +120,7 @@ void Context::forget(const Path& file) {
 }
 
 Context::~Context() {
-    for (const Path& file : memory_) forget_memory(file);
+    for (const Path& file : memory_) remove_memory_files(file);
 }
 
 Provenance Context::provenance() const {

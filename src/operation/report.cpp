@@ -1,8 +1,8 @@
 #include "ostraka/operation/report.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/report/markdown.h"
 #include "ostraka/report/table.h"
 
@@ -103,7 +103,7 @@ Report::Report(Provenance provenance, ReportLayout layout) : provenance_(std::mo
 }
 
 Report& Report::operator()(std::string_view key, ReportValue value, std::optional<std::string> shown) {
-    const Field* field = find_field(layout_.of_values, key);
+    const Field* field = find_field(layout_.value_fields, key);
     if (field == nullptr && layout_.schema.empty()) throw std::logic_error(fmt::format("the report declares no value '{}'", key));
     if (value.absent()) return *this;
     if (field != nullptr && !field->title.empty())

@@ -48,7 +48,7 @@ JsonValue object_schema(const std::vector<Field>& fields, JsonAllocator& allocat
 }  // namespace
 
 JsonValue ReportLayout::to_schema(JsonAllocator& allocator) const {
-    JsonValue result = object_schema(of_values, allocator);
+    JsonValue result = object_schema(value_fields, allocator);
     JsonValue& properties = result["properties"];
     for (const Table& table : tables) {
         if (table.key.empty()) continue;
@@ -60,7 +60,7 @@ JsonValue ReportLayout::to_schema(JsonAllocator& allocator) const {
     ReportLayout common;
     if (checks) common.values(fields::boolean("sound"), fields::integer("defects"), fields::any("findings"));
     common.values(fields::texts("notes"));
-    for (const Field& field : common.of_values) add_members(properties, allocator, field.key, type_schema(field, allocator));
+    for (const Field& field : common.value_fields) add_members(properties, allocator, field.key, type_schema(field, allocator));
     if (!schema.empty()) {
         add_members(result, allocator, "description", fmt::format("as specified by {}.schema.json", schema));
         result["additionalProperties"].SetBool(true);

@@ -3,8 +3,8 @@
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/smooth_regions.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
@@ -89,7 +89,7 @@ public:
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
-            std::vector<Point> line = way_of(search, mesh, measure);
+            std::vector<Point> line = path_of_measure(search, mesh, measure);
             if (line.empty()) line = pins_of(mesh, measure);
             if (line.empty()) continue;
             SceneLine& drawn = scene_.lines.emplace_back();

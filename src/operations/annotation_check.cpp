@@ -65,7 +65,8 @@ struct AnnotationCheck final : Operation {
     void check_rules(const ClassRules& class_rules, const Vocabulary* vocabulary_words, const Mesh& surface,
                      const AnnotationSet& set, std::vector<Finding>& findings) const {
         const RelationGraph* relationships = graph ? &graph.on(set) : nullptr;
-        for (const BrokenRule& broken : broken_rules(surface, set, class_rules, vocabulary_words, relationships, rules.file())) {
+        for (const RuleViolation& broken :
+             broken_rules(surface, set, class_rules, vocabulary_words, relationships, rules.file())) {
             std::string where;
             for (std::size_t i = 0; i < set.annotations.size(); ++i)
                 if (broken.annotation == set.annotations[i].id) where = "/annotations/" + std::to_string(i);

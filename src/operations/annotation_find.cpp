@@ -154,7 +154,7 @@ struct AnnotationFind final : Operation {
         Json result(rapidjson::kObjectType);
         auto& allocator = result.GetAllocator();
         std::vector<std::string> unknown, tags;
-        const TagWords tag_words(words);
+        const TagMatcher tag_words(words);
         for (const std::string& word : parsed_query.words())
             if (tag_words.find(read.set, word).empty()) unknown.push_back(word);
         for (const Annotation& annotation : read.set.annotations) tags.push_back(annotation.tag);

@@ -6,8 +6,8 @@
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/reassembly/odd_fragments.h"
 #include "ostraka/reassembly/reassembly_json.h"
+#include "ostraka/reassembly/suspicious_fragments.h"
 #include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/registration/pose_json.h"
@@ -162,7 +162,7 @@ private:
 
     /// Leaves out copies and fragments of a very different size, and reports them.
     void leave_out_outliers(Report& report) {
-        for (const OddFragment& outlier : odd_fragments(fragments)) {
+        for (const SuspiciousFragment& outlier : suspicious_fragments(fragments)) {
             report.note(fmt::format("{} {}", printable(fragments[outlier.fragment].name), outlier.text));
             if (!outlier.left_out) continue;
             left_out[outlier.fragment] = outlier.text;
@@ -180,19 +180,19 @@ private:
         };
         PairMemory memory;
         memory.recall = [this, key, &store](std::size_t i, std::size_t j,
-                                            const PairOptions& pair_options) -> std::optional<PairOfMany> {
+                                            const PairOptions& pair_options) -> std::optional<PairResult> {
             ++pairs_requested;
             if (fresh) return {};
             const std::string pair_key = key(i, j, pair_options);
             const std::optional<Json> stored = store.find(pair_key.substr(0, 32), pair_key);
             if (!stored) return {};
             ++pairs_recalled;
-            return pair_of_many_from_json(*stored, i, j);
+            return pair_result_from_json(*stored, i, j);
         };
-        memory.keep = [key, &store](const PairOfMany& pair, const PairOptions& pair_options) {
+        memory.keep = [key, &store](const PairResult& pair, const PairOptions& pair_options) {
             const std::string pair_key = key(pair.first, pair.second, pair_options);
             Json document;
-            store.keep(pair_key.substr(0, 32), pair_key, pair_of_many_to_json(pair, document.GetAllocator()));
+            store.keep(pair_key.substr(0, 32), pair_key, pair_result_to_json(pair, document.GetAllocator()));
         };
         return memory;
     }
@@ -229,7 +229,7 @@ private:
         for (const FragmentJoin& join : result.joins)
             report.row("joins", {names[join.first] + " - " + names[join.second], number(join.confidence, 3), number(join.pair, 3),
                                  number(100 * join.evidence.share, 3), join.reason});
-        for (const UndoneJoin& undone : result.undone)
+        for (const RejectedJoin& undone : result.undone)
             report.line(fmt::format("not joined: {} and {} (confidence of the pair alone {}): {}", printable(names[undone.first]),
                                     printable(names[undone.second]), number(undone.pair, 2), undone.reason));
         for (int g = 0; g < result.groups(); ++g) {

@@ -215,7 +215,7 @@ struct CageMake final : Operation {
 
     /// The regions named by --parts, without duplicates.
     [[nodiscard]] std::vector<std::size_t> regions_of(const AnnotationSet& set) const {
-        const TagWords words = vocabulary.words();
+        const TagMatcher words = vocabulary.words();
         std::vector<std::size_t> regions;
         for (const std::string& name : parts) {
             const std::size_t before = regions.size();
@@ -351,7 +351,8 @@ private:
         Coordinates mean_value;
         if (!weights) mean_value = compute_coordinates("mean-value", cage->mesh, mesh->mesh);
         const HandleSpace space{mesh->mesh, *set_, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &mean_value};
-        auto reaches = cage_reach(space, graph.on(*set_), given ? &*given : nullptr, edit_name, deform_tolerances(), graph.file());
+        auto reaches =
+            cage_reach(space, graph.on(*set_), given ? &*given : nullptr, edit_name, deform_tolerances(), graph.file());
         report_reach(report, reaches, *set_);
         return reaches;
     }

@@ -87,7 +87,7 @@ struct CageCoordinates final : Operation {
         row("amplification", number(factor, 3), "upper bound on how far a point moves, relative to the cage");
         report("amplification", factor)("outside", cage.outside.size())("crossed", cage.crossing.size())(
             "cageIntersections", cage.intersections.size());
-        std::vector<std::string> objections = unfit_for_deformation(cage, coordinates);
+        std::vector<std::string> objections = reasons_against_deformation(cage, coordinates);
         if (!c.holds()) objections.emplace_back("partition of unity or linear precision fails");
         report("objections", objections);
         report("holds", objections.empty(),
@@ -143,7 +143,8 @@ struct CageInfluence final : Operation {
         } else if (on_cage) {
             const Annotation& chosen = find_annotation(annotations.on(subject), annotation, annotations.file());
             values = influence_on(coordinates, touched_vertices(subject, chosen), by);
-            quantity = fmt::format("{} on '{}'", by == InfluenceBy::max ? "largest weight" : "sum of the weights", chosen.tag);
+            quantity =
+                fmt::format("{} on '{}'", by == InfluenceMeasure::max ? "largest weight" : "sum of the weights", chosen.tag);
         } else {
             for (const Index count : carriers(coordinates.vertex)) values.push_back(count);
             quantity = "cage vertices that carry 95 %";
@@ -184,7 +185,7 @@ struct CageInfluence final : Operation {
     MeshOutput output;
     std::optional<Index> cage_vertex;
     std::string annotation;
-    InfluenceBy by = InfluenceBy::max;
+    InfluenceMeasure by = InfluenceMeasure::max;
     std::optional<double> threshold;
 };
 

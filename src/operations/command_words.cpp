@@ -19,7 +19,7 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
         if (candidate.size() > length && std::all_of(candidate.begin(), candidate.end(), given))
             order = &candidate, length = candidate.size();
     std::vector<std::string> words;
-    for (const auto word : words_of(operation)) words.emplace_back(word);
+    for (const auto word : split_words(operation)) words.emplace_back(word);
     const auto text = [](const JsonValue& value) {
         if (value.IsString()) return text_of(value);
         if (value.IsBool()) return std::string(value.GetBool() ? "true" : "false");

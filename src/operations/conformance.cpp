@@ -37,7 +37,7 @@ struct Conformance : Operation {
         else
             for (const char* relative_folder :
                  {"../share/ostraka/conformance", "../../data/conformance", "../../../data/conformance"})
-                if (const Path candidate = own_program_folder() / relative_folder;
+                if (const Path candidate = executable_folder() / relative_folder;
                     folder.empty() && file_exists(candidate / "conformance.json"))
                     folder = candidate.lexically_normal();
         if (folder.empty())

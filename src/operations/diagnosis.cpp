@@ -1,7 +1,7 @@
 #include "diagnosis.h"
 
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <fmt/core.h>
 

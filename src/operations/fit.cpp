@@ -75,13 +75,14 @@ struct Fit final : Operation {
             if (learnt->modes.variances.empty())
                 report.note(class_file.file() + " has no modes (one member, or all of one shape): only its mean shape is used");
         }
-        used_thresholds = take_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
+        used_thresholds =
+            apply_class_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
         std::optional<TemplateCage> cage;
         if (options.fit.space != NonRigidOptions::Space::mesh) {
             context.record([&] { cage = in_file(object_template.file(), [&] { return cage_of(*object_template); }); });
             if (!cage) {
                 report.note("the template has no cage: one of 200 vertices was made around it");
-                cage = made_cage(mesh);
+                cage = generated_cage(mesh);
             }
         }
         Reconstructor reconstructor(mesh, *object_template->annotations, graph, options, prior ? &*prior : nullptr,
@@ -180,7 +181,7 @@ struct Fit final : Operation {
                 report.note(fmt::format("{}: {}; the template's triangles show what was observed of it",
                                         names.fragments[static_cast<std::size_t>(note.fragment)], note.text));
             AnnotationSet carried_annotations =
-                carry_annotations(object_template->mesh->mesh, *object_template->annotations, result);
+                completed_annotations(object_template->mesh->mesh, *object_template->annotations, result);
             report.notes(refresh_measures(result.object.mesh, carried_annotations).notes);
             output.write("completed.ant.json", carried_annotations, result.object.mesh, "completed.ply");
         }
@@ -237,7 +238,7 @@ struct Fit final : Operation {
 
     /// Reports the joints that decided the rotations, and the fragments without a joint.
     void report_rotations(Report& report, const RotationMatch& rotations) const {
-        for (const BreakJoint& joint : rotations.joints)
+        for (const FractureJoint& joint : rotations.joints)
             report.row("joints", {fmt::format("{} - {}", names.fragments[static_cast<std::size_t>(joint.first)],
                                               names.fragments[static_cast<std::size_t>(joint.second)]),
                                   number(joint.rotation, 4), number(100 * joint.contact, 3), number(100 * joint.rim, 3),

@@ -35,7 +35,8 @@ struct MeshBreak final : Operation {
     void run(Context&, Report& report) override {
         const Mesh& surface = input->mesh;
         const AnnotationSet* set = annotations ? &annotations.on(surface) : nullptr;
-        BrokenPiece piece = in_file(input.file(), [&] { return break_off(surface, centre(surface, set), options); });
+        SyntheticFragment piece =
+            in_file(input.file(), [&] { return generate_fragment(surface, centre(surface, set), options); });
 
         report("vertices", piece.vertices.size())("faces", piece.faces.size());
         JsonValue pose = pose_to_json(piece.pose, report.allocator());
@@ -92,7 +93,7 @@ struct MeshBreak final : Operation {
     AnnotationsInput annotations;
     AnnotationsOutput annotations_out;
     JsonOutput pose_out;
-    BreakOptions options;
+    FragmentOptions options;
     std::string at;
 };
 

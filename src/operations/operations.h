@@ -4,9 +4,9 @@
 #include "ostraka/operations/table.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/stopwatch.h"
-#include "ostraka/core/words.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 
 namespace ostraka {
 
@@ -64,7 +64,7 @@ public:
         p.input_option("vocabulary", Kind::vocabulary, file_, "vocabulary (.vocabulary.json, .ttl, .rdf) " + help);
     }
     explicit operator bool() const { return static_cast<bool>(file_); }
-    [[nodiscard]] TagWords words() const { return file_ ? TagWords(&file_.load<Vocabulary>(read_vocabulary)) : TagWords(); }
+    [[nodiscard]] TagMatcher words() const { return file_ ? TagMatcher(&file_.load<Vocabulary>(read_vocabulary)) : TagMatcher(); }
     /// Checksum of the file; empty if none was given.
     [[nodiscard]] std::string checksum() const { return file_ ? sha256_of_file(file_.path()) : std::string(); }
 

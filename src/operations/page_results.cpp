@@ -1,7 +1,7 @@
 #include "ostraka/operations/page_results.h"
 
 #include "ostraka/core/csv.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/io/ply.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
@@ -310,11 +310,11 @@ PageTable csv_table(const Path& file, const std::string& name) {
     PageTable table;
     table.title = Path(name).stem().string();
     if (rows.empty()) return table;
-    for (const std::string& cell : rows.front().cells) table.columns.push_back(unguarded(cell));
+    for (const std::string& cell : rows.front().cells) table.columns.push_back(unescape_formula(cell));
     for (std::size_t r = 1; r < rows.size(); ++r) {
         PageTable::Row& row = table.rows.emplace_back();
         for (std::size_t k = 0; k < table.columns.size(); ++k) {
-            const std::string value = k < rows[r].cells.size() ? unguarded(rows[r].cells[k]) : std::string();
+            const std::string value = k < rows[r].cells.size() ? unescape_formula(rows[r].cells[k]) : std::string();
             if (const auto x = number_of(value)) row.cells.push_back(cell_of(*x));
             else row.cells.push_back(value.empty() ? Json() : cell_of(value));
         }

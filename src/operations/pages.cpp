@@ -1,7 +1,7 @@
 #include "ostraka/operations/pages.h"
 
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 
@@ -88,7 +88,7 @@ std::string operation_section(const OperationEntry& entry) {
     page += "\nReport (`--json`, member `result`):";
     if (!report.schema.empty()) page += fmt::format(" as specified by `doc/schema/{}.schema.json`.", report.schema);
     page += "\n\n";
-    add_fields(page, report.of_values, "");
+    add_fields(page, report.value_fields, "");
     if (report.checks) page += "- `sound`, `defects`, `findings`: what the check found\n";
     for (const auto& table : report.tables) {
         if (table.key.empty()) continue;

@@ -1,8 +1,8 @@
 // pair: registers two fragments along their common fracture.
 #include "operations.h"
 
-#include "ostraka/fracture/break_pair.h"
-#include "ostraka/reassembly/odd_fragments.h"
+#include "ostraka/fracture/pair_registration.h"
+#include "ostraka/reassembly/suspicious_fragments.h"
 #include "ostraka/reconstruction/fragment_file.h"
 
 #include <fmt/core.h>
@@ -36,10 +36,10 @@ struct PairFragments final : Operation {
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);
         const auto prepare = [&](const FileInput& slot, const Fragment& fragment) {
-            return in_file(slot.file(), [&] { return PreparedBreak(fragment, options); });
+            return in_file(slot.file(), [&] { return PreparedFracture(fragment, options); });
         };
-        BreakPair pair = pair_breaks(prepare(first, a.fragment), prepare(second, b.fragment), options);
-        for (const OddFragment& outlier : odd_fragments({a.fragment, b.fragment})) {
+        PairRegistration pair = register_fractures(prepare(first, a.fragment), prepare(second, b.fragment), options);
+        for (const SuspiciousFragment& outlier : suspicious_fragments({a.fragment, b.fragment})) {
             report.note(fmt::format("{} {}", printable((outlier.fragment == 0 ? first : second).file()), outlier.text));
             if (!outlier.left_out) continue;
             pair.undecided = "the second " + outlier.text;

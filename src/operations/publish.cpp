@@ -4,7 +4,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/interchange/feature_glb.h"
 #include "ostraka/interchange/web_annotation.h"

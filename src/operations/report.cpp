@@ -5,9 +5,9 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
 #include "ostraka/render/values.h"

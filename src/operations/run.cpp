@@ -2,9 +2,9 @@
 #include "operations.h"
 
 #include "ostraka/core/child_process.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 #include "ostraka/workflow/collect.h"
 #include "ostraka/workflow/crate.h"
 
@@ -102,7 +102,7 @@ struct Run final : Operation {
 
     void check() const override {
         if (dry_run && again) fail_usage("--dry-run and --again contradict each other", "give one of them");
-        static_cast<void>(share_from_text(shard));
+        static_cast<void>(parse_shard(shard));
     }
 
     [[nodiscard]] double memory_needed(double /*input_bytes*/) const override { return 0; }  // memory is checked for each step
@@ -112,8 +112,8 @@ struct Run final : Operation {
         options.only = only;
         options.dry_run = dry_run || !explain.empty();
         options.again = again;
-        options.share = share_from_text(shard);
-        options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
+        options.share = parse_shard(shard);
+        options.program_folder = programs.empty() ? executable_folder() : Path(programs);
         if (!explain.empty()) options.only = {explain};
         const Path file = study.path();
         StudyOptions reading;
@@ -254,7 +254,7 @@ struct Replay final : Operation {
         RunStudyOptions options;
         options.only = request.only;
         options.again = true;
-        options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
+        options.program_folder = programs.empty() ? executable_folder() : Path(programs);
         std::optional<ScratchFolder> scratch;
         if (!output) scratch.emplace("replay");
         const Path repeated = output ? output.open() : scratch->path();

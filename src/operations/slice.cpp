@@ -118,7 +118,7 @@ struct SliceObject final : Operation {
 
     void run(Context& context, Report& report) override {
         read_part();
-        const CutObject cut = in_file(mesh.file(), [&] { return cut_slices(); });
+        const SlicedObject cut = in_file(mesh.file(), [&] { return cut_slices(); });
         if (!cut.reason.empty()) {
             report.note(fmt::format("{}: {} (slice along another --direction)", mesh.file(), cut.reason));
             return report.answer_no();
@@ -140,10 +140,10 @@ struct SliceObject final : Operation {
             fail_usage("--plane is one slice", "leave out --count, --spacing, --heights, --direction");
         if (direction == "skeleton" && (spacing || !heights.empty()))
             fail_usage("--spacing and --heights with --direction skeleton", "give --count");
-        if (spacing && !(*spacing > 0 && *spacing <= largest_coordinate))
+        if (spacing && !(*spacing > 0 && *spacing <= max_coordinate))
             fail_usage("--spacing is " + number(*spacing), "give a length above 0, in the mesh's unit");
         for (const double height : heights)
-            if (!(std::abs(height) <= largest_coordinate))
+            if (!(std::abs(height) <= max_coordinate))
                 fail_usage("--heights has " + number(height), "give heights above the lowest point, in the mesh's unit");
         if (range.size() != 2 || !(range[0] < range[1]))
             fail_usage(fmt::format("--range is '{}'", comma_separated(range)),
@@ -198,10 +198,10 @@ struct SliceObject final : Operation {
         upwards = {upward[0], upward[1], upward[2]};
     }
 
-    [[nodiscard]] CutObject cut_slices() const {
-        CutObject cut;
+    [[nodiscard]] SlicedObject cut_slices() const {
+        SlicedObject cut;
         if (!plane.empty()) {
-            cut = cut_parallel(sliced_mesh(), frame_of_plane(), {0}, faces);
+            cut = slice_parallel(sliced_mesh(), frame_of_plane(), {0}, faces);
         } else {
             CutOptions options{requested_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
@@ -218,7 +218,7 @@ struct SliceObject final : Operation {
         return cut;
     }
 
-    void write(SliceForm form, const Path& file, const CutObject& cut, Context& context, Report& report) const {
+    void write(SliceForm form, const Path& file, const SlicedObject& cut, Context& context, Report& report) const {
         context.check_output(file);
         switch (form) {
             case SliceForm::json:
@@ -242,7 +242,7 @@ struct SliceObject final : Operation {
     }
 
     /// Whether any plane meets the mesh; otherwise nothing is drawn.
-    static bool is_drawable(const std::string& name, const CutObject& cut, Report& report) {
+    static bool is_drawable(const std::string& name, const SlicedObject& cut, Report& report) {
         if (!cut.met()) report.note(fmt::format("no plane meets the mesh: {} is not written", name));
         return cut.met();
     }
@@ -250,7 +250,7 @@ struct SliceObject final : Operation {
     [[nodiscard]] std::string name_of_drawing() const { return title.empty() ? mesh.file_name() : title; }
 
     /// The slices to draw: all, or the requested number, evenly distributed.
-    [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
+    [[nodiscard]] SliceSheet sheet(const SlicedObject& cut) const {
         const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
         content.title = fmt::format("{}: {}", name_of_drawing(), counted(n, "slice"));
@@ -273,7 +273,7 @@ struct SliceObject final : Operation {
     }
 
     /// Draws the profile; of an object that is not a surface of revolution only if requested.
-    void draw_profile(const Path& file, bool is_requested, const CutObject& cut, Report& report) const {
+    void draw_profile(const Path& file, bool is_requested, const SlicedObject& cut, Report& report) const {
         const double section_angle = angle ? *angle * pi / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
         const Profile found_profile = find_profile(sliced_mesh(), axis, section_angle);
@@ -297,7 +297,7 @@ struct SliceObject final : Operation {
         write_profile_drawing(file, found_profile, name_of_drawing(), unit_of_lengths);
     }
 
-    void add_notes(Report& report, const CutObject& cut) const {
+    void add_notes(Report& report, const SlicedObject& cut) const {
         if (!up_known && (direction == "rotation" || direction == "principal"))
             report.note("which end of the axis points up is unknown (0,0,1 is assumed): if the object is upside down, give --up");
         if (!cut.parallel && is_hollow(sliced_mesh(), upwards, faces))

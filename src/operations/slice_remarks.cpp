@@ -35,7 +35,7 @@ bool slice_has_holes_only(const Slice& slice) {
                        [](const Contour& c) { return !c.closed || (c.hole && c.parent < 0); });
 }
 
-void add_slice_soundness(std::vector<std::string>& remarks, const CutObject& cut) {
+void add_slice_soundness(std::vector<std::string>& remarks, const SlicedObject& cut) {
     const auto add = [&](const auto& holds, const char* problem) {
         if (const std::string affected = slices_where(cut.slices, holds); !affected.empty())
             remarks.push_back(affected + problem);
@@ -54,7 +54,7 @@ void add_slice_soundness(std::vector<std::string>& remarks, const CutObject& cut
 
 }  // namespace
 
-std::vector<std::string> slice_remarks(const CutObject& cut, bool one_plane) {
+std::vector<std::string> slice_remarks(const SlicedObject& cut, bool one_plane) {
     std::size_t met = 0, closed = 0, open = 0;
     for (const auto& slice : cut.slices) {
         met += slice.contours.empty() ? 0 : 1;

@@ -117,7 +117,7 @@ void add_slice_descriptors(Report::Row& row, const SliceDescriptors& descriptors
     }
 }
 
-void add_one_slice(Report& report, const CutObject& cut, std::size_t i) {
+void add_one_slice(Report& report, const SlicedObject& cut, std::size_t i) {
     auto& allocator = report.allocator();
     const Slice& slice = cut.slices[i];
     Report::Row row = report.row("slices");
@@ -218,7 +218,7 @@ void declare_slices(ReportLayout& layout) {
 }
 
 void add_slices(Report& report, const SliceFindings& findings) {
-    const CutObject& cut = findings.cut;
+    const SlicedObject& cut = findings.cut;
     report.set_unit(findings.unit);
     if (!findings.unit.empty()) report("unit", findings.unit);
     report("planes", cut.parallel ? "parallel" : "across a curve")("reversed", cut.reversed);
@@ -235,7 +235,7 @@ void add_slices(Report& report, const SliceFindings& findings) {
     if (!findings.one_plane) add_slice_tube(report, findings);
 }
 
-std::string slice_table(const CutObject& cut, const std::string& unit) {
+std::string slice_table(const SlicedObject& cut, const std::string& unit) {
     std::vector<std::string> header{"slice",           "unit",          cut.parallel ? "height" : "along_the_curve",
                                     "contours",        "open_contours", "closed_share",
                                     "share",           "share_low",     "share_high",
@@ -274,7 +274,7 @@ std::vector<std::string> slice_quantities() {
     return names;
 }
 
-std::vector<Colour> slice_colours(const Mesh& mesh, const CutObject& cut, const std::string& quantity) {
+std::vector<Colour> slice_colours(const Mesh& mesh, const SlicedObject& cut, const std::string& quantity) {
     std::vector<double> values;
     for (std::size_t i = 0; i < cut.slices.size(); ++i) {
         values.push_back(cut.slices[i].height);

@@ -27,7 +27,7 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
 }
 
 void StudyFiles::check() const {
-    static_cast<void>(share_from_text(shard_));
+    static_cast<void>(parse_shard(shard_));
     const Path &collection_path = collection.sources.front().file, &output_folder = output.sources.front().file;
     if (!collection_path.empty() && !output_folder.empty() &&
         same_place(output_folder, is_folder(collection_path) ? collection_path : collection_path.parent_path()))
@@ -40,7 +40,7 @@ void StudyFiles::check() const {
 Collection StudyFiles::read(Context& context, bool all) const {
     Collection result;
     context.record([&] {
-        result = read_collection(collection.path(), all ? Share() : share_from_text(shard_));
+        result = read_collection(collection.path(), all ? Share() : parse_shard(shard_));
         if (truth_) set_labels(result, read_labels(truth_.path(), truth_column_), truth_.file());
         if (own_truth_) {
             const Path table = collection.path() / "truth.csv";

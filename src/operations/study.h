@@ -20,12 +20,12 @@ public:
 
     /// Store of per-object results that persists between runs; `kind` is a folder in the output folder.
     [[nodiscard]] ResultStore store(const std::string& kind = "objects") const {
-        return ResultStore(output.path() / kind, share_from_text(shard_));
+        return ResultStore(output.path() / kind, parse_shard(shard_));
     }
     /// Whether this run processes one shard of the objects only (--shard): then it reports their state, and no results are
     /// gathered.
     bool ends_with_part(Report& report, const std::vector<ObjectResult>& results) const;
-    [[nodiscard]] bool is_part() const { return !share_from_text(shard_).is_whole(); }
+    [[nodiscard]] bool is_part() const { return !parse_shard(shard_).is_whole(); }
     [[nodiscard]] const std::string& shard() const { return shard_; }
     [[nodiscard]] Path in(const std::string& name) const { return output.in(name); }
     /// Path of a plot in the output folder, with the extension of the requested format.

@@ -69,14 +69,14 @@ struct StudyLandmarks final : StudyOperation {
 
     /// Reports odd specimens, and removes them if requested.
     void report_unusual(Report& report, LandmarkShapes& shapes) const {
-        std::vector<OddSpecimen> specimens = odd_specimens(shapes);
+        std::vector<ShapeOutlier> specimens = shape_outliers(shapes);
         if (leave_odd_out && specimens.size() < shapes.objects.size()) {
             shapes = without(shapes, specimens);
-            for (OddSpecimen& specimen : specimens) specimen.left_out = true;
+            for (ShapeOutlier& specimen : specimens) specimen.left_out = true;
         }
         specimens.insert(specimens.begin(), shapes.odd.begin(), shapes.odd.end());
         report.empty_table("odd");
-        for (const OddSpecimen& specimen : specimens) {
+        for (const ShapeOutlier& specimen : specimens) {
             report.row("odd")("name", specimen.name)("why", specimen.why)("leftOut", specimen.left_out);
             report.note(fmt::format("{}: {}: {}", specimen.left_out ? "left out" : "unusual", specimen.name, specimen.why));
         }

@@ -77,7 +77,7 @@ TextTable verdict_table(const ProportionStudy& study, double false_discoveries) 
         table.add({ratio->row.name, std::to_string(s.count), number_cell(s.mean, 4), percent_cell(s.variation),
                    share_interval_cell(ratio->row.variation_interval), number_cell(ratio->p_pairing, 2),
                    number_cell(ratio->p_others, 2), number_cell(ratio->p_size, 2), number_cell(ratio->q, 2),
-                   to_string(ratio->fixedness), not_fixed_because(*ratio, false_discoveries)});
+                   to_string(ratio->fixedness), reason_not_fixed(*ratio, false_discoveries)});
     }
     return table;
 }
@@ -157,7 +157,7 @@ struct StudyProportions final : StudyOperation {
             report.empty_table("failed");
         } else {
             const Collection collection = files.read(context);
-            const TagWords words = vocabulary.words();
+            const TagMatcher words = vocabulary.words();
             const std::vector<ObjectResult> measured =
                 take_measures(collection, definitions(), files.store(), vocabulary ? &words : nullptr, vocabulary.checksum());
             if (files.ends_with_part(report, measured)) return;

@@ -180,7 +180,7 @@ struct TemplateClassify final : Operation {
 
     static std::vector<std::string> explanation_lines(const ClassAnswer& class_answer) {
         std::vector<std::string> lines = class_answer.odd;
-        for (const std::string& line : explained_text(class_answer.fit)) lines.push_back(line);
+        for (const std::string& line : fit_explanation(class_answer.fit)) lines.push_back(line);
         lines.insert(lines.end(), class_answer.fit.notes.begin(), class_answer.fit.notes.end());
         return lines;
     }

@@ -4,7 +4,7 @@
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/markup.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/measure/measure.h"
 
 #include <zlib.h>
@@ -82,7 +82,7 @@ std::string Page::data(const std::string& made_how) const {
     auto& allocator = document.GetAllocator();
     document.CopyFrom(document_, allocator);
     const auto copy = [&](const JsonValue& value) { return JsonValue(value, allocator); };
-    add_given(document, allocator, "collection", copy(entries_));
+    add_nonempty_members(document, allocator, "collection", copy(entries_));
     add_members(document, allocator, "notes", copy(notes_), "provenance", made_how, "objects", copy(objects_), "tables",
                 copy(tables_), "drawings", copy(drawings_), "blobs", copy(places_));
     return with_markup_escaped(to_compact_text(document));

@@ -5,8 +5,8 @@
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/provenance.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
@@ -153,11 +153,11 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
                 JsonValue entry = json_object(
                     allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
                     json_list(pins_of(mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
-                const auto measured_path =
-                    json_list(way_of(paths, mesh, measure), allocator, [&](const Point& at) { return relative(triple(at)); });
-                add_given(entry, allocator, "way", measured_path);
+                const auto measured_path = json_list(path_of_measure(paths, mesh, measure), allocator,
+                                                     [&](const Point& at) { return relative(triple(at)); });
+                add_nonempty_members(entry, allocator, "way", measured_path);
                 if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
-                add_given(entry, allocator, "stale", measure.stale);
+                add_nonempty_members(entry, allocator, "stale", measure.stale);
                 measures.PushBack(entry, allocator);
             } else {
                 const bool is_word = attribute.type == AttributeType::semantic;
@@ -169,7 +169,7 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
         JsonValue entry = json_object(allocator, "id", annotation.id, "tag", annotation.tag, "type", to_string(annotation.type),
                                       "colour", annotation.colour, "parent", parents[i] ? static_cast<int>(*parents[i]) : -1,
                                       "attributes", std::move(attributes), "measures", std::move(measures));
-        add_given(entry, allocator, "note", annotation.note);
+        add_nonempty_members(entry, allocator, "note", annotation.note);
         if (annotation.type == AnnotationType::region)
             add_members(entry, allocator, "faces",
                         json_object(allocator, "count", annotation.faces.size(), "blob", keep(runs_of(annotation.faces))));
@@ -345,14 +345,14 @@ std::size_t Page::add(const PageObject& object) {
         add_members(target, allocator, "shape", exact_json(shape, bounding_box.low, exact, keep, allocator));
     };
     add_shape(entry, soup, box, "");
-    add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& constraint) {
-                  return constraint_json(constraint, allocator);
-              }));
-    add_given(entry, allocator, "conflicts", object.conflicts);
-    add_given(entry, allocator, "conformance", json_list(object.conformance, allocator, [&](const PageVerdict& verdict) {
-                  return verdict_json(verdict, allocator);
-              }));
-    add_given(entry, allocator, "parts", object.parts);
+    add_nonempty_members(entry, allocator, "constraints",
+                         json_list(object.constraints, allocator,
+                                   [&](const PageConstraint& constraint) { return constraint_json(constraint, allocator); }));
+    add_nonempty_members(entry, allocator, "conflicts", object.conflicts);
+    add_nonempty_members(
+        entry, allocator, "conformance",
+        json_list(object.conformance, allocator, [&](const PageVerdict& verdict) { return verdict_json(verdict, allocator); }));
+    add_nonempty_members(entry, allocator, "parts", object.parts);
     if (object.slices != nullptr) add_members(entry, allocator, "slices", slices_json(*object.slices, relative, keep, allocator));
     if (object.whole)
         add_members(entry, allocator, "simplified",

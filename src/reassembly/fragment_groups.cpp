@@ -26,7 +26,7 @@ constexpr double hopeless_edge = 4;
 
 }  // namespace
 
-FragmentGroups::FragmentGroups(const LooseFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options)
+FragmentGroups::FragmentGroups(const PreparedFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options)
     : fragments_(fragments),
       graph_(graph),
       min_log_odds_(logit(std::clamp(options.min_join, 1e-6, 1 - 1e-6))),
@@ -47,8 +47,8 @@ void FragmentGroups::merge(bool all_pairs) {
     else join_lazily();
 }
 
-std::vector<UndoneJoin> FragmentGroups::undone() const {
-    std::vector<UndoneJoin> rejected;
+std::vector<RejectedJoin> FragmentGroups::undone() const {
+    std::vector<RejectedJoin> rejected;
     for (const std::size_t e : order_) {
         const PairEdge& edge = graph_.edges()[e];
         if (edge.pair_log_odds < min_log_odds_) continue;
@@ -291,7 +291,7 @@ std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> Fragme
 }
 
 void FragmentGroups::refine(const std::vector<std::size_t>& group, int rounds) {
-    std::vector<const PreparedBreak*> fragments;
+    std::vector<const PreparedFracture*> fragments;
     std::vector<Motion> poses;
     std::map<std::size_t, std::size_t> index;
     for (const std::size_t k : group) {

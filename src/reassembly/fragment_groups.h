@@ -12,13 +12,13 @@ namespace ostraka {
 class FragmentGroups {
 public:
     /// Starts with single fragments.
-    FragmentGroups(const LooseFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options);
+    FragmentGroups(const PreparedFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options);
 
     /// Joins groups while the probability is high enough. `all_pairs`: few fragments, all edges are re-evaluated after each join;
     /// otherwise edges are re-evaluated lazily.
     void merge(bool all_pairs);
     /// Likely poses that were rejected.
-    [[nodiscard]] std::vector<UndoneJoin> undone() const;
+    [[nodiscard]] std::vector<RejectedJoin> undone() const;
 
     /// Groups of two or more fragments, largest first.
     [[nodiscard]] std::vector<std::vector<std::size_t>> groups() const;
@@ -50,7 +50,7 @@ private:
     void join_lazily();
     void join(const PairEdge& edge, const Motion& move);
 
-    const LooseFragments& fragments_;
+    const PreparedFragments& fragments_;
     const PairGraph& graph_;
     double min_log_odds_;             ///< min log odds of a join
     std::vector<std::size_t> order_;  ///< edges, most certain first

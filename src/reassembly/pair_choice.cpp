@@ -10,7 +10,8 @@ namespace ostraka {
 namespace {
 
 /// All pairs; with many fragments, each fragment with those of most similar fracture width.
-FragmentPairs pairs_of_similar_width(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, std::size_t max_neighbours) {
+FragmentPairs pairs_of_similar_width(const std::vector<std::unique_ptr<PreparedFracture>>& fragments,
+                                     std::size_t max_neighbours) {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < fragments.size(); ++k)
         if (fragments[k]) order.push_back(k);
@@ -26,7 +27,7 @@ FragmentPairs pairs_of_similar_width(const std::vector<std::unique_ptr<PreparedB
 
 }  // namespace
 
-PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options) {
+PairEffort pair_effort(std::size_t fragments, const ReassemblyOptions& options) {
     const auto partners = static_cast<std::size_t>(options.partners);
     PairEffort effort;
     effort.prepared = effort.first = effort.thorough = options.pairs;
@@ -49,7 +50,7 @@ PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options)
     return effort;
 }
 
-FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, const PairEffort& effort) {
+FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedFracture>>& fragments, const PairEffort& effort) {
     const FragmentPairs pairs = pairs_of_similar_width(fragments, std::max<std::size_t>(60, 2 * effort.partners));
     if (effort.all_pairs) return pairs;
     // Very many pairs are compared with fewer frames each.
@@ -60,7 +61,7 @@ FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedBreak>>&
     parallel_for(
         pairs.size(),
         [&](std::size_t p) {
-            score[p] = quick_fit(*fragments[pairs[p].first], *fragments[pairs[p].second], effort.first, places);
+            score[p] = initial_pair_score(*fragments[pairs[p].first], *fragments[pairs[p].second], effort.first, places);
             progress.advance();
         },
         16);

@@ -22,10 +22,10 @@ struct PairEffort {
 /// Up to `partners` + 1 fragments: all pairs, with the given options. More fragments: the work is bounded. The pairs with the
 /// best quick fit are tried with fewer starts and, from a hundred fragments on, fewer frames; a bounded number of those that
 /// stay open is tried thoroughly. All limits depend on the number of fragments only.
-PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options);
+PairEffort pair_effort(std::size_t fragments, const ReassemblyOptions& options);
 
 /// Pairs to try, in order. With many fragments: pairs in which one is among the best quick fits of the other; only fractures of
 /// similar width are compared. `fragments`: null for a fragment that takes no part.
-FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, const PairEffort& effort);
+FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedFracture>>& fragments, const PairEffort& effort);
 
 }  // namespace ostraka

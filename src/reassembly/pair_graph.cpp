@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-PairGraph::PairGraph(const LooseFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result)
+PairGraph::PairGraph(const PreparedFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result)
     : fragments_(fragments) {
     const FragmentPairs pairs = promising_pairs(fragments.prepared(), effort);
     const std::size_t participants = fragments.taking_part();
@@ -28,16 +28,16 @@ PairGraph::PairGraph(const LooseFragments& fragments, const PairEffort& effort, 
         if (open.size() > effort.max_thorough) open.resize(effort.max_thorough);
         FragmentPairs open_pairs;
         for (const std::size_t p : open) open_pairs.push_back(pairs[p]);
-        std::vector<PairOfMany> better = register_pairs("register likely pairs thoroughly", open_pairs, effort.thorough, memory);
+        std::vector<PairResult> better = register_pairs("register likely pairs thoroughly", open_pairs, effort.thorough, memory);
         for (std::size_t k = 0; k < open.size(); ++k) pairs_[open[k]] = std::move(better[k]);
     }
     make_edges();
     close_loops();
 }
 
-std::vector<PairOfMany> PairGraph::register_pairs(const std::string& phase, const FragmentPairs& pairs,
+std::vector<PairResult> PairGraph::register_pairs(const std::string& phase, const FragmentPairs& pairs,
                                                   const PairOptions& options, const PairMemory& memory) const {
-    std::vector<PairOfMany> result(pairs.size());
+    std::vector<PairResult> result(pairs.size());
     std::mutex memory_mutex;
     Progress progress(phase, pairs.size());
     parallel_for(
@@ -45,14 +45,14 @@ std::vector<PairOfMany> PairGraph::register_pairs(const std::string& phase, cons
         [&](std::size_t p) {
             check_cancelled();
             const auto [i, j] = pairs[p];
-            std::optional<PairOfMany> pair;
+            std::optional<PairResult> pair;
             if (memory.recall) {
                 const std::lock_guard lock(memory_mutex);
                 pair = memory.recall(i, j, options);
             }
             if (!pair) {
-                BreakPair registration = pair_breaks(fragments_[i], fragments_[j], options);
-                pair = PairOfMany{i, j, std::move(registration.candidates), registration.confidence};
+                PairRegistration registration = register_fractures(fragments_[i], fragments_[j], options);
+                pair = PairResult{i, j, std::move(registration.candidates), registration.confidence};
                 const std::lock_guard lock(memory_mutex);
                 if (memory.keep) memory.keep(*pair, options);
             }
@@ -64,12 +64,12 @@ std::vector<PairOfMany> PairGraph::register_pairs(const std::string& phase, cons
 }
 
 double PairGraph::probable(double alone) const {
-    return probability(logit(std::clamp(alone, 1e-9, 1 - 1e-9)) + log_odds_of_a_join_among(fragments_.count()));
+    return probability(logit(std::clamp(alone, 1e-9, 1 - 1e-9)) + join_log_odds_correction(fragments_.count()));
 }
 
 void PairGraph::make_edges() {
     constexpr double min_probability = 0.002;
-    for (const PairOfMany& pair : pairs_) {
+    for (const PairResult& pair : pairs_) {
         for (std::size_t c = 0; c < pair.candidates.size(); ++c) {
             const double log_odds = pair.candidates[c].log_odds, best = pair.candidates.front().log_odds,
                          lead = c > 0                        ? log_odds - best

@@ -1,7 +1,7 @@
 // All candidates of all pairs that were tried, and the loops they close.
 #pragma once
 
-#include "loose_fragments.h"
+#include "prepared_fragments.h"
 
 #include <cmath>
 #include <map>
@@ -27,9 +27,9 @@ struct PairEdge {
 class PairGraph {
 public:
     /// Tries the promising pairs and writes their number to `result`.
-    PairGraph(const LooseFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result);
+    PairGraph(const PreparedFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result);
 
-    [[nodiscard]] const std::vector<PairOfMany>& pairs() const { return pairs_; }
+    [[nodiscard]] const std::vector<PairResult>& pairs() const { return pairs_; }
     [[nodiscard]] const std::vector<PairEdge>& edges() const { return edges_; }
     /// Candidates of a pair, the lower index first; empty for a pair that was not tried.
     [[nodiscard]] const std::vector<std::size_t>& edges_of(std::size_t i, std::size_t j) const;
@@ -37,13 +37,13 @@ public:
     [[nodiscard]] double probable(double alone) const;
 
 private:
-    [[nodiscard]] std::vector<PairOfMany> register_pairs(const std::string& phase, const FragmentPairs& pairs,
+    [[nodiscard]] std::vector<PairResult> register_pairs(const std::string& phase, const FragmentPairs& pairs,
                                                          const PairOptions& options, const PairMemory& memory) const;
     void make_edges();
     void close_loops();
 
-    const LooseFragments& fragments_;
-    std::vector<PairOfMany> pairs_;
+    const PreparedFragments& fragments_;
+    std::vector<PairResult> pairs_;
     std::vector<PairEdge> edges_;
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> pair_edges_;  ///< edges; the lower index first
 };

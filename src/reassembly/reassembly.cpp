@@ -17,7 +17,7 @@ class Assembler {
 public:
     Assembler(const std::vector<Fragment>& fragments, const ReassemblyOptions& options, const PairMemory& memory)
         : options_(options),
-          effort_(effort_among(fragments.size(), options)),
+          effort_(pair_effort(fragments.size(), options)),
           result_(nothing_joined(fragments.size())),
           fragments_(fragments, options, effort_, result_.alone),
           graph_(fragments_, effort_, memory, result_),
@@ -121,7 +121,7 @@ private:
         const PairCandidate* best = nullptr;
         double maximum = -1;
         std::size_t other = k;
-        for (const PairOfMany& pair : graph_.pairs()) {
+        for (const PairResult& pair : graph_.pairs()) {
             if ((pair.first != k && pair.second != k) || pair.candidates.empty() || pair.confidence <= maximum) continue;
             maximum = pair.confidence;
             best = &pair.candidates.front();
@@ -140,7 +140,7 @@ private:
         if (corrected < options_.min_join)
             return fmt::format("{}; a join needs at least {}: {}", text, percent(options_.min_join),
                                weakest_evidence(best->evidence));
-        for (const UndoneJoin& rejected : result_.undone)
+        for (const RejectedJoin& rejected : result_.undone)
             if (rejected.first == std::min(k, other) && rejected.second == std::max(k, other))
                 return fmt::format("{}; not joined, since {}", text, rejected.reason);
         return text + "; not joined, since other contacts of the join do not fit";
@@ -149,7 +149,7 @@ private:
     const ReassemblyOptions& options_;
     PairEffort effort_;
     Reassembly result_;
-    LooseFragments fragments_;
+    PreparedFragments fragments_;
     PairGraph graph_;
     FragmentGroups groups_;
 };

@@ -29,7 +29,7 @@ double number_of(const JsonValue& value) {
 
 }  // namespace
 
-JsonValue pair_of_many_to_json(const PairOfMany& pair, JsonAllocator& allocator) {
+JsonValue pair_result_to_json(const PairResult& pair, JsonAllocator& allocator) {
     const auto candidate_to_json = [&](const PairCandidate& candidate) {
         std::vector<double> evidence;
         for (const auto member : evidence_members) evidence.push_back(candidate.evidence.*member);
@@ -45,13 +45,13 @@ JsonValue pair_of_many_to_json(const PairOfMany& pair, JsonAllocator& allocator)
                        json_list(pair.candidates, allocator, candidate_to_json));
 }
 
-PairOfMany pair_of_many_from_json(const JsonValue& value, std::size_t first, std::size_t second) {
+PairResult pair_result_from_json(const JsonValue& value, std::size_t first, std::size_t second) {
     const auto member_list = [](const JsonValue& object, const char* name, std::size_t size) -> const JsonValue& {
         if (!object.IsObject() || !object.HasMember(name) || !object[name].IsArray() || (size > 0 && object[name].Size() != size))
             fail_input("pair", fmt::format("has no list \"{}\" of the expected length", name), "remove the file");
         return object[name];
     };
-    PairOfMany pair{first, second, {}, 0};
+    PairResult pair{first, second, {}, 0};
     if (!value.IsObject() || !value.HasMember("confidence")) fail_input("pair", "has no confidence", "remove the file");
     pair.confidence = number_of(value["confidence"]);
     for (const JsonValue& entry : member_list(value, "candidates", 0).GetArray()) {
@@ -101,7 +101,7 @@ JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::st
                            "penetration", join.evidence.penetration, "pose", pose_to_json(join.pose, allocator), "because",
                            join.reason);
     };
-    const auto rejected_to_json = [&](const UndoneJoin& rejected) {
+    const auto rejected_to_json = [&](const RejectedJoin& rejected) {
         return json_object(allocator, "first", names[rejected.first], "second", names[rejected.second], "byTheTwoAlone",
                            rejected.pair, "because", rejected.reason);
     };

@@ -37,7 +37,7 @@ struct PlaneDistance {
 
 }  // namespace
 
-void refine_group(const std::vector<const PreparedBreak*>& fragments, const std::vector<MeetingPair>& meetings,
+void refine_group(const std::vector<const PreparedFracture*>& fragments, const std::vector<MeetingPair>& meetings,
                   std::vector<Motion>& poses, int rounds) {
     const std::size_t n = fragments.size();
     if (n < 2 || meetings.empty()) return;

@@ -1,7 +1,7 @@
 // Refines the poses of the fragments of a group together.
 #pragma once
 
-#include "ostraka/fracture/break_pair.h"
+#include "ostraka/fracture/pair_registration.h"
 
 #include <vector>
 
@@ -16,7 +16,7 @@ struct MeetingPair {
 /// Minimises the distances of all contact points from their planes over all poses except that of the first fragment (Levenberg
 /// and Marquardt, by Ceres; a robust loss whose width is the tolerance). The contacts are updated `rounds` times, from twice
 /// the tolerance down to it. `poses` map each of `fragments` into one frame.
-void refine_group(const std::vector<const PreparedBreak*>& fragments, const std::vector<MeetingPair>& meetings,
+void refine_group(const std::vector<const PreparedFracture*>& fragments, const std::vector<MeetingPair>& meetings,
                   std::vector<Motion>& poses, int rounds);
 
 }  // namespace ostraka

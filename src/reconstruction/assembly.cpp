@@ -45,7 +45,7 @@ JsonValue search_to_json(const PoseSearchResult& search, JsonAllocator& allocato
     return entry;
 }
 
-JsonValue joint_to_json(const BreakJoint& joint, const std::vector<std::string>& names, JsonAllocator& allocator) {
+JsonValue joint_to_json(const FractureJoint& joint, const std::vector<std::string>& names, JsonAllocator& allocator) {
     JsonValue item =
         json_object(allocator, "first", names[static_cast<std::size_t>(joint.first)], "second",
                     names[static_cast<std::size_t>(joint.second)], "turn", joint.rotation, "score", joint.score, "contact",
@@ -123,7 +123,7 @@ JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& na
     JsonValue assembly = json_object(allocator, "format", "ostraka-assembly", "version", 1, "template", names.template_file,
                                      "scale", result.placement.scale, "fragments", std::move(fragments));
     if (result.rotations) {
-        const auto joint_entry = [&](const BreakJoint& joint) { return joint_to_json(joint, names.fragments, allocator); };
+        const auto joint_entry = [&](const FractureJoint& joint) { return joint_to_json(joint, names.fragments, allocator); };
         add_members(assembly, allocator, "joints", json_list(result.rotations->joints, allocator, joint_entry), "wall",
                     result.rotations->wall);
     }

@@ -4,8 +4,8 @@
 #include "seam.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -16,7 +16,7 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-std::string to_string(Origin origin) { return word_for(origin, {"observed", "interpolated", "hypothesis"}); }
+std::string to_string(Origin origin) { return enum_name(origin, {"observed", "interpolated", "hypothesis"}); }
 
 namespace {
 

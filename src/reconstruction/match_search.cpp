@@ -90,7 +90,7 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
 void MatchSearch::add_path_correspondences(const AnnotationSet& set) {
     for (std::size_t k = 0; k < fragments_.size(); ++k) {
         const PlacedFragment& fragment = fragments_[k];
-        std::vector<bool> broken = not_broken(fragment.facets);
+        std::vector<bool> broken = intact_faces(fragment.facets);
         broken.flip();
         std::vector<std::pair<Index, Index>> landmarks;
         for (std::size_t l = 0; l < landmarks_.size(); ++l)
@@ -119,7 +119,7 @@ void MatchSearch::add_path_correspondences(const AnnotationSet& set) {
 
 void MatchSearch::recognise_shared_faces() {
     for (const PlacedFragment& fragment : fragments_) {
-        std::vector<bool> broken = not_broken(fragment.facets);
+        std::vector<bool> broken = intact_faces(fragment.facets);
         broken.flip();
         std::vector<Index> vertices = shared_vertices(template_, fragment.mesh, scale_, broken);
         bool complete = !vertices.empty();

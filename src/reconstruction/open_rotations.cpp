@@ -78,7 +78,7 @@ std::optional<RotationMatch> decide_open_rotations(const Mesh& scaled, const std
         result.overlap[k] = match.overlap[i];
         result.notes[k] = std::move(match.notes[i]);
     }
-    for (BreakJoint& joint : match.joints) {
+    for (FractureJoint& joint : match.joints) {
         joint.first = static_cast<int>(placed_indices[static_cast<std::size_t>(joint.first)]);
         joint.second = static_cast<int>(placed_indices[static_cast<std::size_t>(joint.second)]);
         result.joints.push_back(joint);

@@ -32,7 +32,7 @@ std::string PoseSearches::key_of(const Fragment& fragment, double min_scale, dou
 }
 
 std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, double min_scale, double max_scale) {
-    const std::vector<bool> counts = not_broken(fragment.facets);
+    const std::vector<bool> counts = intact_faces(fragment.facets);
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
     const std::string key = key_of(fragment, min_scale, max_scale);
     if (const auto entry = stored_.find(key); entry != stored_.end()) {

@@ -76,7 +76,7 @@ RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& 
 }  // namespace
 
 /// A fragment with its cached results.
-struct KnownFragment {
+struct FragmentState {
     const Fragment* fragment = nullptr;
     std::vector<StatedMatch> stated;
     std::vector<LandmarkPair> pairs;  ///< with the template
@@ -101,9 +101,9 @@ struct KnownFragment {
 };
 
 /// The template and its fragments, with the data kept between reconstructions.
-struct KnownObject {
-    KnownObject(const Mesh& template_mesh, const AnnotationSet& annotations, const RelationGraph& relations,
-                const ReconstructOptions& reconstruct_options, const ShapePrior* class_prior, const TemplateCage* cage)
+struct ReconstructionState {
+    ReconstructionState(const Mesh& template_mesh, const AnnotationSet& annotations, const RelationGraph& relations,
+                        const ReconstructOptions& reconstruct_options, const ShapePrior* class_prior, const TemplateCage* cage)
         : mesh(template_mesh),
           set(annotations),
           graph(relations),
@@ -120,7 +120,7 @@ struct KnownObject {
     PoseSearches searches;
     TemplateFitter fitter;
     std::optional<std::vector<std::pair<Index, Index>>> crossings;  ///< of the template's faces
-    std::vector<KnownFragment> fragments;
+    std::vector<FragmentState> fragments;
 };
 
 namespace {
@@ -128,8 +128,8 @@ namespace {
 /// One reconstruction from the current fragments, phase by phase.
 class ReconstructionRun {
 public:
-    explicit ReconstructionRun(KnownObject& object) : prepared_(object) {
-        for (const KnownFragment& fragment : object.fragments) {
+    explicit ReconstructionRun(ReconstructionState& object) : prepared_(object) {
+        for (const FragmentState& fragment : object.fragments) {
             fragments_.push_back(fragment.fragment);
             pairs_.push_back(fragment.pairs);
         }
@@ -154,7 +154,7 @@ private:
     }
 
     void place() {
-        for (const KnownFragment& fragment : prepared_.fragments) result_.notes.push_back(fragment.notes);
+        for (const FragmentState& fragment : prepared_.fragments) result_.notes.push_back(fragment.notes);
         result_.placement = place_by_landmarks(pairs_, prepared_.options.placement);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             for (const auto& [first, second] : result_.placement.fragments[k].swapped)
@@ -172,7 +172,7 @@ private:
         constexpr double max_offset = 0.1;  // share of the template's diagonal
         const double scale = result_.placement.scale, limit = max_offset * scale * box_diagonal(prepared_.mesh);
         FragmentPlacement& placed = result_.placement.fragments[k];
-        if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
+        if (resolve_open_motions(pairs_[k], scale, limit, *result_.searched[k], placed)) {
             result_.notes[k].push_back("the motions that the search for its pose left open are decided by its landmarks");
             return;
         }
@@ -218,14 +218,14 @@ private:
             FragmentPlacement& placement = result_.placement.fragments[k];
             const Fragment& fragment = *fragments_[k];
             if (!placement.problem.empty()) continue;
-            const std::vector<bool> counts = not_broken(fragment.facets);
+            const std::vector<bool> counts = intact_faces(fragment.facets);
             if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) continue;
             std::vector<Anchor> anchors;
             const std::vector<LandmarkPair>& pairs = pairs_[k];
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
-            std::optional<KnownFragment::Refined>& cached = prepared_.fragments[k].refined;
+            std::optional<FragmentState::Refined>& cached = prepared_.fragments[k].refined;
             const double scale = result_.placement.scale;
             if (!cached || shaped_ || cached->scale != scale || cached->start != placement.pose || cached->anchors != anchors) {
                 if (!surface) surface.emplace(scaled_);
@@ -272,7 +272,7 @@ private:
             const FragmentPlacement& placement = result_.placement.fragments[k];
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
-            std::optional<KnownFragment::Matched>& cached = prepared_.fragments[k].matched;
+            std::optional<FragmentState::Matched>& cached = prepared_.fragments[k].matched;
             if (!cached || shaped_ || cached->scale != result_.placement.scale || cached->pose != placement.pose) {
                 result_.annotations[k] =
                     match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
@@ -358,7 +358,7 @@ private:
         result_.conflicts = std::move(restored.conflicts);
     }
 
-    KnownObject& prepared_;
+    ReconstructionState& prepared_;
     std::vector<const Fragment*> fragments_;
     std::vector<std::vector<LandmarkPair>> pairs_;  ///< per fragment
     Mesh scaled_;
@@ -382,7 +382,7 @@ Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const R
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    known_ = std::make_unique<KnownObject>(mesh, set, graph, options, prior, cage);
+    known_ = std::make_unique<ReconstructionState>(mesh, set, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
@@ -390,7 +390,7 @@ Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> stated) {
     if (inside_out(fragment.mesh))
         fail_input(fmt::format("fragment '{}'", fragment.name), "is inside out", "run: ostraka mesh repair");
-    KnownFragment added;
+    FragmentState added;
     added.fragment = &fragment;
     added.stated = std::move(stated);
     added.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &added.notes);

@@ -1,7 +1,7 @@
 #include "reconstruction_verdict.h"
 
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/reconstruction/rigid_scale.h"
 
 #include <fmt/core.h>
@@ -14,11 +14,11 @@
 namespace ostraka {
 
 std::string to_string(ObjectionKind kind) {
-    return word_for(kind, {"placement", "size", "landmarks", "surface", "overlap", "constraint"});
+    return enum_name(kind, {"placement", "size", "landmarks", "surface", "overlap", "constraint"});
 }
 
 std::string to_string(Compatibility compatibility) {
-    return word_for(compatibility, {"compatible", "incompatible", "undecided"});
+    return enum_name(compatibility, {"compatible", "incompatible", "undecided"});
 }
 
 namespace {

@@ -69,8 +69,8 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
     return results;
 }
 
-bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
-                        FragmentPlacement& placed) {
+bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
+                          FragmentPlacement& placed) {
     using Eigen::Vector3d;
     if (pairs.empty() || search.ways.empty()) return false;
     Motion pose = placed.pose;

@@ -36,7 +36,7 @@ std::optional<TemplateCage> cage_of(const Template& package) {
     return std::nullopt;
 }
 
-TemplateCage made_cage(const Mesh& mesh, std::uint64_t vertices) {
+TemplateCage generated_cage(const Mesh& mesh, std::uint64_t vertices) {
     CageOptions options;
     options.vertices = vertices;
     return template_in_cage(mesh, make_cage(mesh, options).cage);

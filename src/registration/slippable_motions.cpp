@@ -1,6 +1,6 @@
 #include "ostraka/registration/slippable_motions.h"
 #include "ostraka/core/dense.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 std::string to_string(SlippableKind kind) {
-    return word_for(kind, {"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"});
+    return enum_name(kind, {"none", "turn", "shift", "screw", "tube", "ball", "plane", "more"});
 }
 
 std::string SlippableMotions::text() const {
-    return word_for(kind, {"none", "rotation about a line", "translation along a line", "screw motion along a line",
-                           "rotation about a line and translation along it", "rotation about a point",
-                           "translation in a plane and rotation about its normal", "nearly any motion"});
+    return enum_name(kind, {"none", "rotation about a line", "translation along a line", "screw motion along a line",
+                            "rotation about a line and translation along it", "rotation about a point",
+                            "translation in a plane and rotation about its normal", "nearly any motion"});
 }
 
 namespace {

@@ -3,9 +3,9 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <limits>

@@ -30,13 +30,14 @@ JsonValue json_of(const RelationParameters& parameters, JsonAllocator& allocator
     JsonValue object(rapidjson::kObjectType);
     JsonValue deviations = json_list(parameters.deviations, allocator, [&](const Deviation& deviation) {
         JsonValue entry = json_object(allocator, "quantity", deviation.quantity);
-        add_given(entry, allocator, "value", deviation.value, "tolerance", deviation.tolerance, "unit", deviation.unit);
+        add_nonempty_members(entry, allocator, "value", deviation.value, "tolerance", deviation.tolerance, "unit",
+                             deviation.unit);
         return entry;
     });
-    add_given(object, allocator, "attribute", parameters.attribute, "deviations", std::move(deviations));
+    add_nonempty_members(object, allocator, "attribute", parameters.attribute, "deviations", std::move(deviations));
     if (parameters.plane) add_member(object, "plane", json_of(*parameters.plane, "normal", allocator), allocator);
     if (parameters.axis) add_member(object, "axis", json_of(*parameters.axis, "direction", allocator), allocator);
-    add_given(object, allocator, "up", parameters.up);
+    add_nonempty_members(object, allocator, "up", parameters.up);
     return object;
 }
 
@@ -80,7 +81,8 @@ JsonValue relationship_to_json(const Relationship& relationship, JsonAllocator& 
         if (!relationship.constraint.empty()) constraint.CopyFrom(parse_json(relationship.constraint, "constraint"), allocator);
         add_members(object, allocator, "weight", relationship.weight, "constraint", std::move(constraint));
     }
-    add_given(object, allocator, "origin", relationship.origin, "parameters", json_of(relationship.parameters, allocator));
+    add_nonempty_members(object, allocator, "origin", relationship.origin, "parameters",
+                         json_of(relationship.parameters, allocator));
     return object;
 }
 

@@ -1,6 +1,6 @@
 #include "ostraka/relation/part_of.h"
 
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ std::vector<PartInVocabulary> parts_in_vocabulary(const ContainmentOrder& order,
     std::vector<PartInVocabulary> parts;
     for (std::size_t i = 0; i < concepts.size(); ++i) {
         if (!concepts[i]) continue;
-        for (const std::vector<std::size_t>& level : search.wholes_of(*concepts[i])) {
+        for (const std::vector<std::size_t>& level : search.containing_concepts(*concepts[i])) {
             PartInVocabulary found{i, {}, {}};
             for (std::size_t k = 0; k < concepts.size(); ++k)
                 if (k != i && concepts[k] &&

@@ -3,9 +3,9 @@
 #include "query_parser.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/vocabulary/text_match.h"
 
@@ -95,7 +95,7 @@ class QueryEvaluator {
 public:
     QueryEvaluator(const QueriedObject& object, const std::vector<std::string>& words, const std::vector<std::string>& variables)
         : object_(object), names_(object.vocabulary), descriptors_(*object.mesh) {
-        const TagWords tags(object.vocabulary);
+        const TagMatcher tags(object.vocabulary);
         for (const std::string& word : words) means_[word] = tags.find(*object.set, word);
         for (const std::string& word : variables) {
             const auto& list = means_.at(word);

@@ -1,7 +1,7 @@
 #include "query_parser.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <charconv>

@@ -4,11 +4,11 @@
 
 namespace ostraka {
 
-std::vector<BrokenRule> broken_rules(const Mesh& mesh, const AnnotationSet& set, const ClassRules& rules,
-                                     const Vocabulary* vocabulary, const RelationGraph* graph, const std::string& where) {
+std::vector<RuleViolation> broken_rules(const Mesh& mesh, const AnnotationSet& set, const ClassRules& rules,
+                                        const Vocabulary* vocabulary, const RelationGraph* graph, const std::string& where) {
     std::vector<Relationship> relationships;
     if (graph != nullptr) relationships = graph->relationships;
-    else if (rules.about_relations()) relationships = relationships_of(topology(mesh, set), set, 0);
+    else if (rules.uses_relations()) relationships = relationships_of(topology(mesh, set), set, 0);
     std::vector<RelationFact> facts;
     for (const Relationship& one : relationships) facts.push_back({one.type, one.directed, one.annotations});
     return check_class_rules(set, rules, vocabulary, facts, where);

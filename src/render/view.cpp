@@ -2,7 +2,7 @@
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <fmt/core.h>
 

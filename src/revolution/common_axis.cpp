@@ -33,7 +33,7 @@ constexpr double max_disagreement = 6;
 
 class AxisConsensus {
 public:
-    AxisConsensus(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result)
+    AxisConsensus(std::vector<PlacedSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result)
         : sherds_(sherds), options_(options), result_(result) {}
 
     void run() {
@@ -89,7 +89,7 @@ private:
                               "check its annotations and its mesh ('mesh info')");
                     return;
                 }
-                witnesses_[k] = std::make_unique<AxisWitness>(single.mesh, faces, options_.axis);
+                witnesses_[k] = std::make_unique<AxisEvidenceEvaluator>(single.mesh, faces, options_.axis);
                 if (!witnesses_[k]->enough()) {
                     leave_out(sherd, fmt::format("has {} faces, too few to determine an axis", faces.size()),
                               "give a finer mesh ('mesh refine' adds faces, but no shape)");
@@ -380,10 +380,10 @@ private:
         }
     }
 
-    std::vector<LaidSherd>& sherds_;
+    std::vector<PlacedSherd>& sherds_;
     const RevolutionOptions& options_;
     RevolutionTemplate& result_;
-    std::vector<std::unique_ptr<AxisWitness>> witnesses_;
+    std::vector<std::unique_ptr<AxisEvidenceEvaluator>> witnesses_;
     AxisFrame frame_;
     double diagonal_ = 0;                 ///< of the sherds around the axis
     double median_size_ = 0;              ///< of the sherds: square roots of their areas
@@ -397,7 +397,7 @@ private:
 
 }  // namespace
 
-void find_common_axis(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result) {
+void find_common_axis(std::vector<PlacedSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result) {
     AxisConsensus(sherds, options, result).run();
 }
 

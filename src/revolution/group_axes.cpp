@@ -59,7 +59,7 @@ GroupAxis axis_of_group(const std::vector<Fragment>& placed, const std::vector<s
     check_options(options, "surface of revolution");
     GroupAxis group;
     RevolutionTemplate revolution;
-    std::vector<LaidSherd> sherds;
+    std::vector<PlacedSherd> sherds;
     std::vector<Vector3d> middles;
     std::vector<double> areas;
     CGAL::Bbox_3 box;

@@ -31,7 +31,7 @@ std::vector<bool> JoinedSherds::broken() const {
     return result;
 }
 
-JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& selected) {
+JoinedSherds joined(const std::vector<PlacedSherd>& sherds, const std::vector<bool>& selected) {
     JoinedSherds result;
     for (std::size_t k = 0; k < sherds.size(); ++k) {
         const Fragment* sherd = sherds[k].fragment;

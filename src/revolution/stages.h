@@ -61,7 +61,7 @@ struct AxisFrame {
 AxisFrame frame_of(const Axis& axis);
 
 /// A sherd with its state in the template construction.
-struct LaidSherd {
+struct PlacedSherd {
     const Fragment* fragment = nullptr;
     bool inside_out = false;   ///< its faces are oriented inwards
     bool walls = true;         ///< it is closed, so that the inside of its wall is known
@@ -78,12 +78,12 @@ struct JoinedSherds {
 };
 
 /// The moved sherds for which `selected` is true; the others contribute no faces.
-JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& selected);
+JoinedSherds joined(const std::vector<PlacedSherd>& sherds, const std::vector<bool>& selected);
 
 /// Estimates the axis of all sherds that are not left out, and the motion that aligns each sherd's own axis with it: fills in
 /// axis, errors and sherds of the template, and the motions. Leaves out sherds without information and those that contradict
 /// the others. Throws Error (input) if no sherd is left.
-void find_common_axis(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
+void find_common_axis(std::vector<PlacedSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
 
 void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::string& remedy = {});
 /// Error (input) that names each sherd and why it is left out.

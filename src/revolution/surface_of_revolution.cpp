@@ -37,7 +37,7 @@ public:
     RevolutionTemplate run() {
         check_sherds();
         for (;;) {
-            for (LaidSherd& sherd : sherds_) sherd.motion = {};
+            for (PlacedSherd& sherd : sherds_) sherd.motion = {};
             find_common_axis(sherds_, options_, result_);
             if (!any_walls()) {
                 for (SherdOnProfile& sherd : result_.sherds)
@@ -143,7 +143,7 @@ private:
         bool readmitted = false;
         const SurfaceSearch surface(result_.mesh);
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
-            LaidSherd& sherd = sherds_[k];
+            PlacedSherd& sherd = sherds_[k];
             if (!sherd.contradicts || !sherd.walls || !sherd.axis) continue;
             sherd.axis = false;
             sherd.motion = {};
@@ -334,7 +334,7 @@ private:
         return {covered_area / total_area, std::sqrt(squares / covered_area)};
     }
 
-    std::vector<LaidSherd> sherds_;
+    std::vector<PlacedSherd> sherds_;
     const RevolutionOptions& options_;
     AxisFrame frame_;
     std::vector<double> heights_;  ///< vertical shift of each sherd

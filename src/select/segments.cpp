@@ -1,6 +1,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/run_apart.h"
+#include "ostraka/core/run_interruptibly.h"
 #include "ostraka/select/scalars.h"
 
 #include <CGAL/mesh_segmentation.h>
@@ -55,7 +55,7 @@ std::vector<Index> segment(const Mesh& mesh, const std::vector<double>& thicknes
     }
     if (!(high > 0)) fail_input("mesh", "has no thickness anywhere", "is it closed, and does it face outwards?");
     // The library's graph cut does not check for cancellation.
-    if (high > low) cut = run_apart_on(std::move(cut), [](Cut& own) { own.make(); });
+    if (high > low) cut = run_interruptibly_on(std::move(cut), [](Cut& own) { own.make(); });
     const std::size_t number = cut.number;
     const std::vector<std::size_t>& segments = cut.segments;
     std::vector<double> area(number, 0);

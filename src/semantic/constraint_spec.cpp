@@ -1,7 +1,7 @@
 #include "constraint_spec.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <fmt/core.h>
 

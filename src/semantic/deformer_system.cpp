@@ -182,7 +182,7 @@ std::vector<bool> Deformer::handles_asked() const {
     const std::vector<WeightMatrix> carrying = carrying_weights(levels);
     for (const auto& constraint : lowered_) {
         const std::vector<Index> points(constraint->ids().begin(), constraint->ids().end());
-        const std::size_t level = level_that_holds(space_.coordinates->vertex, points, levels, carrying);
+        const std::size_t level = governing_level(space_.coordinates->vertex, points, levels, carrying);
         for (const Index v : levels[level].cage.vertices) asked[v] = true;
     }
     return asked;

@@ -2,8 +2,8 @@
 #include "deformer.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "verdict.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ void Deformer::add_surface(DeformResult& result) const {
     if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
     if (kinks > 0) result.objections.push_back("the constraints kink the surface at " + counted(kinks, "edge"));
     if (space_.cage != nullptr)
-        for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
+        for (const std::string& reason : reasons_against_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
             result.objections.push_back("the cage is not fit for deformation: " + reason);
     if (!result.solved) return;
     result.distorted = semantic::distorted_parts(space_.mesh, space_.set, expected(result), edited_mesh_, now, options_);

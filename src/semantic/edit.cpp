@@ -4,7 +4,7 @@
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/eigen.h"
 
 #include <fmt/core.h>
@@ -66,7 +66,7 @@ private:
 
     /// The level specified by a step, otherwise the innermost level that contains most of these vertices.
     [[nodiscard]] std::size_t level_for(const EditStep& step, const std::vector<Index>& vertices) const {
-        if (!step.level) return level_that_holds(space_.coordinates->vertex, vertices, levels_, carrying_);
+        if (!step.level) return governing_level(space_.coordinates->vertex, vertices, levels_, carrying_);
         if (*step.level >= levels_.size())
             fail(fmt::format("there is no level {}: the cage has {}", *step.level, counted(levels_.size(), "level")),
                  "levels count from 0, the outermost; leave it out where no cage is within another");

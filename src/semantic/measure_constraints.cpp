@@ -4,7 +4,7 @@
 
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/with_points.h"
 
 #include <algorithm>

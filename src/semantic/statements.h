@@ -5,7 +5,7 @@
 
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/rigid_fit.h"
 

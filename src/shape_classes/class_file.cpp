@@ -272,7 +272,7 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
         return item;
     };
     const auto place = [](const Point& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
-    const auto of_region = [&](const OffRegion& region) {
+    const auto of_region = [&](const DeviatingRegion& region) {
         JsonValue item = json_object(allocator, "share", region.share, "middle", place(region.middle), "at", place(region.at),
                                      "farthest", region.farthest);
         if (!region.part.empty()) add_members(item, allocator, "part", region.part);
@@ -292,7 +292,7 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
             add_members(object, allocator, "score", class_answer.score, "placedBy", class_answer.fit.placed_by, "scale",
                         class_answer.fit.scale, "coefficients", class_answer.coordinates.coefficients, "mahalanobis",
                         class_answer.coordinates.mahalanobis);
-        add_given(object, allocator, "odd", class_answer.odd, "notes", class_answer.fit.notes);
+        add_nonempty_members(object, allocator, "odd", class_answer.odd, "notes", class_answer.fit.notes);
         if (class_answer.fit.problem.empty() && class_answer.fit.residuals)
             add_members(object, allocator, "explained", explained(class_answer));
         add_members(object, allocator, "against", class_answer.reasons(), "checks",

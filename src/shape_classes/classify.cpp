@@ -1,9 +1,9 @@
 #include "ostraka/shape_classes/classify.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
-#include "ostraka/shape_classes/unlikeness.h"
+#include "ostraka/shape_classes/dissimilarity.h"
 
 #include <fmt/core.h>
 
@@ -15,7 +15,7 @@
 
 namespace ostraka {
 
-std::string to_string(Membership membership) { return word_for(membership, {"member", "other", "undecided"}); }
+std::string to_string(Membership membership) { return enum_name(membership, {"member", "other", "undecided"}); }
 
 namespace {
 
@@ -59,7 +59,7 @@ std::optional<double> value_of(const std::vector<ClassQuantity>& quantities, con
 void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
-    for (PartsTogether& combined : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
+    for (CombinedParts& combined : combined_parts(learnt.ranges, values, expected_parts(learnt.ranges))) {
         if (combined.quantity.value) {
             const double value = *values[combined.worst];
             worst[combined.quantity.key()] =
@@ -100,7 +100,7 @@ void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quanti
                     std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
-    const auto dissimilarity_found = unlikeness(learnt, values);
+    const auto dissimilarity_found = dissimilarity(learnt, values);
     if (!dissimilarity_found) return;
     class_answer.unlike = dissimilarity_found->value;
     ClassQuantity& quantity = quantities.emplace_back();
@@ -188,8 +188,8 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         return answer;
     }
     answer.most_off = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
-    answer.off = fit_is_off(object.fit, answer.most_off);
-    answer.hopeless = !fit_is_off(object.fit, std::max(hopeless_fit, answer.most_off)).empty();
+    answer.off = fit_off_message(object.fit, answer.most_off);
+    answer.hopeless = !fit_off_message(object.fit, std::max(uninformative_fit, answer.most_off)).empty();
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
     answer.odd = unit_and_mirror_warnings(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;

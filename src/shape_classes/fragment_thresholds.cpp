@@ -117,8 +117,8 @@ std::vector<FragmentThreshold> fragment_thresholds(const ShapeClass& learnt) {
     return thresholds;
 }
 
-std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
-                                           const std::function<bool(const std::string&)>& specified) {
+std::vector<UsedThreshold> apply_class_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
+                                                  const std::function<bool(const std::string&)>& specified) {
     std::vector<UsedThreshold> used;
     const std::vector<FragmentThreshold> of_class =
         learnt != nullptr ? fragment_thresholds(*learnt) : std::vector<FragmentThreshold>();

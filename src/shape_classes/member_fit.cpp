@@ -24,7 +24,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::string fit_is_off(const MemberFit& fit, double maximum) {
+std::string fit_off_message(const MemberFit& fit, double maximum) {
     if (!fit.residuals || !(fit.residuals->off() > maximum)) return {};
     const auto per_cent = [](double fraction) { return digits(100 * fraction, 3) + " %"; };
     return fmt::format(
@@ -33,7 +33,7 @@ std::string fit_is_off(const MemberFit& fit, double maximum) {
         per_cent(fit.residuals->unmatched), per_cent(fit.residuals->unexplained), per_cent(maximum));
 }
 
-std::vector<std::string> explained_text(const MemberFit& fit) {
+std::vector<std::string> fit_explanation(const MemberFit& fit) {
     std::vector<std::string> lines;
     if (!fit.residuals) return lines;
     const auto per_cent = [](double fraction) { return digits(100 * fraction, 3) + " %"; };
@@ -49,13 +49,13 @@ std::vector<std::string> explained_text(const MemberFit& fit) {
             per_cent(fit.cavity)));
     constexpr std::size_t maximum = 3;
     for (std::size_t i = 0; i < std::min(maximum, fit.foreign.size()); ++i) {
-        const OffRegion& region = fit.foreign[i];
+        const DeviatingRegion& region = fit.foreign[i];
         lines.push_back(fmt::format("foreign: {} of its surface about {}, farthest at {} by {}{}", per_cent(region.share),
                                     place(region.middle), place(region.at), digits(region.farthest, 3),
                                     region.part.empty() ? "" : "; the nearest part of the template is " + region.part));
     }
     for (std::size_t i = 0; i < std::min(maximum, fit.missing.size()); ++i) {
-        const OffRegion& region = fit.missing[i];
+        const DeviatingRegion& region = fit.missing[i];
         lines.push_back(fmt::format("missing: {} of the template{}, located about {} after the fit, farthest by {}",
                                     per_cent(region.share), region.part.empty() ? "" : ", of its part " + region.part,
                                     place(region.middle), digits(region.farthest, 3)));
@@ -108,14 +108,14 @@ double angle_at(const Mesh& mesh, Edge edge, const std::vector<Vector3d>& p) {
 /// Residuals and off-surface regions of one placement, as stored in the member fit.
 struct Residuals {
     FitResiduals numbers;
-    std::vector<OffRegion> foreign, missing;
+    std::vector<DeviatingRegion> foreign, missing;
 };
 
 Residuals residuals_of(const Mesh& undeformed, const Mesh& fitted, const Mesh& object, double scale, double observed) {
     Residuals residuals;
     const double diagonal = scale * box_diagonal(undeformed);
-    SurfaceOff template_to_object = surface_off(fitted, SurfaceSearch(object), observed * diagonal),
-               object_to_template = surface_off(object, SurfaceSearch(fitted), observed * diagonal);
+    SurfaceDeviation template_to_object = surface_deviation(fitted, SurfaceSearch(object), observed * diagonal),
+                     object_to_template = surface_deviation(object, SurfaceSearch(fitted), observed * diagonal);
     residuals.numbers.distance = template_to_object.distance / diagonal;
     residuals.numbers.unmatched = template_to_object.share;
     residuals.numbers.back = object_to_template.distance / diagonal;
@@ -130,7 +130,7 @@ Residuals residuals_of(const Mesh& undeformed, const Mesh& fitted, const Mesh& o
 /// The object without the insides of its walls, closed where these are cut off, and their share of its surface. None if there
 /// are no such insides, or if nothing else is left.
 std::optional<std::pair<Mesh, double>> without_inner_walls(const Mesh& fitted, const Mesh& object, double max_distance) {
-    std::vector<bool> keep = insides_of_walls(object, SurfaceSearch(fitted), max_distance);
+    std::vector<bool> keep = inner_wall_faces(object, SurfaceSearch(fitted), max_distance);
     double inner_fraction = 0;
     const double area = surface_area(object);
     for (const Face f : object.faces())
@@ -145,8 +145,8 @@ std::optional<std::pair<Mesh, double>> without_inner_walls(const Mesh& fitted, c
 }
 
 /// The regions transformed by a motion.
-std::vector<OffRegion> moved_regions(std::vector<OffRegion> regions, const Motion& motion) {
-    for (OffRegion& region : regions) {
+std::vector<DeviatingRegion> moved_regions(std::vector<DeviatingRegion> regions, const Motion& motion) {
+    for (DeviatingRegion& region : regions) {
         region.middle = point_of(motion(eigen(region.middle)));
         region.at = point_of(motion(eigen(region.at)));
     }

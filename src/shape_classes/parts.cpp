@@ -193,8 +193,8 @@ std::optional<double> own_disagreement(const ClassTemplate& class_template, cons
     return maximum > chance ? 1 - (joint - chance) / (maximum - chance) : 0;
 }
 
-PartsOff parts_off(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected) {
-    PartsOff result;
+PartsDeviation parts_deviation(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected) {
+    PartsDeviation result;
     double squares = 0, largest = -1;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!values[i] || !expected[i] || !(*values[i] > 0) || !(*expected[i] > 0)) continue;

@@ -30,7 +30,7 @@ Propagated propagate(const ClassTemplate& class_template, const WholeObject& mem
         result.lost = class_template.set.annotations.size();
         return result;
     }
-    if (std::string off_message = fit_is_off(result.fit, options.fit.max_off); !off_message.empty()) {
+    if (std::string off_message = fit_off_message(result.fit, options.fit.max_off); !off_message.empty()) {
         result.lies_on = false;
         result.notes.push_back(std::move(off_message));
     }

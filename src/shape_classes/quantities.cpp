@@ -1,7 +1,7 @@
 #include "ostraka/shape_classes/quantities.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/relation/check.h"
@@ -16,7 +16,7 @@
 namespace ostraka {
 
 std::string to_string(QuantityKind kind) {
-    return word_for(kind, {"proportion", "constraint", "relation", "part", "attribute", "geometry"});
+    return enum_name(kind, {"proportion", "constraint", "relation", "part", "attribute", "geometry"});
 }
 
 QuantityKind quantity_kind(const std::string& word) {

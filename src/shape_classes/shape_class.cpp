@@ -1,10 +1,10 @@
 #include "ostraka/shape_classes/shape_class.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/shape_classes/dissimilarity.h"
 #include "ostraka/shape_classes/fragment_thresholds.h"
 #include "ostraka/shape_classes/parts.h"
 #include "ostraka/shape_classes/thresholds.h"
-#include "ostraka/shape_classes/unlikeness.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>
@@ -54,8 +54,8 @@ std::string parts_at(const ClassTemplate& class_template, Index face) {
 }
 
 void name_regions(const ClassTemplate& class_template, MemberFit& fit) {
-    for (OffRegion& region : fit.foreign) region.part = parts_at(class_template, region.nearest_face);
-    for (OffRegion& region : fit.missing) region.part = parts_at(class_template, region.face);
+    for (DeviatingRegion& region : fit.foreign) region.part = parts_at(class_template, region.nearest_face);
+    for (DeviatingRegion& region : fit.missing) region.part = parts_at(class_template, region.face);
 }
 
 }  // namespace
@@ -177,7 +177,7 @@ bool is_unlikeness(const ClassQuantity& quantity) {
 }
 
 /// Whether the quantity can reject only in combination with others.
-bool only_together(const LearntRange& range) { return single_part(range) || counts_for_unlikeness(range.quantity); }
+bool only_together(const LearntRange& range) { return single_part(range) || counts_for_dissimilarity(range.quantity); }
 
 /// Logarithms. Values below a tenth of a deviation are due to the resolution and are clamped.
 std::vector<double> unlikeness_logs(const LearntRange& range) {
@@ -214,7 +214,7 @@ void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::opt
         if (is_unlikeness(range.quantity))
             set_unlikeness_bounds(learnt, range,
                                   uses_own_moments ? moments_of(unlikeness_logs(range)) : moderated_moments->second,
-                                  strangers ? *strangers : moments_of(stranger_logs(range)), class_count);
+                                  strangers ? *strangers : moments_of(out_of_class_logs(range)), class_count);
         else set_bounds(range, uses_own_moments ? range_moments(range) : moderated_moments->second, learnt.resolution);
     }
 }
@@ -222,7 +222,7 @@ void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::opt
 }  // namespace
 
 void learn_thresholds(ShapeClass& learnt) {
-    measure_unlikeness(learnt);
+    measure_dissimilarity(learnt);
     for (LearntRange& range : learnt.ranges)
         if (is_unlikeness(range.quantity)) summarise_range(range);
     set_thresholds(learnt, {});
@@ -238,8 +238,8 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
     for (const ShapeClass& shape_class : classes)
         for (const LearntRange& range : shape_class.ranges) {
             if (is_shared(range)) samples[range.quantity.key()].push_back(range_moments(range));
-            else if (counts_for_unlikeness(range.quantity) && range.count >= ShapeClass::min_members) {
-                samples[range.quantity.key()].push_back(unlikeness_moments(range));
+            else if (counts_for_dissimilarity(range.quantity) && range.count >= ShapeClass::min_members) {
+                samples[range.quantity.key()].push_back(dissimilarity_moments(range));
                 samples[range.quantity.key()].back().variance += shape_class.resolution * shape_class.resolution;
             }
         }
@@ -254,13 +254,13 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
     for (ShapeClass& shape_class : classes) {
         shape_class.variances = priors;
         shape_class.dependence = dependence;
-        measure_unlikeness(shape_class);
+        measure_dissimilarity(shape_class);
         for (LearntRange& range : shape_class.ranges) {
             if (!is_unlikeness(range.quantity)) continue;
             summarise_range(range);
             const std::vector<double> member_logs = unlikeness_logs(range);
             member_dissimilarities.insert(member_dissimilarities.end(), member_logs.begin(), member_logs.end());
-            const std::vector<double> stranger_values = stranger_logs(range);
+            const std::vector<double> stranger_values = out_of_class_logs(range);
             out_of_class_values.insert(out_of_class_values.end(), stranger_values.begin(), stranger_values.end());
             classes_with_thresholds += member_logs.size() >= ShapeClass::min_members ? 1 : 0;
         }
@@ -293,10 +293,10 @@ std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>
     return expected;
 }
 
-std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges,
+std::vector<CombinedParts> combined_parts(const std::vector<LearntRange>& ranges,
                                           const std::vector<std::optional<double>>& values,
                                           const std::vector<std::optional<double>>& expected) {
-    std::vector<PartsTogether> combined_quantities;
+    std::vector<CombinedParts> combined_quantities;
     for (const bool sizes : {true, false}) {
         std::vector<std::size_t> places;
         std::vector<std::optional<double>> part_values, expected_values;
@@ -307,11 +307,11 @@ std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges
             expected_values.push_back(expected[k]);
         }
         if (places.empty()) continue;
-        PartsTogether& combined = combined_quantities.emplace_back();
+        CombinedParts& combined = combined_quantities.emplace_back();
         combined.quantity.kind = QuantityKind::part;
         combined.quantity.name = sizes ? "sizes of the parts" : "places of the parts";
         combined.quantity.one_sided = true;
-        const PartsOff deviation = parts_off(part_values, expected_values);
+        const PartsDeviation deviation = parts_deviation(part_values, expected_values);
         if (deviation.count == 0) continue;
         combined.quantity.value = deviation.off;
         combined.worst = places[deviation.worst];
@@ -391,7 +391,7 @@ void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& 
             logits.push_back(std::log(off_fraction / (1 - off_fraction)));
         }
     if (logits.size() < ShapeClass::min_members) return;
-    learnt.most_off = std::min(hopeless_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
+    learnt.most_off = std::min(uninformative_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
 }
 
 void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members, const std::vector<LearntMember>& strangers) {
@@ -406,11 +406,11 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
     };
     const std::size_t n = members.size();
     // Each member compared with the others.
-    std::vector<std::vector<PartsTogether>> combined_by_member;
+    std::vector<std::vector<CombinedParts>> combined_by_member;
     for (std::size_t i = 0; n > 1 && i < n; ++i) {
         std::vector<std::optional<double>> member_values;
         for (const LearntRange& range : learnt.ranges) member_values.push_back(range.values[i]);
-        combined_by_member.push_back(parts_together(learnt.ranges, member_values, expected_parts(learnt.ranges, i)));
+        combined_by_member.push_back(combined_parts(learnt.ranges, member_values, expected_parts(learnt.ranges, i)));
     }
     for (std::size_t k = 0; n > 1 && k < combined_by_member.front().size(); ++k) {
         LearntRange& range = learnt.ranges.emplace_back();
@@ -456,11 +456,11 @@ ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<Le
             learnt.notes.push_back(fmt::format("{} is left out: {}", member.name, member.fit.problem));
             continue;
         }
-        if (std::string off_message = fit_is_off(member.fit, hopeless_fit); !off_message.empty()) {
+        if (std::string off_message = fit_off_message(member.fit, uninformative_fit); !off_message.empty()) {
             learnt.notes.push_back(fmt::format("{} is left out: {}", member.name, off_message));
             continue;
         }
-        if (std::string off_message = fit_is_off(member.fit, options.fit.max_off); !off_message.empty()) {
+        if (std::string off_message = fit_off_message(member.fit, options.fit.max_off); !off_message.empty()) {
             learnt.notes.push_back(fmt::format("{} is used, but cannot be the archetype: {}", member.name, off_message));
             ineligible.insert(used.size());
         }

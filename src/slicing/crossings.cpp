@@ -1,6 +1,6 @@
 // Intersections of contours with one another and with themselves.
+#include "contour_classification.h"
 #include "ostraka/core/angles.h"
-#include "settling.h"
 
 #include "segment_tree.h"
 #include "strips.h"

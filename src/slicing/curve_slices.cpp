@@ -1,9 +1,9 @@
 // Planes across a curve, and the component of each that belongs to the curve.
 #include "ostraka/slicing/curve_slices.h"
 
+#include "contour_classification.h"
 #include "joining.h"
 #include "plane_search.h"
-#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"

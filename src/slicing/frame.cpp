@@ -58,7 +58,7 @@ std::vector<double> slice_heights(double lowest, double highest, int count) {
 
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing) {
     check_range(lowest, highest);
-    if (!(spacing > 0 && spacing <= largest_coordinate))
+    if (!(spacing > 0 && spacing <= max_coordinate))
         fail_usage("the spacing of the slices is " + digits(spacing, 4), "use a length above 0");
     if (const double height = highest - lowest; !(height / spacing < max_planes))
         fail_usage(fmt::format("a spacing of {} gives {} slices over a height of {}", digits(spacing, 4),

@@ -1,5 +1,5 @@
 // Nesting of contours, by votes of their points.
-#include "settling.h"
+#include "contour_classification.h"
 
 #include "strips.h"
 

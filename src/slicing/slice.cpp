@@ -1,8 +1,8 @@
 // Faces are sorted into the planes that cross them and joined by their halfedges.
 #include "ostraka/slicing/slice.h"
 
+#include "contour_classification.h"
 #include "joining.h"
-#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
@@ -25,7 +25,7 @@ void check(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>&
     if (!right_handed)
         fail_usage("the frame of the slices is not right-handed with unit vectors", "construct the frame with slice_frame");
     for (const double height : heights)
-        if (!(std::abs(height) <= largest_coordinate))
+        if (!(std::abs(height) <= max_coordinate))
             fail_usage(fmt::format("the height {} of a slice is not finite or too large", std::to_string(height)),
                        "give finite heights");
     detail::check_faces(mesh, faces);

@@ -2,8 +2,8 @@
 #include "ostraka/slicing/slice_descriptors.h"
 #include "ostraka/core/angles.h"
 
+#include "contour_classification.h"
 #include "segment_tree.h"
-#include "settling.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"

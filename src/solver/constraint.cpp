@@ -8,12 +8,12 @@
 namespace ostraka {
 
 namespace {
-constexpr double largest_coordinate = 1e100;  // keeps squares, and products of four coordinates, finite
+constexpr double max_coordinate = 1e100;  // keeps squares, and products of four coordinates, finite
 }
 
 void check_points(const Points& points, const std::string& what) {
     for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (!(points.col(i).cwiseAbs().maxCoeff() <= largest_coordinate) || !points.col(i).allFinite())
+        if (!(points.col(i).cwiseAbs().maxCoeff() <= max_coordinate) || !points.col(i).allFinite())
             throw Error(ErrorKind::usage, what, "point " + std::to_string(i) + " is not finite",
                         "all coordinates must be numbers below 1e100");
 }

@@ -1,9 +1,9 @@
 #include "ostraka/solver/solve.h"
 
 #include "anderson.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
-#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <sstream>
@@ -11,8 +11,8 @@
 namespace ostraka {
 
 std::string_view describe(StopReason reason) {
-    return word_for(reason, {"no point moves any more", "the residual wanted is reached", "the iterations allowed are used up",
-                             "the objective does not fall any further"});
+    return enum_name(reason, {"no point moves any more", "the residual wanted is reached", "the iterations allowed are used up",
+                              "the objective does not fall any further"});
 }
 
 std::string SolveSummary::text() const {

@@ -14,7 +14,7 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-BrokenPiece break_off(const Mesh& object, const Point& centre, const BreakOptions& options) {
+SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, const FragmentOptions& options) {
     check_options(options, "fragment");
     const double area = surface_area(object), diagonal = box_diagonal(object);
     if (!(area > 0)) fail_input("mesh", "has no area, so no fragment can be cut from it");
@@ -68,7 +68,7 @@ BrokenPiece break_off(const Mesh& object, const Point& centre, const BreakOption
     }
     if (piece.mesh.number_of_faces() == 0)
         throw Error(ErrorKind::failure, "fragment", "is empty after erosion", "increase the share, or reduce the erosion");
-    BrokenPiece result{std::move(piece.mesh), std::move(piece.vertices), std::move(piece.faces), {}};
+    SyntheticFragment result{std::move(piece.mesh), std::move(piece.vertices), std::move(piece.faces), {}};
     std::vector<Vector> normals;
     for (const Vertex v : result.mesh.vertices()) normals.push_back(vertex_normal(object, Vertex(result.vertices[v])));
     if (options.noise > 0)
@@ -85,7 +85,7 @@ BrokenPiece break_off(const Mesh& object, const Point& centre, const BreakOption
     return result;
 }
 
-void BreakOptions::describe(OptionList& visit) {
+void FragmentOptions::describe(OptionList& visit) {
     visit("share", share, "share of the surface that the fragment keeps", Range{0.001, 1});
     visit("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
     visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the whole's diagonal");

@@ -1,4 +1,4 @@
-#include "evening.h"
+#include "uniform_remesher.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "ostraka/synthetic/make_mesh.h"
 
-#include "evening.h"
 #include "lattice.h"
+#include "uniform_remesher.h"
 
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/memory.h"
@@ -104,8 +104,8 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
     constexpr double bytes_of_vertex = 600;  // lattice, remeshed points and mesh
     require_memory(bytes_of_vertex * static_cast<double>(target_vertices), fmt::format("a mesh of {} vertices", target_vertices),
                    "ask for fewer (--vertices)");
-    shapes::Triangles uniform =
-        shapes::make_even(object, marched(object, surplus * static_cast<double>(target_vertices), options.seed), target_vertices);
+    shapes::Triangles uniform = shapes::remesh_uniformly(
+        object, marched(object, surplus * static_cast<double>(target_vertices), options.seed), target_vertices);
     if (static_cast<double>(uniform.points.size()) > 1.01 * static_cast<double>(target_vertices))
         refuse(object, options.vertices);
 

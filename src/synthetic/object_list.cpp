@@ -1,8 +1,8 @@
 #include "builder.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 

@@ -2,10 +2,10 @@
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/relation/rules.h"
 #include "ostraka/template_package/template.h"
 
@@ -272,7 +272,7 @@ private:
         const Vocabulary* vocabulary = result_.vocabulary ? &*result_.vocabulary : nullptr;
         const RelationGraph* graph = result_.graph ? &*result_.graph : nullptr;
         try {
-            for (const BrokenRule& violation :
+            for (const RuleViolation& violation :
                  broken_rules(result_.mesh->mesh, *result_.annotations, *result_.rules, vocabulary, graph, part.name))
                 defect(result_.file.of("annotations").front()->name,
                        fmt::format("rule '{}': {}", violation.rule, violation.text));

@@ -83,16 +83,19 @@ TemplateFile read_template(const Path& file, const TemplateOptions& options) {
 Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     Json document = json_document("template");
     auto& allocator = document.GetAllocator();
-    add_given(document, allocator, "class", file.object_class, "unit", file.unit, "up", file.up);
+    add_nonempty_members(document, allocator, "class", file.object_class, "unit", file.unit, "up", file.up);
     JsonValue checksums(rapidjson::kObjectType);
     for (const std::string& role : template_roles()) {
         const auto parts = file.of(role);
         if (parts.size() == 1) add_member(document, role, parts.front()->name, allocator);
-        else add_given(document, allocator, role, json_list(parts, allocator, [](const auto* part) { return part->name; }));
+        else
+            add_nonempty_members(document, allocator, role,
+                                 json_list(parts, allocator, [](const auto* part) { return part->name; }));
         for (const PackagedFile* part : parts)
-            if (find_member(checksums, part->name) == nullptr) add_given(checksums, allocator, part->name, part->sha256);
+            if (find_member(checksums, part->name) == nullptr)
+                add_nonempty_members(checksums, allocator, part->name, part->sha256);
     }
-    add_given(document, allocator, "checksums", std::move(checksums));
+    add_nonempty_members(document, allocator, "checksums", std::move(checksums));
     add_members(document, allocator, "provenance", provenance.to_json(allocator));
     return document;
 }

@@ -2,9 +2,9 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 
 #include <Eigen/Geometry>
 

@@ -7,9 +7,9 @@
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/words.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
@@ -145,7 +145,7 @@ private:
     std::vector<std::vector<std::vector<StrandUse>>> find_strands(const std::vector<const Annotation*>& annotations,
                                                                   const std::vector<std::vector<Places>>& drawn) {
         std::vector<CurveStrand> found;
-        auto uses = take_apart(source_, drawn, std::vector<bool>(drawn.size(), true), found);
+        auto uses = separate_nonmanifold(source_, drawn, std::vector<bool>(drawn.size(), true), found);
         for (CurveStrand& strand : found) strands_.emplace_back().from = std::move(strand);
         for (std::size_t i = 0; i < drawn.size(); ++i)
             for (std::size_t c = 0; c < drawn[i].size(); ++c) {

@@ -1,7 +1,7 @@
 // Checks annotations against a vocabulary, and a vocabulary for consistency.
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "ostraka/core/words.h"
 #include "ostraka/vocabulary/infer.h"
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/vocabulary/vocabulary.h"

@@ -1,7 +1,7 @@
 #include "ostraka/vocabulary/class_rules.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include "words.h"
@@ -84,7 +84,7 @@ public:
             concepts_.push_back(search_ ? search_->concept_of(annotation.tag) : std::nullopt);
         close_containment();
     }
-    std::vector<BrokenRule> violations;
+    std::vector<RuleViolation> violations;
 
     void check(const ClassRule& rule, const std::string& pointer) {
         rule_ = &rule;
@@ -253,14 +253,14 @@ private:
     std::string where_, rule_pointer_;
     std::optional<VocabularySearch> search_;
     std::vector<std::optional<std::size_t>> concepts_;
-    TagWords tag_words_;  ///< used if there is no vocabulary
+    TagMatcher tag_words_;  ///< used if there is no vocabulary
     std::map<int, std::set<int>> contained_;
     const ClassRule* rule_ = nullptr;
 };
 
 }  // namespace
 
-bool ClassRules::about_relations() const {
+bool ClassRules::uses_relations() const {
     return std::any_of(rules.begin(), rules.end(), [](const ClassRule& rule) { return rule.relation.has_value(); });
 }
 
@@ -283,8 +283,8 @@ ClassRules class_rules_from_json(const JsonValue& document, const std::string& w
 
 ClassRules read_class_rules(const Path& file) { return class_rules_from_json(read_json(file), file.string()); }
 
-std::vector<BrokenRule> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
-                                          const std::vector<RelationFact>& relations, const std::string& where) {
+std::vector<RuleViolation> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
+                                             const std::vector<RelationFact>& relations, const std::string& where) {
     RuleChecker checker(set, vocabulary, relations, where);
     for (std::size_t i = 0; i < rules.rules.size(); ++i) checker.check(rules.rules[i], "/rules/" + to_string(i));
     return std::move(checker.violations);

@@ -2,7 +2,7 @@
 
 #include "skos_terms.h"
 
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <fmt/core.h>
 

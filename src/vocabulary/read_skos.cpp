@@ -5,7 +5,7 @@
 #include "skos_terms.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include <fmt/core.h>

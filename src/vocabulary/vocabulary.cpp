@@ -304,7 +304,7 @@ std::vector<std::size_t> VocabularySearch::lineage(std::size_t concept_index) co
     return ancestors;
 }
 
-std::vector<std::vector<std::size_t>> VocabularySearch::wholes_of(std::size_t concept_index) const {
+std::vector<std::vector<std::size_t>> VocabularySearch::containing_concepts(std::size_t concept_index) const {
     std::vector<std::vector<std::size_t>> levels;
     std::set<std::size_t> visited{concept_index};
     std::vector<std::size_t> front{concept_index};

@@ -146,11 +146,11 @@ public:
     Json document = json_document("vocabulary");
 
     explicit Writer(const Vocabulary& vocabulary) {
-        add_given(document, allocator_, "uri", vocabulary.uri);
+        add_nonempty_members(document, allocator_, "uri", vocabulary.uri);
         labels(document, "title", vocabulary.title);
         attributes(document, vocabulary.attributes);
         add_members(document, allocator_, "concepts", list_of(vocabulary.concepts));
-        add_given(document, allocator_, "rules", list_of(vocabulary.rules));
+        add_nonempty_members(document, allocator_, "rules", list_of(vocabulary.rules));
         statements(document, vocabulary.others);
     }
 
@@ -176,7 +176,7 @@ private:
     }
     void names(JsonValue& object, const char* name, const std::vector<std::string>& value) {
         if (value.size() == 1) add_member(object, name, value.front(), allocator_);
-        else add_given(object, allocator_, name, value);
+        else add_nonempty_members(object, allocator_, name, value);
     }
     JsonValue json_of(const Term& term) {
         if (term.labels.empty()) return json_string(term.name, allocator_);
@@ -188,32 +188,32 @@ private:
         JsonValue entry = json_object(allocator_, "name", attribute.name);
         labels(entry, "label", attribute.labels);
         labels(entry, "definition", attribute.definition);
-        add_given(entry, allocator_, "values", list_of(attribute.values));
+        add_nonempty_members(entry, allocator_, "values", list_of(attribute.values));
         number(entry, "min", attribute.min);
         number(entry, "max", attribute.max);
-        add_given(entry, allocator_, "unit", attribute.unit);
+        add_nonempty_members(entry, allocator_, "unit", attribute.unit);
         return entry;
     }
     void attributes(JsonValue& object, const std::vector<AllowedAttribute>& value) {
-        add_given(object, allocator_, "attributes", list_of(value));
+        add_nonempty_members(object, allocator_, "attributes", list_of(value));
     }
     JsonValue json_of(const ForeignStatement& statement) {
         JsonValue entry =
             json_object(allocator_, "property", statement.property, statement.is_uri ? "uri" : "value", statement.value);
-        add_given(entry, allocator_, "language", statement.language, "datatype", statement.datatype);
+        add_nonempty_members(entry, allocator_, "language", statement.language, "datatype", statement.datatype);
         return entry;
     }
     void statements(JsonValue& object, const std::vector<ForeignStatement>& value) {
-        add_given(object, allocator_, "other", list_of(value));
+        add_nonempty_members(object, allocator_, "other", list_of(value));
     }
     JsonValue json_of(const Concept& entry) {
         JsonValue object = json_object(allocator_, "id", entry.id);
-        add_given(object, allocator_, "uri", entry.uri);
+        add_nonempty_members(object, allocator_, "uri", entry.uri);
         labels(object, "label", entry.labels);
         JsonValue alternatives(rapidjson::kObjectType);
         for (const auto& [language, alternative_labels] : entry.alternatives)
             add_members(alternatives, allocator_, language, alternative_labels);
-        add_given(object, allocator_, "alternatives", std::move(alternatives));
+        add_nonempty_members(object, allocator_, "alternatives", std::move(alternatives));
         names(object, "broader", entry.broader);
         names(object, "partOf", entry.part_of);
         labels(object, "definition", entry.definition);
@@ -231,19 +231,19 @@ private:
             add_members(entry, allocator_, "ratio", list_of(std::vector{condition.operand, *condition.divisor}));
         } else {
             add_members(entry, allocator_, "attribute", condition.operand.attribute);
-            add_given(entry, allocator_, "concept", condition.operand.concept_id);
+            add_nonempty_members(entry, allocator_, "concept", condition.operand.concept_id);
         }
         number(entry, "min", condition.min);
         number(entry, "max", condition.max);
         number(entry, "above", condition.above);
         number(entry, "below", condition.below);
-        add_given(entry, allocator_, "unit", condition.unit);
+        add_nonempty_members(entry, allocator_, "unit", condition.unit);
         names(entry, "is", condition.is);
         return entry;
     }
     JsonValue json_of(const InferenceRule& rule) {
         JsonValue object = json_object(allocator_, "id", rule.id);
-        add_given(object, allocator_, "note", rule.note, "concept", rule.concept_id);
+        add_nonempty_members(object, allocator_, "note", rule.note, "concept", rule.concept_id);
         add_members(object, allocator_, "if", list_of(rule.conditions), "then",
                     json_object(allocator_, "attribute", rule.attribute, "value", rule.value));
         return object;

@@ -2,7 +2,7 @@
 #include "ostraka/workbench/server.h"
 
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/page/content_policy.h"
 
 #include <fmt/core.h>

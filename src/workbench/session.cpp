@@ -3,8 +3,8 @@
 #include "session_names.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/template_package/template.h"
 
@@ -196,7 +196,7 @@ void Session::write() const {
                         for (const auto& [output, sum] : step.sha256) add_members(sums, a, output, sum);
                         add_members(record, a, "operation", step.operation, "with", JsonValue(step.with, a), "keep",
                                     JsonValue(step.keep, a), "sha256", std::move(sums));
-                        add_given(record, a, "no", !step.holds);
+                        add_nonempty_members(record, a, "no", !step.holds);
                     }
                     add_members(record, a, "state", to_json(step.state, a));
                     return record;

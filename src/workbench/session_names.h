@@ -3,7 +3,7 @@
 
 #include "request.h"
 
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/workbench/session.h"
 
 #include <fmt/core.h>

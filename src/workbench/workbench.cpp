@@ -4,9 +4,9 @@
 #include "scene.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
-#include "ostraka/core/words.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/select/recipe.h"

@@ -1,8 +1,8 @@
 // Checks the tables, plots and the page of a study before the first step runs.
 #include "row_sources.h"
 
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
-#include "ostraka/core/words.h"
 #include "ostraka/workflow/collect.h"
 
 #include <fmt/core.h>
@@ -58,7 +58,7 @@ void check_table(const StudyPlan& plan, const std::string& name, const JsonValue
         std::vector<std::string> tables, values, columns;
         for (const auto& reported_table : layout.tables)
             if (!reported_table.key.empty()) tables.push_back(reported_table.key);
-        for (const auto& reported_value : layout.of_values) values.push_back(reported_value.key);
+        for (const auto& reported_value : layout.value_fields) values.push_back(reported_value.key);
         if (!source.table.empty() && layout.schema.empty() &&
             std::find(tables.begin(), tables.end(), source.table) == tables.end())
             refuse(study, place + "/rows",

@@ -4,7 +4,7 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/report/markdown.h"
 #include "ostraka/report/plot.h"
 
@@ -100,7 +100,7 @@ private:
             const std::string text = read_file(folder / rows);
             const auto lines = csv_rows(text, csv_separator(text), (folder / rows).string());
             if (columns_.IsString() && !lines.empty() && table_.columns.empty())
-                for (const std::string& name : lines[0].cells) add_column(unguarded(name), 4);
+                for (const std::string& name : lines[0].cells) add_column(unescape_formula(name), 4);
             for (std::size_t k = 1; k < lines.size(); ++k) {
                 Json row(rapidjson::kObjectType);
                 auto& allocator = row.GetAllocator();
@@ -108,9 +108,10 @@ private:
                     const std::string& cell = lines[k].cells[c];
                     const auto value = number_of(cell);
                     if (value && *value == std::floor(*value) && std::abs(*value) < 1e15)
-                        add_members(row, allocator, unguarded(lines[0].cells[c]), static_cast<std::int64_t>(*value));
-                    else if (value) add_members(row, allocator, unguarded(lines[0].cells[c]), *value);
-                    else if (!cell.empty()) add_members(row, allocator, unguarded(lines[0].cells[c]), unguarded(cell));
+                        add_members(row, allocator, unescape_formula(lines[0].cells[c]), static_cast<std::int64_t>(*value));
+                    else if (value) add_members(row, allocator, unescape_formula(lines[0].cells[c]), *value);
+                    else if (!cell.empty())
+                        add_members(row, allocator, unescape_formula(lines[0].cells[c]), unescape_formula(cell));
                 }
                 add_row(i, report, row);
             }

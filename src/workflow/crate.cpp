@@ -1,7 +1,7 @@
 #include "ostraka/workflow/crate.h"
 
 #include "ostraka/core/json_build.h"
-#include "ostraka/core/words.h"
+#include "ostraka/core/message_text.h"
 
 #include <fmt/core.h>
 
@@ -181,8 +181,8 @@ private:
             (step.operation != nullptr ? "ostraka " : "") + program_name, "instrument",
             id_of(step.operation != nullptr ? "#ostraka" : program(program_name), allocator_), "actionStatus",
             id_of(is_made ? "http://schema.org/CompletedActionStatus" : "http://schema.org/FailedActionStatus", allocator_));
-        add_given(action, allocator_, "object", std::move(objects), "result", std::move(products), "startTime",
-                  result.record.began, "endTime", result.record.ended, "error", result.problem);
+        add_nonempty_members(action, allocator_, "object", std::move(objects), "result", std::move(products), "startTime",
+                             result.record.began, "endTime", result.record.ended, "error", result.problem);
         latest_ = std::max(latest_, result.record.ended);
         graph_.PushBack(action, allocator_);
         mentions_.PushBack(id_of(id, allocator_), allocator_);

@@ -1,9 +1,9 @@
 #include "ostraka/workflow/plan.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 

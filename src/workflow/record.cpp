@@ -2,8 +2,8 @@
 
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 
 #include <fmt/core.h>
 
@@ -161,7 +161,7 @@ void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance
     JsonValue outputs(rapidjson::kObjectType);
     for (const auto& [name, output] : record.outputs) {
         JsonValue output_object = json_object(allocator, "file", output.file, "sha256", output.sha256);
-        add_given(output_object, allocator, "kept", output.kept, "folder", output.is_folder);
+        add_nonempty_members(output_object, allocator, "kept", output.kept, "folder", output.is_folder);
         add_members(outputs, allocator, name, std::move(output_object));
     }
     add_members(document, allocator, "outputs", std::move(outputs), "holds", record.holds, "run",
@@ -223,8 +223,8 @@ Pairs dependencies(const StudyPlan& plan, const StudyInstance& instance,
     return depends;
 }
 
-std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& record, const Pairs& depends,
-                      const StudyInstance& instance, const Path& run_folder, FileChecksums& checksums) {
+std::string rerun_reason(const StudyPlan& plan, const std::optional<StudyRecord>& record, const Pairs& depends,
+                         const StudyInstance& instance, const Path& run_folder, FileChecksums& checksums) {
     const Path folder = run_folder / instance.folder;
     if (!record) return "it has not run yet";
     std::vector<std::string> reasons;
@@ -243,8 +243,8 @@ std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& r
     for (const auto& [name, value] : record->depends)
         if (!now.contains(name)) reasons.push_back(fmt::format("{} is no longer used, was {}", name, abbreviated(name, value)));
     for (const auto& [file, checksum] : record->read) {
-        const bool is_own = file.starts_with(in_run);
-        const Path path = is_own ? run_folder / file.substr(in_run.size()) : plan.study.folder / file;
+        const bool is_own = file.starts_with(run_folder_prefix);
+        const Path path = is_own ? run_folder / file.substr(run_folder_prefix.size()) : plan.study.folder / file;
         if (is_own ? !is_inside(path, run_folder) : !is_inside_any(path, plan.study.readable))
             reasons.push_back(fmt::format("'{}', which an input refers to, lies outside the readable folders", file));
         else if (!file_exists(path)) reasons.push_back(fmt::format("'{}', which an input refers to, no longer exists", file));

@@ -5,11 +5,11 @@
 #include "ostraka/core/child_process.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/transaction.h"
-#include "ostraka/core/words.h"
 #include "ostraka/operation/object_files.h"
 
 #include <fmt/core.h>
@@ -169,7 +169,7 @@ private:
                 // Without a record, files are read by the instances that need them, which also yields their checksums.
                 std::vector<std::pair<std::string, std::string>> depends;
                 if (record) depends = dependencies_of(i);
-                std::string why = why_again(plan_, record, depends, instance(i), folder_, checksums_);
+                std::string why = rerun_reason(plan_, record, depends, instance(i), folder_, checksums_);
                 if (why.empty() && options_.again) why = "all steps were requested to run again (--again)";
                 lock.lock();
                 if (record) work.expected = record->seconds;
@@ -329,7 +329,7 @@ private:
             checksums_.forget(folder_of(i) / recorded_output.file);
             if (!recorded_output.kept) return false;  // exists only in the memory of the other process
         }
-        if (!why_again(plan_, recorded, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
+        if (!rerun_reason(plan_, recorded, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
         record = *recorded;
         return true;
     }
@@ -353,7 +353,8 @@ private:
             for (const StudyInput& input : instance(i).inputs)
                 if (!input.file.empty() && is_changed(input.file)) changed_input = input.file.string();
             for (const auto& [file, checksum] : result.record.read)
-                if (!file.starts_with(in_run) && is_changed((plan_.study.folder / file).lexically_normal())) changed_input = file;
+                if (!file.starts_with(run_folder_prefix) && is_changed((plan_.study.folder / file).lexically_normal()))
+                    changed_input = file;
             const bool depends_on_failure =
                 std::any_of(instance(i).needs.begin(), instance(i).needs.end(), [&](std::size_t need) {
                     return results_[need].state == InstanceState::failed || results_[need].state == InstanceState::skipped;
@@ -395,8 +396,9 @@ private:
             checksums_.store(read.file, read.sha256);
             if (is_memory(read.file) || is_recorded_input(operation_instance, read.file)) continue;
             const std::string path_in_run_folder = relative_to_run(read.file);
-            record.read.emplace_back(path_in_run_folder.empty() ? plan_.study.relative(read.file) : in_run + path_in_run_folder,
-                                     read.sha256);
+            record.read.emplace_back(
+                path_in_run_folder.empty() ? plan_.study.relative(read.file) : run_folder_prefix + path_in_run_folder,
+                read.sha256);
         }
         auto outputs = std::make_unique<OutputTransaction>();
         for (const auto& [output, file] : operation_instance.outputs) {

@@ -1,9 +1,9 @@
 #include "ostraka/workflow/study_file.h"
 
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
-#include "ostraka/core/words.h"
 #include "ostraka/workflow/file_pattern.h"
 
 #include <fmt/core.h>

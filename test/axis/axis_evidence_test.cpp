@@ -26,7 +26,7 @@ Mesh wall(double degrees) {
 AxisEvidence evidence_at(const Mesh& mesh, const AxisGuess& guess) {
     std::vector<Index> faces(mesh.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index(0));
-    return AxisWitness(mesh, faces).at(guess);
+    return AxisEvidenceEvaluator(mesh, faces).at(guess);
 }
 
 TEST(AxisEvidence, StepsConvergeToTheAxis) {
@@ -66,7 +66,7 @@ TEST(AxisEvidence, ShapesThatAreNotRoundHaveLittleEvidence) {
     const Mesh coarse = build_mesh(grid(2, 1, false, false, [](double s, double t) { return std::array<double, 3>{s, t, 0}; }));
     std::vector<Index> faces(coarse.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index(0));
-    const AxisWitness evaluator(coarse, faces);
+    const AxisEvidenceEvaluator evaluator(coarse, faces);
     EXPECT_FALSE(evaluator.enough());
     EXPECT_EQ(evaluator.at(wrong_axis).round, 0);
 }

@@ -26,7 +26,7 @@ TEST(ObjectSlices, HeightsAreAboveTheLowestPointAlongTheAxis) {
     options.up = {0, 1, 1};
     for (const AxisMethod direction : {AxisMethod::principal, AxisMethod::rotation}) {
         options.direction = direction;
-        const CutObject cut = cut_object(lying(), {}, options);
+        const SlicedObject cut = cut_object(lying(), {}, options);
         ASSERT_EQ(cut.slices.size(), 5U) << cut.reason;
         EXPECT_NEAR(cut.frames[0].normal.y(), 1, 1e-4) << "it points upwards as far as it does";
         EXPECT_EQ(cut.lowest, 0);
@@ -37,7 +37,7 @@ TEST(ObjectSlices, HeightsAreAboveTheLowestPointAlongTheAxis) {
     options.up = {0, 0, -1};
     EXPECT_NEAR(cut_object(lying(), {}, options).highest, 2, 1e-9);
     options.direction = AxisMethod::skeleton;
-    const CutObject bent = cut_object(lying(), {}, options);
+    const SlicedObject bent = cut_object(lying(), {}, options);
     EXPECT_FALSE(bent.parallel);
     EXPECT_EQ(bent.slices.size(), 5U);
     EXPECT_FALSE(bent.curve.empty());
@@ -46,7 +46,7 @@ TEST(ObjectSlices, HeightsAreAboveTheLowestPointAlongTheAxis) {
 TEST(ObjectSlices, ReportsWhyAnObjectHasNoSuchAxis) {
     CutOptions options;
     options.direction = AxisMethod::principal;
-    const CutObject unsliced = cut_object(build_mesh(octahedron_sphere(3)), {}, options);
+    const SlicedObject unsliced = cut_object(build_mesh(octahedron_sphere(3)), {}, options);
     EXPECT_TRUE(unsliced.slices.empty());
     EXPECT_NE(unsliced.reason.find("no principal axis to slice along"), std::string::npos) << unsliced.reason;
     EXPECT_THROW(cut_object(build_mesh({{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}}), {}, options), Error);
@@ -57,7 +57,7 @@ TEST(ObjectSlices, ComparedAxes) {
     CutOptions options;
     options.up = {0, 1, 0};
     options.places.count = 6;
-    const CutObject cut = cut_object(mesh, {}, options);
+    const SlicedObject cut = cut_object(mesh, {}, options);
     EXPECT_EQ(compared_axes(mesh, {}, cut, false).size(), 2U);
     const auto axes = compared_axes(mesh, {}, cut, true);
     ASSERT_EQ(axes.size(), 6U);

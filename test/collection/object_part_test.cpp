@@ -89,7 +89,7 @@ TEST(ObjectParts, AreNamedByConcepts) {
             "concepts": [{"id": "head", "label": {"en": "head", "de": "Kopf"}}]})",
                                         "test"),
                              "test");
-    EXPECT_GT(ObjectParts(named({"head"}), TagWords(&vocabulary)).read(object).mesh.number_of_faces(), 0U);
+    EXPECT_GT(ObjectParts(named({"head"}), TagMatcher(&vocabulary)).read(object).mesh.number_of_faces(), 0U);
 }
 
 TEST(ObjectParts, TheTopLiesAboveTheNeck) {

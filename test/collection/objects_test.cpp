@@ -67,7 +67,7 @@ TEST(Collection, AFolderInMemoryIsACollection) {
             EXPECT_EQ(each.resumed, resumed);
             EXPECT_EQ(each.result.GetUint64(), mesh.number_of_faces());
         }
-    forget_memory(folder);
+    remove_memory_files(folder);
     EXPECT_THROW(read_collection(folder), Error);
 }
 
@@ -205,7 +205,7 @@ TEST(Collection, SyntheticObjectsAreNotMixedWithOthers) {
             }
             remove_file(folder / name);
         }
-    forget_memory(memory);
+    remove_memory_files(memory);
 }
 
 TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {

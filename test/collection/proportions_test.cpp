@@ -104,10 +104,10 @@ TEST(Proportions, FewObjectsAndTheFailedTestAreReported) {
     EXPECT_EQ(all_notes(enough).find("too few to establish"), std::string::npos);
     for (const ProportionStudy& study : {few_objects, enough})
         for (const RatioRow& ratio : study.ratios)
-            EXPECT_EQ(not_fixed_because(ratio, 0.05).empty(), ratio.fixedness == Fixedness::fixed) << ratio.row.name;
+            EXPECT_EQ(reason_not_fixed(ratio, 0.05).empty(), ratio.fixedness == Fixedness::fixed) << ratio.row.name;
     RatioRow stable;
     stable.fixedness = Fixedness::stable, stable.p_others = 2e-5, stable.p_size = 0.99;
-    EXPECT_EQ(not_fixed_because(stable, 0.05), "size");
+    EXPECT_EQ(reason_not_fixed(stable, 0.05), "size");
 }
 
 TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {

@@ -30,7 +30,7 @@ std::string markups(double height, const std::string& unit = "mm") {
 
 struct MemoryFolder {
     Path path = "memory:study-operations-test";
-    ~MemoryFolder() { forget_memory(path); }
+    ~MemoryFolder() { remove_memory_files(path); }
 };
 
 TEST(StudyOperations, ReadAndWriteFoldersInMemory) {
@@ -44,7 +44,7 @@ TEST(StudyOperations, ReadAndWriteFoldersInMemory) {
     call.set_object("collection", Object::of(folder.path, "markups"));
     call.set_file("truth", "memory:study-operations-test-truth.csv");
     const Report report = call.run(context);
-    forget_memory("memory:study-operations-test-truth.csv");
+    remove_memory_files("memory:study-operations-test-truth.csv");
     EXPECT_EQ(report.result()["objects"].GetInt(), 3);
     EXPECT_EQ(report.result()["truth"]["labelled"].GetInt(), 3);
     ASSERT_EQ(report.result()["failed"].Size(), 1U);

@@ -97,39 +97,40 @@ TEST_F(CageCommand, InfluenceMaps) {
 }
 
 TEST_F(CageCommand, MakeReportsDeviationsFromTheRequest) {
-    const std::string made_cage = (scratch / "made.ply").string(), loose = (scratch / "loose.off").string();
-    auto result = run_command("cage make " + ball + " " + made_cage + " --vertices 41 --mirror 0.5,0.5,0.5,1,0,0");
+    const std::string generated_cage = (scratch / "made.ply").string(), loose = (scratch / "loose.off").string();
+    auto result = run_command("cage make " + ball + " " + generated_cage + " --vertices 41 --mirror 0.5,0.5,0.5,1,0,0");
     ASSERT_EQ(result.code, 0) << result.err;
-    const std::size_t count = read_mesh(made_cage).mesh.number_of_vertices();
+    const std::size_t count = read_mesh(generated_cage).mesh.number_of_vertices();
     EXPECT_EQ(result.err.find("as many on both sides") != std::string::npos, count != 41) << count << result.err;
-    result = run_command("cage make " + ball + " " + made_cage + " --vertices 5000 --alpha 0.2 --quiet");
+    result = run_command("cage make " + ball + " " + generated_cage + " --vertices 5000 --alpha 0.2 --quiet");
     ASSERT_EQ(result.code, 0) << result.err;
-    result = run_command("cage make " + ball + " " + made_cage + " --vertices 5000 --alpha 0.2");
+    result = run_command("cage make " + ball + " " + generated_cage + " --vertices 5000 --alpha 0.2");
     EXPECT_NE(result.err.find("its wrap has no more"), std::string::npos) << result.err;
     // A ball with a vertex that no face has, outside.
     TriangleSoup soup = to_soup(mesh);
     soup.points.push_back({0.5, 0.5, 9});
     write_mesh(loose, build_mesh(soup));
-    result = run_command("cage make " + loose + " " + made_cage + " --vertices 40");
+    result = run_command("cage make " + loose + " " + generated_cage + " --vertices 40");
     EXPECT_EQ(result.code, 3) << result.err;
     EXPECT_NE(result.err.find("1 vertex without faces"), std::string::npos) << result.err;
-    result = run_command("cage check " + loose + " " + made_cage);
+    result = run_command("cage check " + loose + " " + generated_cage);
     EXPECT_EQ(result.code, 3);
     EXPECT_NE(result.out.find("vertex " + std::to_string(soup.points.size() - 1)), std::string::npos) << result.out;
-    refused("weights " + loose + " " + made_cage + " " + weights + " --kind green", 1, std::to_string(soup.points.size() - 1));
+    refused("weights " + loose + " " + generated_cage + " " + weights + " --kind green", 1,
+            std::to_string(soup.points.size() - 1));
 }
 
 TEST_F(CageCommand, ReportsImpossibleRequests) {
-    const std::string made_cage = (scratch / "made.ply").string(), line = (scratch / "line.off").string(),
+    const std::string generated_cage = (scratch / "made.ply").string(), line = (scratch / "line.off").string(),
                       edit = (scratch / "a.edit.json").string();
-    refused("make " + ball + " " + made_cage + " --mirror nan,0,0,1,0,0", 2, "not finite");
-    refused("make " + ball + " " + made_cage + " --mirror 0,0,0,0,nan,0", 2, "not finite");
+    refused("make " + ball + " " + generated_cage + " --mirror nan,0,0,1,0,0", 2, "not finite");
+    refused("make " + ball + " " + generated_cage + " --mirror 0,0,0,0,nan,0", 2, "not finite");
     write_file(line, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
-    refused("make " + line + " " + made_cage, 1, "has no face with an area");
+    refused("make " + line + " " + generated_cage, 1, "has no face with an area");
     write_file(edit, R"({"format": "ostraka-edit", "version": 1, "steps": [
         {"select": {"all": true}, "translate": [1, 0, 0]}, {"select": {"annotation": "top"}, "translate": [1, 0, 0]}]})");
-    refused("edit " + box + " " + edit + " " + made_cage, 1, "/steps/1: selects by annotation");
-    EXPECT_FALSE(std::filesystem::exists(made_cage));
+    refused("edit " + box + " " + edit + " " + generated_cage, 1, "/steps/1: selects by annotation");
+    EXPECT_FALSE(std::filesystem::exists(generated_cage));
     // A cage that is closed but flat is an answer, not a failure.
     const std::string flat = (scratch / "flat.off").string();
     write_file(flat, "OFF\n4 4 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n");

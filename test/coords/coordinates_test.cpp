@@ -233,7 +233,7 @@ TEST(Influence, OfAndOn) {
     c.vertex << 0.5, 0.75, -0.25, 0.1, 0.2, 0.7, 1, 0, 0;
     EXPECT_EQ(influence_of(c, 2), (std::vector<double>{-0.25, 0.7, 0}));
     EXPECT_EQ(influence_on(c, {0, 2}), (std::vector<double>{1, 0.75, 0}));
-    EXPECT_EQ(influence_on(c, {0, 2}, InfluenceBy::sum), (std::vector<double>{1.5, 0.75, -0.25}));
+    EXPECT_EQ(influence_on(c, {0, 2}, InfluenceMeasure::sum), (std::vector<double>{1.5, 0.75, -0.25}));
     EXPECT_EQ(carriers(c.vertex), (std::vector<Index>{3, 3, 1}));
     EXPECT_EQ(carriers(c.vertex, 0.8), (std::vector<Index>{2, 2, 1}));
     EXPECT_TRUE(contains(problem([&] { return influence_of(c, 3); }), "no cage vertex 3"));

@@ -94,7 +94,7 @@ TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
     }
     EXPECT_EQ(read_file(first), "old");
     EXPECT_EQ(read_file(held), "old");
-    forget_memory(held);
+    remove_memory_files(held);
     EXPECT_FALSE(std::filesystem::exists(fresh));
     EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
 }

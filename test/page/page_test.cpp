@@ -213,7 +213,7 @@ TEST(Page, HoldsCurvesThatRunThroughTheTriangles) {
     for (rapidjson::SizeType i = 0; i < curves[0].points.size(); ++i) {
         const JsonValue& place = entry["curves"][0][i];
         const Point shown(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
-                             place[2].GetDouble() + origin[2].GetDouble());
+                          place[2].GetDouble() + origin[2].GetDouble());
         const double distance = std::sqrt(CGAL::squared_distance(shown, position(annotated.mesh, curves[0].points[i])));
         EXPECT_NEAR(distance, 0.002 * box_diagonal(annotated.mesh), 1e-4 * box_diagonal(annotated.mesh));
         EXPECT_GT(std::sqrt(CGAL::squared_distance(shown, Point(1000, 2000, 3000))),

@@ -4,7 +4,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/reassembly/odd_fragments.h"
+#include "ostraka/reassembly/suspicious_fragments.h"
 #include "ostraka/stats/random.h"
 #include "scratch.h"
 #include "sherds.h"
@@ -131,10 +131,10 @@ TEST(Reassembly, WithManyFragmentsOnlyPromisingPairsAreTried) {
 TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     std::vector<Fragment> three = Mixture().fragments;
     three = {three[1], three[2], three[3]};
-    std::vector<PairOfMany> pairs;
+    std::vector<PairResult> pairs;
     std::size_t tried = 0;
     PairMemory memory;
-    memory.keep = [&](const PairOfMany& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
+    memory.keep = [&](const PairResult& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
     const int before = threads();
     set_threads(1);
     const Reassembly one = reassemble(three, quick(), memory);
@@ -143,8 +143,8 @@ TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     set_threads(before);
     same(one, parallel);
     EXPECT_EQ(tried, 3u);
-    memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairOfMany> {
-        for (const PairOfMany& pair : pairs)
+    memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairResult> {
+        for (const PairResult& pair : pairs)
             if (pair.first == i && pair.second == j) return pair;
         return {};
     };
@@ -181,7 +181,7 @@ TEST(SuspiciousFragments, CopiesMirrorImagesUnitsAndInsideOut) {
     const SyntheticSherd bar = synthetic_bar();
     std::vector<Fragment> fragments;
     for (int k = 0; k < 3; ++k) fragments.push_back(fragment_of(synthetic_sherd(k, k + 1, k, k + 1), std::to_string(k), {}));
-    EXPECT_TRUE(odd_fragments(fragments).empty());
+    EXPECT_TRUE(suspicious_fragments(fragments).empty());
     fragments.push_back(fragment_of(synthetic_sherd(1, 2, 1, 2), "copy", random_motion(5)));
     Mesh mirrored = fragments[0].mesh;
     for (const Vertex v : mirrored.vertices()) {
@@ -197,8 +197,8 @@ TEST(SuspiciousFragments, CopiesMirrorImagesUnitsAndInsideOut) {
     reversed = to_soup(bar.mesh);
     for (auto& t : reversed.triangles) std::swap(t[1], t[2]);
     fragments.push_back(fragment_of({build_mesh(reversed), bar.facets}, "turned", {}));
-    std::map<std::size_t, OddFragment> suspicious;
-    for (const OddFragment& fragment : odd_fragments(fragments)) suspicious[fragment.fragment] = fragment;
+    std::map<std::size_t, SuspiciousFragment> suspicious;
+    for (const SuspiciousFragment& fragment : suspicious_fragments(fragments)) suspicious[fragment.fragment] = fragment;
     ASSERT_EQ(suspicious.size(), 4u);
     EXPECT_EQ(suspicious[3].text, "is a copy of 1");
     EXPECT_TRUE(suspicious[3].left_out);
@@ -215,9 +215,9 @@ TEST(SuspiciousFragments, WallThicknessRevealsAnotherUnitWhereSizesAreSimilar) {
     const auto scaled = [&](double scale) {
         Fragment other = two[1];
         other.mesh = scaled_by(other.mesh, scale);
-        return odd_fragments({two[0], other});
+        return suspicious_fragments({two[0], other});
     };
-    EXPECT_TRUE(odd_fragments(two).empty());
+    EXPECT_TRUE(suspicious_fragments(two).empty());
     EXPECT_TRUE(scaled(3).empty()) << "sherds differ";
     const double equal = std::sqrt(surface_area(two[0].mesh) / surface_area(two[1].mesh));
     const auto suspicious = scaled(6.5 * equal);

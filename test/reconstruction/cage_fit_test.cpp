@@ -21,7 +21,7 @@ class CageFit : public ::testing::Test {
 protected:
     void make(int levels, std::uint64_t vertices) {
         mesh = body(levels);
-        cage = made_cage(mesh, vertices);
+        cage = generated_cage(mesh, vertices);
         Random random(7, 0);
         std::vector<Point> points;
         for (const Vertex v : cage.cage.vertices()) {
@@ -105,7 +105,7 @@ TEST_F(CageFit, TheSameForAnyNumberOfThreadsAndAfterEarlierFits) {
 TEST_F(CageFit, FragmentsOfTheObjectThroughTheCage) {
     make(4, 60);
     const AnnotationSet landmarks = landmarks_of(mesh);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.5;
     const Cut cut_piece = cut(original, landmarks, Point(0, 0, 1.9), options);
     ReconstructOptions options_in_cage;

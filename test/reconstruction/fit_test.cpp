@@ -29,7 +29,7 @@ double worst_distance(const Mesh& mesh, const std::vector<Point>& points, const 
 TEST(Fit, AFragmentOfTheTemplateItselfChangesNothing) {
     const Mesh original = body();
     const AnnotationSet set = landmarks_of(original);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.4;
     const Cut cut_piece = cut(original, set, Point(0, 0, 1.8), options);
     const Reconstruction result = reconstruct(original, set, {}, {&cut_piece.fragment});
@@ -47,7 +47,7 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
     const double diagonal = box_diagonal(mesh);
     const Mesh original = deformed_by(
         mesh, [](const Vector3d& p) { return Vector3d(p.x() * (1 + 0.1 * p.z()), p.y() + 0.08 * p.z() * p.z(), 1.08 * p.z()); });
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.5;
     const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
     const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
@@ -77,7 +77,7 @@ TEST(Fit, TheUnobservedPartKeepsItsSizeWhereTheFragmentIsNarrowAtTheFracture) {
         const double waist = 1 - 0.25 * std::exp(-std::pow(p.z() / 0.6, 2));
         return Vector3d(waist * p.x(), waist * p.y(), p.z());
     });
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.5;
     const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
     const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
@@ -102,7 +102,7 @@ TEST(Fit, TheUnobservedPartKeepsItsSizeWhereTheFragmentIsNarrowAtTheFracture) {
 TEST(Fit, NoiseDoesNotSpreadIntoTheUnobservedPart) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.3;
     options.noise = 0.005;
     options.erosion = 0.01;
@@ -127,7 +127,7 @@ TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
     const double diagonal = box_diagonal(mesh);
     const Mesh original = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(1.1 * p.x(), p.y(), p.z() + 0.05 * p.x()); });
     AnnotationSet points = landmarks_of(mesh);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.4;
     Cut cut_piece = cut(original, points, Point(0, 0, 1.9), options);
     Annotation part = head;
@@ -201,22 +201,22 @@ TEST(Fit, WithoutLandmarksItCannotDecide) {
 
 TEST(Fragments, HaveTheRequestedShareAndPose) {
     const Mesh original = body();
-    BreakOptions options;
+    FragmentOptions options;
     for (const double share : {0.1, 0.25, 0.5}) {
         options.share = share;
-        const BrokenPiece piece = break_off(original, Point(0, 0, 1.8), options);
+        const SyntheticFragment piece = generate_fragment(original, Point(0, 0, 1.8), options);
         EXPECT_NEAR(surface_area(piece.mesh), share * surface_area(original), 0.02 * surface_area(original));
         for (const Vertex v : piece.mesh.vertices())
             EXPECT_LT((piece.pose(eigen(piece.mesh.point(v))) - eigen(original.point(Vertex(piece.vertices[v])))).norm(), 1e-12);
         options.erosion = 0.03;
-        EXPECT_LT(surface_area(break_off(original, Point(0, 0, 1.8), options).mesh), surface_area(piece.mesh));
+        EXPECT_LT(surface_area(generate_fragment(original, Point(0, 0, 1.8), options).mesh), surface_area(piece.mesh));
         options.erosion = 0;
     }
     options.share = 0.01;
     options.erosion = 0.5;
-    EXPECT_THROW(break_off(original, Point(0, 0, 1.8), options), Error);
+    EXPECT_THROW(generate_fragment(original, Point(0, 0, 1.8), options), Error);
     options.share = 2;
-    EXPECT_THROW(break_off(original, Point(0, 0, 1.8), options), Error);
+    EXPECT_THROW(generate_fragment(original, Point(0, 0, 1.8), options), Error);
 }
 
 }  // namespace

@@ -52,10 +52,10 @@ inline AnnotationSet landmarks_of(const Mesh& mesh) {
 /// A fragment of `whole` around a point, with its landmarks.
 struct Cut {
     Fragment fragment;
-    BrokenPiece piece;
+    SyntheticFragment piece;
 };
-inline Cut cut(const Mesh& original, const AnnotationSet& set, const Point& centre, const BreakOptions& options) {
-    Cut result{{"piece", {}, {}, {}}, break_off(original, centre, options)};
+inline Cut cut(const Mesh& original, const AnnotationSet& set, const Point& centre, const FragmentOptions& options) {
+    Cut result{{"piece", {}, {}, {}}, generate_fragment(original, centre, options)};
     result.fragment.mesh = result.piece.mesh;
     for (const Annotation& annotation : set.annotations) {
         const auto& kept = result.piece.vertices;

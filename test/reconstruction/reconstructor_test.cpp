@@ -56,7 +56,7 @@ struct Pieces {
             if (centroid(mesh, face).z() > 1.2) head.faces.push_back(face);
         set.annotations.push_back(head);
         AnnotationSet points = landmarks_of(mesh);
-        BreakOptions options;
+        FragmentOptions options;
         options.share = 0.3;
         options.noise = 0.001;
         const std::vector<Point> places{Point(0, 0, 1.9), Point(0, 0, -1.9), Point(1.2, 0, 0)};

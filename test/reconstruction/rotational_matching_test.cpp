@@ -88,7 +88,7 @@ void expect_together(const BrokenPot& pot, const RotationMatch& result) {
         EXPECT_LT(result.overlap[k], 0.03);
     }
     std::size_t carry = 0;
-    for (const BreakJoint& joint : result.joints) {
+    for (const FractureJoint& joint : result.joints) {
         carry += joint.carries ? 1 : 0;
         // To a wall's thickness: the poses given are off by a third of it.
         if (!joint.decided) continue;
@@ -167,7 +167,7 @@ TEST(RotationMatch, AnUnrelatedSherdIsReportedAndOverlapsNothing) {
     pot.add(pot.fragments.size() - 1, others[smallest], shape, 0.003, random);
     const RotationMatch result = pot.match();
     EXPECT_FALSE(result.notes.back().empty());
-    for (const BreakJoint& joint : result.joints)
+    for (const FractureJoint& joint : result.joints)
         EXPECT_FALSE(joint.decided && joint.second + 1 == static_cast<int>(pot.sherds.size()));
 }
 
@@ -214,7 +214,7 @@ TEST(OpenRotations, OnlyWhereASearchLeftThemOpen) {
     const auto rotations = decide_open_rotations(pot.vessel, fragments, searched, placed);
     ASSERT_TRUE(rotations);
     EXPECT_EQ(rotations->group[1], -1);
-    for (const BreakJoint& joint : rotations->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);
+    for (const FractureJoint& joint : rotations->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);
     const Mesh box = build_mesh(test::octahedron_sphere(3));
     EXPECT_FALSE(decide_open_rotations(box, fragments, searched, placed)) << "a ball has no axis";
 }

@@ -34,9 +34,9 @@ struct Cut {
 };
 
 Cut cut(const Mesh& original, const Point& centre) {
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.35;
-    BrokenPiece piece = break_off(original, centre, options);
+    SyntheticFragment piece = generate_fragment(original, centre, options);
     Cut cut_piece;
     cut_piece.fragment.name = "piece";
     cut_piece.fragment.mesh = std::move(piece.mesh);

@@ -58,7 +58,7 @@ TEST(ShapePrior, TheMissingPartIsThatOfTheObservedMember) {
     const ShapePrior prior = prior_of_bodies(mesh);
     for (const Vector3d& b : {Vector3d(1.5, -1, 0.5), Vector3d(-1, 1, 1), Vector3d(0, 0, 0)}) {
         const Mesh original = member(mesh, prior, b);
-        BreakOptions options;
+        FragmentOptions options;
         options.share = 0.35;
         options.noise = 0.001;
         const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
@@ -81,7 +81,7 @@ TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThread
     const AnnotationSet set = landmarks_of(mesh);
     const ShapePrior prior = prior_of_bodies(mesh);
     const Mesh original = member(mesh, prior, Vector3d(6, 0, 0));
-    BreakOptions half;
+    FragmentOptions half;
     half.share = 0.5;
     const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), half);
     ReconstructOptions options;

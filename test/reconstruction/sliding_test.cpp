@@ -79,9 +79,9 @@ struct Fitted {
 /// The template fitted to a share of the member, as `other` meshes it.
 Fitted fit_member(const Mesh& mesh, const Mesh& other, double share, const std::string& counterparts) {
     const Mesh original = deformed_by(other, member);
-    BreakOptions breaking;
+    FragmentOptions breaking;
     breaking.share = share;
-    const BrokenPiece piece = break_off(original, Point(0, 0, 2), breaking);
+    const SyntheticFragment piece = generate_fragment(original, Point(0, 0, 2), breaking);
     const Motion to_piece = piece.pose.inverse();
     std::vector<Point> marks, marks_there;
     for (Index i = 0; i < 9; ++i) {
@@ -235,11 +235,11 @@ TEST(JointCurves, EndWhereTheFragmentEnds) {
 
 TEST(SharedFaces, APieceOfTheMeshInAnotherShapeIsRecognised) {
     const Mesh mesh = meshed_body(900, 0), original = deformed_by(mesh, member);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.8;
     options.noise = 0.002;
     options.moved = false;
-    const BrokenPiece piece = break_off(original, original.point(Vertex(7)), options);
+    const SyntheticFragment piece = generate_fragment(original, original.point(Vertex(7)), options);
     EXPECT_EQ(shared_vertices(mesh, piece.mesh), piece.vertices);
     // Without a part that is broken; its faces need not be the template's.
     std::vector<bool> broken(piece.mesh.number_of_faces(), false);
@@ -264,9 +264,9 @@ TEST(SharedFaces, OtherMeshesShareNone) {
     const Edge first = *changed.edges().begin();
     CGAL::Euler::flip_edge(changed.halfedge(first), changed);
     EXPECT_TRUE(none(shared_vertices(mesh, changed))) << "one edge is another";
-    BreakOptions small;
+    FragmentOptions small;
     small.share = 0.005;
-    EXPECT_TRUE(none(shared_vertices(mesh, break_off(mesh, mesh.point(Vertex(0)), small).mesh)));
+    EXPECT_TRUE(none(shared_vertices(mesh, generate_fragment(mesh, mesh.point(Vertex(0)), small).mesh)));
     EXPECT_TRUE(none(shared_vertices(mesh, mesh, 1, std::vector<bool>(mesh.number_of_faces(), true))));
     EXPECT_TRUE(shared_vertices(mesh, Mesh()).empty());
 }

@@ -41,9 +41,9 @@ double degrees_between(const Motion& a, const Motion& b) {
 TEST(PartAlignment, ConvergesFromNearby) {
     const Mesh whole = potato();
     const SurfaceSearch search(whole);
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.25;
-    const BrokenPiece piece = break_off(whole, Point(0, 0.5, 1.6), options);
+    const SyntheticFragment piece = generate_fragment(whole, Point(0, 0.5, 1.6), options);
     for (const double far : {0.0, 1e5}) {
         Motion away;
         away.translation = far * Vector3d(1, -1, 1);
@@ -73,10 +73,10 @@ TEST(PartAlignment, ToleratesNoiseAndMissingSurface) {
         const double near = (p - Vector3d(0.9, 0, 0.8)).squaredNorm() / 0.05;
         grown.point(v) = point_of(p * (1 + 0.15 * std::exp(-near)));
     }
-    BreakOptions options;
+    FragmentOptions options;
     options.share = 0.4;
     options.noise = 0.002;
-    const BrokenPiece piece = break_off(grown, Point(0.3, 0.3, 1.6), options);
+    const SyntheticFragment piece = generate_fragment(grown, Point(0.3, 0.3, 1.6), options);
     const PartAlignment alignment = align_part(piece.mesh, {}, search, nudge(5, Vector3d(0.05, 0, 0.05)).after(piece.pose));
     EXPECT_LT(degrees_between(alignment.pose, piece.pose), 0.5);
     for (const Vertex v : piece.mesh.vertices())
@@ -87,7 +87,7 @@ TEST(PartAlignment, ToleratesNoiseAndMissingSurface) {
 TEST(PartAlignment, AnchorsFixTheSlippableMotions) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const SurfaceSearch search(ball);
-    const BrokenPiece piece = break_off(ball, Point(0, 0, 1), {});
+    const SyntheticFragment piece = generate_fragment(ball, Point(0, 0, 1), {});
     const Motion start = nudge(20, Vector3d(0.02, 0.01, 0)).after(piece.pose);
     std::vector<Anchor> anchors;
     for (const Index i : {0U, 20U, 40U})
@@ -101,7 +101,7 @@ TEST(PartAlignment, AnchorsFixTheSlippableMotions) {
 TEST(PartAlignment, TheSameForAnyNumberOfThreads) {
     const Mesh whole = potato(4);
     const SurfaceSearch search(whole);
-    const BrokenPiece piece = break_off(whole, Point(0, 0, 1.8), {});
+    const SyntheticFragment piece = generate_fragment(whole, Point(0, 0, 1.8), {});
     const Motion start = nudge(4, Vector3d(0.02, 0.02, 0.02)).after(piece.pose);
     const int before = threads();
     set_threads(1);

@@ -45,12 +45,12 @@ Vector3d middle_of(const Mesh& mesh) {
     return sum;
 }
 
-BrokenPiece broken(const Mesh& whole, const Point& centre, double share, double noise = 0, std::uint64_t seed = 1) {
-    BreakOptions options;
+SyntheticFragment broken(const Mesh& whole, const Point& centre, double share, double noise = 0, std::uint64_t seed = 1) {
+    FragmentOptions options;
     options.share = share;
     options.noise = noise;
     options.seed = seed;
-    return break_off(whole, centre, options);
+    return generate_fragment(whole, centre, options);
 }
 
 TEST(PoseSearch, FindsThePoseOfAPiece) {
@@ -60,7 +60,7 @@ TEST(PoseSearch, FindsThePoseOfAPiece) {
     const PoseSearch search(surface);
     for (const double noise : {0.0, 0.005})
         for (const std::uint64_t seed : {1, 2}) {
-            const BrokenPiece piece = broken(whole, seed == 1 ? Point(0, 0.5, 1.6) : Point(1, 0, 0), 0.25, noise, seed);
+            const SyntheticFragment piece = broken(whole, seed == 1 ? Point(0, 0.5, 1.6) : Point(1, 0, 0), 0.25, noise, seed);
             const PoseSearchResult result = search.find(piece.mesh);
             ASSERT_TRUE(result.decided) << result.reason;
             const PoseCandidate& best = result.candidates.front();
@@ -83,7 +83,8 @@ TEST(PoseSearch, DoesNotDependOnUnitOrPosition) {
         for (const double far : {0.0, 1e4}) {
             const Mesh whole = shaped(start, [&](const Vector3d& p) { return Vector3d(size * (p + far * Vector3d(1, -1, 1))); });
             const SurfaceSearch surface(whole);
-            const BrokenPiece piece = broken(whole, point_of(size * (Vector3d(0, 0.5, 1.6) + far * Vector3d(1, -1, 1))), 0.25);
+            const SyntheticFragment piece =
+                broken(whole, point_of(size * (Vector3d(0, 0.5, 1.6) + far * Vector3d(1, -1, 1))), 0.25);
             const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
             ASSERT_TRUE(result.decided) << result.reason;
             EXPECT_LT(degrees_between(result.candidates.front().pose, piece.pose), 1);
@@ -93,7 +94,7 @@ TEST(PoseSearch, DoesNotDependOnUnitOrPosition) {
 TEST(PoseSearch, FindsTheScaleToo) {
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
-    const BrokenPiece piece = broken(whole, Point(0, 0.5, 1.6), 0.4);
+    const SyntheticFragment piece = broken(whole, Point(0, 0.5, 1.6), 0.4);
     const Mesh larger = shaped(piece.mesh, [](const Vector3d& p) { return Vector3d(1.37 * p); });
     PoseSearchOptions options;
     options.min_scale = 1.1;
@@ -111,7 +112,7 @@ TEST(PoseSearch, FindsTheScaleToo) {
 TEST(PoseSearch, OnlyMarkedFacesCount) {
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
-    BrokenPiece piece = broken(whole, Point(0, 0.5, 1.6), 0.3);
+    SyntheticFragment piece = broken(whole, Point(0, 0.5, 1.6), 0.3);
     // A third of the piece is spoilt, and not marked.
     const Vector3d middle = middle_of(piece.mesh);
     std::vector<bool> marks(piece.mesh.number_of_faces(), true);
@@ -131,7 +132,7 @@ TEST(PoseSearch, OnlyMarkedFacesCount) {
 TEST(PoseSearch, ReportsTheSlippableMotionsOfABall) {
     const Mesh whole = shaped(ball(), [](const Vector3d& p) { return Vector3d(2 * p + Vector3d(1, 2, 3)); });
     const SurfaceSearch surface(whole);
-    const BrokenPiece piece = broken(whole, Point(1, 2, 5), 0.2);
+    const SyntheticFragment piece = broken(whole, Point(1, 2, 5), 0.2);
     const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
     EXPECT_EQ(result.slippable.kind, SlippableKind::sphere);
     EXPECT_LT((result.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
@@ -152,7 +153,7 @@ TEST(PoseSearch, ReportsTheOpenRotationOfAVessel) {
         return r > 0 ? Vector3d(wide * p.x(), wide * p.y(), z) : Vector3d(0, 0, z);
     });
     const SurfaceSearch surface(whole);
-    const BrokenPiece piece = broken(whole, Point(1, 0, 0.3), 0.2);
+    const SyntheticFragment piece = broken(whole, Point(1, 0, 0.3), 0.2);
     const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
     ASSERT_TRUE(result.decided) << result.reason;
     EXPECT_EQ(result.slippable.kind, SlippableKind::rotation);
@@ -181,7 +182,7 @@ TEST(PoseSearch, ReportsWhenItCannotDecide) {
         return Vector3d((1 + 0.2 * p.x() * p.x()) * p.x(), (0.6 + 0.1 * p.x() * p.x()) * p.y(), 0.35 * p.z());
     });
     const SurfaceSearch both(lens);
-    const BrokenPiece piece = broken(lens, Point(1.2, 0, 0), 0.25);
+    const SyntheticFragment piece = broken(lens, Point(1.2, 0, 0), 0.25);
     const PoseSearchResult twice = PoseSearch(both).find(piece.mesh);
     EXPECT_FALSE(twice.decided);
     ASSERT_GE(twice.candidates.size(), 2u);
@@ -192,7 +193,7 @@ TEST(PoseSearch, ReportsWhenItCannotDecide) {
 TEST(PoseSearch, SameForAnyNumberOfThreads) {
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
-    const BrokenPiece piece = broken(whole, Point(0, 0.5, 1.6), 0.2, 0.003);
+    const SyntheticFragment piece = broken(whole, Point(0, 0.5, 1.6), 0.2, 0.003);
     const int before = threads();
     std::vector<PoseSearchResult> results;
     for (const int count : {1, 3}) {

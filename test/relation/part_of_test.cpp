@@ -36,11 +36,11 @@ Annotation region(int id, const std::string& tag, Index first, Index last) {
 TEST(PartOf, IsInheritedAndTransitive) {
     const Vocabulary known = vocabulary();
     const VocabularySearch search(known);
-    const auto levels = search.wholes_of(*search.find("nose"));
+    const auto levels = search.containing_concepts(*search.find("nose"));
     ASSERT_EQ(levels.size(), 2U);
     EXPECT_EQ(known.concepts[levels[0].at(0)].id, "face");
     EXPECT_EQ(known.concepts[levels[1].at(0)].id, "head");
-    EXPECT_TRUE(search.wholes_of(*search.find("hand")).empty());
+    EXPECT_TRUE(search.containing_concepts(*search.find("hand")).empty());
 }
 
 TEST(PartOf, PartsLieInTheirWholes) {
@@ -87,7 +87,7 @@ TEST(PartOf, GoesThroughSkosAndBack) {
     const VocabularySearch search(read);
     const auto nose = search.concept_of("nose");
     ASSERT_TRUE(nose);
-    EXPECT_EQ(search.wholes_of(*nose).size(), 1U);
+    EXPECT_EQ(search.containing_concepts(*nose).size(), 1U);
 }
 
 TEST(PartOf, RefusesWhatIsNotThere) {

@@ -133,11 +133,11 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
 
 TEST(Parts, ThePartThatIsFarthestOffIsNamed) {
     const std::vector<std::optional<double>> values{1.0, 4.0, std::nullopt, 0.5, 3.0}, expected{1.0, 2.0, 1.0, 1.0, std::nullopt};
-    const PartsOff deviation = parts_off(values, expected);
+    const PartsDeviation deviation = parts_deviation(values, expected);
     EXPECT_EQ(deviation.count, 3U);
     EXPECT_EQ(deviation.worst, 1U) << "of two that are equally far off the first";
     EXPECT_NEAR(deviation.off, std::log(2.0) * std::sqrt(2.0 / 3), 1e-12);
-    EXPECT_EQ(parts_off({}, {}).count, 0U);
+    EXPECT_EQ(parts_deviation({}, {}).count, 0U);
 
     Tower template_tower = tower();
     template_tower.graph.relationships.clear();  // nothing is stated: the parts speak

@@ -364,7 +364,7 @@ TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
         EXPECT_GT(value(solid_member, name), 0) << name;
         EXPECT_NEAR(value(hollow_member, name), value(solid_member, name), 1e-3) << name;
     }
-    EXPECT_NE(explained_text(hollow_member.fit)[1].find("it is hollow: 20"), std::string::npos);
+    EXPECT_NE(fit_explanation(hollow_member.fit)[1].find("it is hollow: 20"), std::string::npos);
 }
 
 TEST(MemberFit, DistortionMatchesTheMap) {

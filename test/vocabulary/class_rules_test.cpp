@@ -28,7 +28,7 @@ std::vector<std::string> broken(const AnnotationSet& set, const std::vector<Rela
                                 const std::string& text = rules_text) {
     static const Vocabulary vocabulary = busts();
     std::vector<std::string> violations;
-    for (const BrokenRule& rule : check_class_rules(set, rules(text), &vocabulary, relations, "r.json"))
+    for (const RuleViolation& rule : check_class_rules(set, rules(text), &vocabulary, relations, "r.json"))
         violations.push_back(rule.rule + ": " + rule.text);
     return violations;
 }

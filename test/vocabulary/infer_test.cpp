@@ -20,7 +20,7 @@ namespace {
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The words an annotation carries, "name=value" each.
-std::string words_of(const AnnotationSet& set, int id) {
+std::string split_words(const AnnotationSet& set, int id) {
     std::string text;
     for (const Attribute& attribute : set.find(id)->attributes)
         if (attribute.type == AttributeType::semantic) text += (text.empty() ? "" : " ") + attribute.name + "=" + attribute.note;
@@ -33,7 +33,7 @@ Attribute length(const std::string& name, double value, const std::string& unit 
 
 TEST(Infer, ARuleThatHoldsInfersItsValueWithAReason) {
     const InferenceResult result = infer(set_of({point(0, "whiskers", {length("bumpiness", 0.05, "1/mm")})}), busts());
-    EXPECT_EQ(words_of(result.annotations, 0), "beard style=straight");
+    EXPECT_EQ(split_words(result.annotations, 0), "beard style=straight");
     const Attribute& attribute = result.annotations.annotations[0].attributes.back();
     EXPECT_EQ(attribute.origin, "rule 'smooth': bumpiness 0.05 1/mm < 0.1 1/mm");
     EXPECT_EQ(attribute.id, 1);
@@ -46,7 +46,7 @@ TEST(Infer, ARuleThatHoldsInfersItsValueWithAReason) {
     // What is inferred fits the vocabulary, and is inferred anew, not twice.
     EXPECT_TRUE(check_against_vocabulary(result.annotations, busts()).empty());
     const InferenceResult again = infer(result.annotations, busts());
-    EXPECT_EQ(words_of(again.annotations, 0), "beard style=straight");
+    EXPECT_EQ(split_words(again.annotations, 0), "beard style=straight");
     EXPECT_EQ(again.annotations.annotations[0].attributes.size(), 2U);
 }
 
@@ -60,7 +60,7 @@ TEST(Infer, BoundsAndUnits) {
          : std::string(bound) == "above" ? condition.above
                                          : condition.below) = limit;
         vocabulary.rules.erase(vocabulary.rules.begin() + 1);
-        return words_of(infer(set_of({point(0, "beard", {length("bumpiness", value, unit)})}), vocabulary).annotations, 0);
+        return split_words(infer(set_of({point(0, "beard", {length("bumpiness", value, unit)})}), vocabulary).annotations, 0);
     };
     EXPECT_EQ(style(0.1, "1/mm", "max", 0.1), "beard style=straight");
     EXPECT_EQ(style(0.1, "1/mm", "below", 0.1), "");
@@ -75,10 +75,10 @@ TEST(Infer, RatiosAcrossAnnotations) {
         more.push_back(point(0, "beard", {length("bumpiness", 0.3, "1/mm"), length("width", 5, "cm")}));
         return infer(set_of(std::move(more)), busts());
     };
-    EXPECT_EQ(words_of(infer_with({point(1, "eye", {length("height", 10)})}).annotations, 0), "beard style=curly")
+    EXPECT_EQ(split_words(infer_with({point(1, "eye", {length("height", 10)})}).annotations, 0), "beard style=curly")
         << "5 cm / 10 mm";
-    EXPECT_EQ(words_of(infer_with({point(1, "occhio", {length("height", 25)})}).annotations, 0), "") << "exactly 2";
-    EXPECT_EQ(words_of(infer_with({point(1, "left eye", {length("height", 1, "in")})}).annotations, 0), "") << "1.97";
+    EXPECT_EQ(split_words(infer_with({point(1, "occhio", {length("height", 25)})}).annotations, 0), "") << "exactly 2";
+    EXPECT_EQ(split_words(infer_with({point(1, "left eye", {length("height", 1, "in")})}).annotations, 0), "") << "1.97";
     const auto origin = infer_with({point(1, "eye", {length("height", 10)})}).inferred[0].why;
     EXPECT_TRUE(holds(origin, "width / height of eye = 5 > 2 (width 5 cm, height of eye 10 mm)")) << origin;
     // What is missing is said.
@@ -118,7 +118,7 @@ TEST(Infer, ContradictingRulesAreReported) {
     const AnnotationSet set = set_of(
         {point(0, "beard", {length("bumpiness", 0.3, "1/mm"), length("width", 50)}), point(1, "eye", {length("height", 5)})});
     const InferenceResult result = infer(set, vocabulary);
-    EXPECT_EQ(words_of(result.annotations, 0), "");
+    EXPECT_EQ(split_words(result.annotations, 0), "");
     EXPECT_TRUE(result.inferred.empty());
     ASSERT_EQ(result.contradictions.size(), 1U);
     EXPECT_TRUE(holds(result.contradictions[0], "'beard style' is not inferred: the rule 'smooth'")) << result.contradictions[0];
@@ -130,11 +130,11 @@ TEST(Infer, StatedAttributesAreKept) {
         return infer(set_of({point(0, "beard", {length("bumpiness", 0.05, "1/mm"), word("Tipo di barba", stated)})}), busts());
     };
     const InferenceResult other = with("curly");
-    EXPECT_EQ(words_of(other.annotations, 0), "Tipo di barba=curly");
+    EXPECT_EQ(split_words(other.annotations, 0), "Tipo di barba=curly");
     ASSERT_EQ(other.contradictions.size(), 1U);
     EXPECT_TRUE(holds(other.contradictions[0], "stated to be 'curly', but the rule 'smooth' infers 'straight'"));
     const InferenceResult same = with("Straight");
-    EXPECT_EQ(words_of(same.annotations, 0), "Tipo di barba=Straight");
+    EXPECT_EQ(split_words(same.annotations, 0), "Tipo di barba=Straight");
     EXPECT_TRUE(same.contradictions.empty());
 }
 
@@ -149,14 +149,14 @@ TEST(Infer, TextValuesAreInputsToo) {
     vocabulary.rules = {rule, vocabulary.rules[2]};
     check_vocabulary(vocabulary, "v");
     const InferenceResult result = infer(set_of({point(0, "beard", {word("remark", "Reddish")})}), vocabulary);
-    EXPECT_EQ(words_of(result.annotations, 0), "remark=Reddish material=clay beard style=curly");
+    EXPECT_EQ(split_words(result.annotations, 0), "remark=Reddish material=clay beard style=curly");
     // Where the word in between is contradicted, nothing follows from it.
     InferenceRule against = vocabulary.rules[1];
     against.id = "no";
     against.value = "marble";
     vocabulary.rules.push_back(against);
     const InferenceResult broken = infer(set_of({point(0, "beard", {word("remark", "red")})}), vocabulary);
-    EXPECT_EQ(words_of(broken.annotations, 0), "remark=red");
+    EXPECT_EQ(split_words(broken.annotations, 0), "remark=red");
     EXPECT_EQ(broken.contradictions.size(), 1U);
 }
 

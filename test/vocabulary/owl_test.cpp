@@ -1,6 +1,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/vocabulary/skos.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST(Owl, ClassesBecomeConceptsAndRestrictionsParts) {
     EXPECT_EQ(concept_of(vocabulary, "Handle").part_of, Names{"Pot"});
     EXPECT_EQ(concept_of(vocabulary, "Lug").broader, Names{"Handle"});
     EXPECT_TRUE(vocabulary.notes.empty()) << vocabulary.notes.front();
-    EXPECT_TRUE(TagWords(&vocabulary).means("lug", "ansa"));
+    EXPECT_TRUE(TagMatcher(&vocabulary).means("lug", "ansa"));
     // What was read is a vocabulary as any other: written and read again it is the same.
     const Vocabulary again = vocabulary_from_skos(vocabulary_to_skos(vocabulary, false, "v.ttl"), false, "v.ttl");
     EXPECT_EQ(concept_of(again, "Handle").part_of, Names{"Pot"});

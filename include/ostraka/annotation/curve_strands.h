@@ -24,8 +24,8 @@ struct StrandUse {
 /// vertices at the border of the mesh. Equal stretches become one strand, regardless of direction. Appends the strands to
 /// `strands` and returns, by annotation and curve, the sequence of its strands; empty for annotations that are not chosen and
 /// for curves of one place. O(k log k) for k places.
-std::vector<std::vector<std::vector<StrandUse>>> take_apart(const Mesh& mesh,
-                                                            const std::vector<std::vector<std::vector<SurfacePoint>>>& curves,
-                                                            const std::vector<bool>& chosen, std::vector<CurveStrand>& strands);
+std::vector<std::vector<std::vector<StrandUse>>> separate_nonmanifold(
+    const Mesh& mesh, const std::vector<std::vector<std::vector<SurfacePoint>>>& curves, const std::vector<bool>& chosen,
+    std::vector<CurveStrand>& strands);
 
 }  // namespace ostraka

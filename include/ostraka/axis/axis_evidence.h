@@ -27,12 +27,12 @@ struct AxisEvidence {
 };
 
 /// A part prepared once for queries with many lines.
-class AxisWitness {
+class AxisEvidenceEvaluator {
 public:
     /// Throws Error (input) if there are no faces with area, (usage) for options out of range.
-    AxisWitness(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
-    ~AxisWitness();
-    AxisWitness(AxisWitness&&) noexcept;
+    AxisEvidenceEvaluator(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
+    ~AxisEvidenceEvaluator();
+    AxisEvidenceEvaluator(AxisEvidenceEvaluator&&) noexcept;
 
     /// The equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
     /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance

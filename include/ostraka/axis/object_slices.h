@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/axis/axis.h"
-#include "ostraka/slicing/cut_object.h"
+#include "ostraka/slicing/sliced_object.h"
 
 namespace ostraka {
 
@@ -11,14 +11,14 @@ struct CutOptions {
     /// curve of the skeleton.
     std::optional<AxisMethod> direction;
     Vector up{0, 0, 1};
-    SlicePlaces places;  ///< only the count applies across a curve
+    SliceHeights places;  ///< only the count applies across a curve
     AxisOptions axis;
 };
 
 /// Slices the mesh, or the given faces of it, along its own axis; heights are above its lowest point. If the object has no such
 /// axis, the result has a reason and no slices. Throws Error (input) for a mesh without surface or one that find_axis rejects,
 /// and as slice_mesh.
-CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options = {});
+SlicedObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options = {});
 
 /// An axis with which the barycentres of slices are compared.
 struct ComparedAxis {
@@ -31,7 +31,7 @@ struct ComparedAxis {
 
 /// The mean of the barycentres along the normal (of parallel slices), their regression line, and the curve of the slices; with
 /// `by_shape` also the axes of `find_axis`: rotation, principal, slices, skeleton. Empty for fewer than two barycentres.
-std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const CutObject& cut, bool by_shape,
+std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const SlicedObject& cut, bool by_shape,
                                         const AxisOptions& options = {});
 
 }  // namespace ostraka

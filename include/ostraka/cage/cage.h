@@ -100,6 +100,6 @@ inline constexpr double max_amplification = 3;
 
 /// Reasons against deforming the mesh through the cage with these coordinates, as text: the cage is invalid
 /// (`CageCheck::valid`) or the weights are large (`max_amplification`). Empty if there are none.
-std::vector<std::string> unfit_for_deformation(const CageCheck& check, const Coordinates& coordinates);
+std::vector<std::string> reasons_against_deformation(const CageCheck& check, const Coordinates& coordinates);
 
 }  // namespace ostraka

@@ -10,7 +10,7 @@ namespace ostraka {
 std::vector<ObjectResult> read_object_landmarks(const Collection& collection, const ResultStore& store = ResultStore());
 
 /// An object that differs from the others. `why` is a message with the remedy.
-struct OddSpecimen {
+struct ShapeOutlier {
     std::string name, why;
     bool left_out = false;
 };
@@ -22,7 +22,7 @@ struct LandmarkShapes {
     std::string unit;                          ///< unit of all landmarks; empty if the units differ or are not given
     std::vector<Landmarks> configurations;     ///< one per object
     std::vector<std::string> notes;            ///< messages on the landmarks that are left out
-    std::vector<OddSpecimen> odd;              ///< objects that were left out
+    std::vector<ShapeOutlier> odd;             ///< objects that were left out
 };
 
 /// Landmarks common to the objects in `read`, the result of `read_object_landmarks`. Left out as odd are objects with fewer
@@ -35,9 +35,9 @@ LandmarkShapes common_landmarks(const Collection& collection, const std::vector<
 
 /// Objects whose landmarks are mirrored (the mirror image is less than half as far from the mean of the others), and objects
 /// whose centroid size is more than three times the median or less than a third of it. These objects are not removed.
-std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes);
+std::vector<ShapeOutlier> shape_outliers(const LandmarkShapes& shapes);
 
 /// The shapes without the objects listed in `odd`.
-LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<OddSpecimen>& outliers);
+LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<ShapeOutlier>& outliers);
 
 }  // namespace ostraka

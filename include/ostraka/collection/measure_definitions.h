@@ -4,7 +4,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/collection/measure_table.h"
 #include "ostraka/collection/objects.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 
 #include <array>
 #include <optional>
@@ -63,11 +63,11 @@ struct ObjectMeasures {
 /// tag, `words` selects annotations whose tag has the same meaning. Throws Error (input) if a required file cannot be read or
 /// if no measure can be taken.
 ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions,
-                             const TagWords* words = nullptr);
+                             const TagMatcher* words = nullptr);
 
 /// The same for a mesh with annotations in memory.
 ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
-                             const TagWords* words = nullptr);
+                             const TagMatcher* words = nullptr);
 
 Json object_measures_to_json(const ObjectMeasures& measures);
 ObjectMeasures object_measures_from_json(const JsonValue& value);
@@ -79,7 +79,7 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 
 /// The measures of every object of a collection, as JSON. Results are kept in the store.
 std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
-                                        const ResultStore& store = ResultStore(), const TagWords* words = nullptr,
+                                        const ResultStore& store = ResultStore(), const TagMatcher* words = nullptr,
                                         const std::string& words_checksum = {});
 /// Table of the measures in `taken`. A note that applies to several objects is reported once. Throws Error (input) if no object
 /// could be measured; `where` names the source of the collection in error messages.

@@ -3,7 +3,7 @@
 
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/mesh.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 
 #include <exception>
 
@@ -29,7 +29,7 @@ class ObjectParts {
 public:
     /// `words_checksum` is the checksum of the vocabulary in `words`. Throws Error (usage) if both a proposal and annotations
     /// are requested.
-    explicit ObjectParts(PartOptions options = {}, TagWords words = TagWords(), std::string words_checksum = {});
+    explicit ObjectParts(PartOptions options = {}, TagMatcher words = TagMatcher(), std::string words_checksum = {});
 
     /// Whether whole objects are selected.
     [[nodiscard]] bool whole() const;
@@ -45,7 +45,7 @@ public:
 
 private:
     PartOptions options_;
-    TagWords words_;
+    TagMatcher words_;
     std::string checksum_;
 };
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ostraka/core/json.h"
-#include "ostraka/core/share.h"
+#include "ostraka/core/shard.h"
 
 #include <functional>
 #include <map>

@@ -59,7 +59,7 @@ struct RatioRow {
 
 /// The tests that a ratio failed ("pairing", "others", "size"); empty if the ratio is fixed; "nothing is known" if no test is
 /// possible.
-std::string not_fixed_because(const RatioRow& ratio, double false_discoveries);
+std::string reason_not_fixed(const RatioRow& ratio, double false_discoveries);
 
 struct ProportionStudy {
     std::vector<MeasureRow> measures;

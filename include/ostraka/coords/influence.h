@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-enum class InfluenceBy { max, sum };
+enum class InfluenceMeasure { max, sum };
 
 /// For each cage vertex the maximum of its weights (compared with a threshold in the thesis, section 5.2.3) or their sum over
 /// the given points. Throws Error (usage) for an index out of range, Error (input) if there are no points.
 std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points,
-                                 InfluenceBy by = InfluenceBy::max);
+                                 InfluenceMeasure by = InfluenceMeasure::max);
 
 /// The weights of one cage vertex, one per point. Throws Error (usage) for an index out of range.
 std::vector<double> influence_of(const Coordinates& coordinates, Index cage_vertex);

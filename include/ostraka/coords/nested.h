@@ -38,7 +38,7 @@ WeightMatrix weights_of_level(const WeightMatrix& vertex, const std::vector<Cage
                               const std::vector<WeightMatrix>& carrying, std::size_t level);
 
 /// The innermost level whose influence on these points (rows of `vertex`) averages at least one half.
-std::size_t level_that_holds(const WeightMatrix& vertex, const std::vector<Index>& points, const std::vector<CageLevel>& levels,
-                             const std::vector<WeightMatrix>& carrying);
+std::size_t governing_level(const WeightMatrix& vertex, const std::vector<Index>& points, const std::vector<CageLevel>& levels,
+                            const std::vector<WeightMatrix>& carrying);
 
 }  // namespace ostraka

@@ -49,6 +49,6 @@ private:
 void kill_children();
 
 /// The folder of the running executable.
-Path own_program_folder();
+Path executable_folder();
 
 }  // namespace ostraka

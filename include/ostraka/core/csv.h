@@ -9,10 +9,10 @@ namespace ostraka {
 
 /// Protects a cell from being read as a formula by a spreadsheet: puts an apostrophe in front of text that begins with a tab or
 /// a line break, or that has one of = + - @ (including their full-width and small forms) at the front or after a semicolon, a
-/// tab, a line break or a non-ASCII blank, ignoring plain blanks in between. Text that `unguarded` would shorten gets an
+/// tab, a line break or a non-ASCII blank, ignoring plain blanks in between. Text that `unescape_formula` would shorten gets an
 /// apostrophe as well.
-std::string guarded(const std::string& text);
-std::string unguarded(const std::string& text);
+std::string escape_formula(const std::string& text);
+std::string unescape_formula(const std::string& text);
 
 /// One row of a CSV file (RFC 4180) with a line feed at the end. Cells are protected unless they are plain numbers.
 std::string csv_row(const std::vector<std::string>& cells);

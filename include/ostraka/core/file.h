@@ -22,7 +22,7 @@ std::string read_file(const Path& file);
 /// Whether the name denotes a file in memory.
 bool is_memory(const Path& file);
 /// Removes a file in memory, or all files in memory below a folder.
-void forget_memory(const Path& file);
+void remove_memory_files(const Path& file);
 
 /// Queries for files on disk and in memory.
 bool file_exists(const Path& file);

@@ -8,7 +8,7 @@
 namespace ostraka {
 
 /// The maximum that the schemas allow.
-inline constexpr int largest_id = std::numeric_limits<int>::max();
+inline constexpr int max_id = std::numeric_limits<int>::max();
 
 /// Unused ids for a list of entries (with a member `id`): one more than the largest id in use, at least 0; if the largest id is
 /// in use, the smallest unused id from 0.
@@ -19,7 +19,7 @@ public:
         for (const auto& entry : entries) used_.insert(entry.id);
     }
     int next() {
-        const bool above = used_.empty() || *used_.rbegin() < largest_id;
+        const bool above = used_.empty() || *used_.rbegin() < max_id;
         if (!above)
             while (used_.contains(gap_)) ++gap_;
         const int id = used_.empty() ? 0 : above ? std::max(0, *used_.rbegin() + 1) : gap_;
@@ -36,7 +36,7 @@ template <class Entries>
 int next_free_id(const Entries& entries) {
     int largest = -1;
     for (const auto& entry : entries) largest = std::max(largest, entry.id);
-    return largest < largest_id ? largest + 1 : FreeIds(entries).next();
+    return largest < max_id ? largest + 1 : FreeIds(entries).next();
 }
 
 }  // namespace ostraka

@@ -46,14 +46,14 @@ void add_members(JsonValue& object, JsonAllocator& allocator, std::string_view n
 }
 /// As add_members, but skips false and empty texts, lists and optionals.
 template <class Value, class... Rest>
-void add_given(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
+void add_nonempty_members(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     bool nonempty = false;
     if constexpr (std::derived_from<std::remove_cvref_t<Value>, JsonValue>)
         nonempty = value.IsArray() ? !value.Empty() : value.MemberCount() > 0;
     else if constexpr (requires { value.empty(); }) nonempty = !value.empty();
     else nonempty = static_cast<bool>(value);
     if (nonempty) add_members(object, allocator, name, std::forward<Value>(value));
-    if constexpr (sizeof...(rest) > 0) add_given(object, allocator, std::forward<Rest>(rest)...);
+    if constexpr (sizeof...(rest) > 0) add_nonempty_members(object, allocator, std::forward<Rest>(rest)...);
 }
 /// Copies the listed members that the object `from` has.
 void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names);

@@ -9,12 +9,12 @@
 namespace ostraka {
 
 /// Products of four lengths must neither overflow nor underflow in computations with coordinates.
-inline constexpr double largest_coordinate = 1e60;
+inline constexpr double max_coordinate = 1e60;
 
-/// True if no coordinate is NaN or beyond `largest_coordinate` in absolute value.
+/// True if no coordinate is NaN or beyond `max_coordinate` in absolute value.
 inline bool is_place(double x, double y, double z) {
     // NaN compares as false.
-    return std::abs(x) <= largest_coordinate && std::abs(y) <= largest_coordinate && std::abs(z) <= largest_coordinate;
+    return std::abs(x) <= max_coordinate && std::abs(y) <= max_coordinate && std::abs(z) <= max_coordinate;
 }
 inline bool is_place(const Point& p) { return is_place(p.x(), p.y(), p.z()); }
 

@@ -36,7 +36,7 @@ std::string digits(double value);
 std::string digits(double value, int significant);
 /// The text as a finite number, ignoring blanks around it; nullopt if it is not one as a whole.
 std::optional<double> number_of(std::string_view text);
-std::optional<int> whole_of(std::string_view text);
+std::optional<int> parse_int(std::string_view text);
 /// The text without leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
 /// The text with ASCII capital letters in lower case.
@@ -45,6 +45,6 @@ std::string lower_case(std::string_view text);
 /// The line that begins at `position`, without its line feed; moves `position` to the next line.
 std::string_view line_at(std::string_view text, std::size_t& position);
 /// The words between blanks.
-std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks = " \t\r\n");
+std::vector<std::string_view> split_words(std::string_view text, std::string_view blanks = " \t\r\n");
 
 }  // namespace ostraka

@@ -43,7 +43,7 @@ struct Walls {
     double typical = 0;            ///< median depth over the area that lies over a wall (with an opposite side); 0: there is none
     double share = 0;              ///< share of the area that lies over a wall of about the typical depth
 };
-Walls walls_under(const Mesh& mesh, const FacetGraph& graph);
+Walls measure_walls(const Mesh& mesh, const FacetGraph& graph);
 
 /// Segments the patches into parts whose mutual boundary turns outward by more than `sharpest` (radians) on average. Merges
 /// small parts first, over the smallest turns, then the pairs with the smallest mean turn. Returns the part number of each

@@ -34,6 +34,6 @@ Mesh moved(const Mesh& mesh, const Motion& motion);
 Mesh scaled_by(const Mesh& mesh, double scale);
 
 /// Per face, whether it is intact surface; empty where all are outer.
-std::vector<bool> not_broken(const std::vector<Facet>& facets);
+std::vector<bool> intact_faces(const std::vector<Facet>& facets);
 
 }  // namespace ostraka

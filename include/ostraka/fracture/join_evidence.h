@@ -48,7 +48,7 @@ struct JoinEvidence {
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
     /// Whether a feature is evidence about the join, rather than about the quality of the data.
-    static bool of_the_join(std::size_t feature) { return feature != 18 && feature != 19 && feature != 23; }
+    static bool is_join_feature(std::size_t feature) { return feature != 18 && feature != 19 && feature != 23; }
 };
 
 /// Log odds of a true join against chance from the evidence alone, learnt from fractures with known truth
@@ -59,7 +59,7 @@ double join_log_odds(const JoinEvidence& evidence);
 double join_probability(double log_odds, double lead);
 /// Correction of the log odds of a pair among this number of fragments: a fragment has about four neighbours, so the more
 /// fragments there are, the smaller the share of joined pairs. 0 where the share is that of the training data.
-double log_odds_of_a_join_among(std::size_t fragments);
+double join_log_odds_correction(std::size_t fragments);
 /// SHA-256 of the model: results of different models are not comparable.
 std::string join_model_version();
 /// The feature that is the strongest evidence against a join, as text.

@@ -29,7 +29,7 @@ struct SherdOnAxis {
 };
 
 /// Two sherds that meet along a fracture.
-struct BreakJoint {
+struct FractureJoint {
     int first = 0, second = 0;  ///< indices of the sherds
     double rotation = 0;        ///< rotation of the second sherd about the axis less that of the first, in degrees
     double contact = 0;         ///< share of the smaller fracture that meets the other within half of the wall thickness
@@ -45,22 +45,22 @@ struct BreakJoint {
 };
 
 struct RotationMatch {
-    std::vector<Motion> poses;       ///< per sherd
-    std::vector<int> group;          ///< per sherd: sherds with equal numbers are connected by decided joints (or fixed)
-    std::vector<BreakJoint> joints;  ///< of the assembly; joints that carry come first, best first
-    std::vector<double> overlap;     ///< per sherd: area where another sherd lies too, as a share of its own area
-    std::vector<std::string> notes;  ///< per sherd: why it has no decided joint; else empty
-    double wall = 0;                 ///< median width of the fractures: the unit of closeness
+    std::vector<Motion> poses;          ///< per sherd
+    std::vector<int> group;             ///< per sherd: sherds with equal numbers are connected by decided joints (or fixed)
+    std::vector<FractureJoint> joints;  ///< of the assembly; joints that carry come first, best first
+    std::vector<double> overlap;        ///< per sherd: area where another sherd lies too, as a share of its own area
+    std::vector<std::string> notes;     ///< per sherd: why it has no decided joint; else empty
+    double wall = 0;                    ///< median width of the fractures: the unit of closeness
 };
 
 /// `vessel` is a surface of revolution about the line through `point` along `direction`, and the sherds lie on it up to a
 /// rotation about that line. Every rotation of each pair is scored by the fracture area that comes close, facing the other,
-/// less the surface area that both would cover. The best rotations are refined by ICP as in pair_breaks, with all six degrees
-/// of freedom, the sherd's own surface constrained to the template. The assembly maximises the sum over all pairs, including
-/// cycles, by a beam search that starts from the largest sherd; then all sherds are refined together. A joint that carries is
-/// decided if no other rotation of its two sides about the axis is nearly as good. Sherds without a decided joint are reported
-/// and placed where they overlap nothing, if possible. Deterministic. Throws Error (usage) without sherds or for options out of
-/// range.
+/// less the surface area that both would cover. The best rotations are refined by ICP as in register_fractures, with all six
+/// degrees of freedom, the sherd's own surface constrained to the template. The assembly maximises the sum over all pairs,
+/// including cycles, by a beam search that starts from the largest sherd; then all sherds are refined together. A joint that
+/// carries is decided if no other rotation of its two sides about the axis is nearly as good. Sherds without a decided joint are
+/// reported and placed where they overlap nothing, if possible. Deterministic. Throws Error (usage) without sherds or for options
+/// out of range.
 RotationMatch match_rotations(const Mesh& vessel, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                               const std::vector<SherdOnAxis>& sherds, const RotationMatchOptions& options = {});
 

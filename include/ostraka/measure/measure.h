@@ -56,7 +56,7 @@ void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& aft
 /// The positions of the pins of a measure. A bounding measure goes from its first pin straight to the plane of the other.
 std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure);
 /// The path of a measure: the edges between the pins of a tape along them; empty for others.
-std::vector<Point> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure);
+std::vector<Point> path_of_measure(PathSearch& search, const Mesh& mesh, const Measure& measure);
 
 /// Adds the measure as an attribute of this name, with a new id.
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/core/finding.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/provenance.h"
-#include "ostraka/core/words.h"
 
 #include <concepts>
 #include <deque>
@@ -57,7 +57,7 @@ inline Field people(std::string title, FieldType type = FieldType::text, std::st
 
 /// The layout of a report, declared with the operation: its values and its tables.
 struct ReportLayout {
-    std::vector<Field> of_values;
+    std::vector<Field> value_fields;
     struct Table {
         std::string key;  ///< key of an array of objects in JSON; empty: for people only
         std::vector<Field> columns;
@@ -69,7 +69,7 @@ struct ReportLayout {
 
     template <std::same_as<Field>... Columns>
     void values(Columns... columns) {
-        (of_values.push_back(std::move(columns)), ...);
+        (value_fields.push_back(std::move(columns)), ...);
     }
     template <std::same_as<Field>... Columns>
     void table(std::string key, Columns... columns) {

@@ -1,7 +1,7 @@
 // Reassembles fragments of one or several objects along their fractures.
 #pragma once
 
-#include "ostraka/fracture/break_pair.h"
+#include "ostraka/fracture/pair_registration.h"
 
 #include <functional>
 #include <optional>
@@ -20,7 +20,7 @@ struct ReassemblyOptions {
 };
 
 /// All candidate poses of two fragments.
-struct PairOfMany {
+struct PairResult {
     std::size_t first = 0, second = 0;
     std::vector<PairCandidate> candidates;  ///< each maps the second fragment onto the first; most likely first
     double confidence = 0;
@@ -39,7 +39,7 @@ struct FragmentJoin {
 };
 
 /// A pose that is likely from two fragments alone, but was rejected.
-struct UndoneJoin {
+struct RejectedJoin {
     std::size_t first = 0, second = 0;
     double pair = 0;
     std::string reason;
@@ -50,7 +50,7 @@ struct Reassembly {
     std::vector<int> group;           ///< per fragment, largest group first; -1: not joined
     std::vector<std::string> alone;   ///< per fragment: why it is not joined; else empty
     std::vector<FragmentJoin> joins;  ///< by group, most certain first
-    std::vector<UndoneJoin> undone;
+    std::vector<RejectedJoin> undone;
     std::size_t pairs_tried = 0;
     std::size_t pairs_left = 0;  ///< with many fragments: number of pairs skipped for dissimilar fractures
     [[nodiscard]] int groups() const;
@@ -59,8 +59,8 @@ struct Reassembly {
 /// Cache of pair results. `recall` returns the result for a pair of indices and these options, or nothing if the pair must be
 /// tried; `keep` stores the result of a pair. Called from several threads, one at a time.
 struct PairMemory {
-    std::function<std::optional<PairOfMany>(std::size_t, std::size_t, const PairOptions&)> recall;
-    std::function<void(const PairOfMany&, const PairOptions&)> keep;
+    std::function<std::optional<PairResult>(std::size_t, std::size_t, const PairOptions&)> recall;
+    std::function<void(const PairResult&, const PairOptions&)> keep;
 };
 
 /// Each pair contributes all its candidates, not only the best. Candidates that close a loop with those of a third fragment

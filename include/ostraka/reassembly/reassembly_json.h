@@ -6,9 +6,9 @@
 
 namespace ostraka {
 
-/// The result of a pair, exact to the bit; `pair_of_many_from_json` reads it. Throws Error (input) for any other JSON.
-JsonValue pair_of_many_to_json(const PairOfMany& pair, JsonAllocator& allocator);
-PairOfMany pair_of_many_from_json(const JsonValue& value, std::size_t first, std::size_t second);
+/// The result of a pair, exact to the bit; `pair_result_from_json` reads it. Throws Error (input) for any other JSON.
+JsonValue pair_result_to_json(const PairResult& pair, JsonAllocator& allocator);
+PairResult pair_result_from_json(const JsonValue& value, std::size_t first, std::size_t second);
 
 /// SHA-256 of the mesh and its facets: all that a pair result depends on besides the options.
 std::string fragment_checksum(const Fragment& fragment);

@@ -77,7 +77,7 @@ struct Reconstruction {
     std::map<std::string, double> seconds;  ///< by phase
 };
 
-struct KnownObject;
+struct ReconstructionState;
 
 /// Fragments of one object on its template, which can be added and removed. Data that depends on the template alone (its
 /// simplified mesh, linear systems with their symbolic factorisation, the data for pose searches) or on the template and one
@@ -110,7 +110,7 @@ public:
     Reconstruction run();
 
 private:
-    std::unique_ptr<KnownObject> known_;
+    std::unique_ptr<ReconstructionState> known_;
 };
 
 /// With a `prior`, the template takes the most probable shape of its class before the free deformation, and the fragments are
@@ -131,6 +131,6 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
 
 /// The template's annotations transferred from the fitted template to the completed object; measures keep their earlier values
 /// (`refresh_measures`).
-AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result);
+AnnotationSet completed_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result);
 
 }  // namespace ostraka

@@ -32,8 +32,8 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
 /// Determines the motions that a found pose leaves open from the landmarks, even a single one: rotates about or translates
 /// along each slippable direction to minimise their squared distances from the template's. Returns false, and changes nothing,
 /// if nothing is open or if they remain farther apart than `limit`, a length. `scale` of the template.
-bool close_by_landmarks(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
-                        FragmentPlacement& placed);
+bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
+                          FragmentPlacement& placed);
 
 /// The same without a cache.
 std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,

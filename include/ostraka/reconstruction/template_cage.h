@@ -23,6 +23,6 @@ TemplateCage template_in_cage(const Mesh& mesh, Mesh cage);
 std::optional<TemplateCage> cage_of(const Template& package);
 
 /// A cage generated around the template (`make_cage`), with mean value coordinates. Throws Error as make_cage.
-TemplateCage made_cage(const Mesh& mesh, std::uint64_t vertices = 200);
+TemplateCage generated_cage(const Mesh& mesh, std::uint64_t vertices = 200);
 
 }  // namespace ostraka

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/relation/graph.h"
-#include "ostraka/vocabulary/tag_words.h"
+#include "ostraka/vocabulary/tag_matcher.h"
 
 #include <functional>
 #include <memory>
@@ -34,7 +34,7 @@ struct QueryAnswer {
 };
 
 /// A query such as `2 arm and not handle`, `area(handle) >= area(body) / 3`, `related("same mould", 17)` (grammar:
-/// doc/annotation-find.md). A word stands for the same annotation throughout the query, one that has this meaning (TagWords).
+/// doc/annotation-find.md). A word stands for the same annotation throughout the query, one that has this meaning (TagMatcher).
 /// The query holds if some assignment of annotations to words satisfies it.
 class AnnotationQuery {
 public:

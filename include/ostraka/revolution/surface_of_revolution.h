@@ -63,8 +63,8 @@ struct RevolutionTemplate {
 };
 
 /// Input: sherds in their original relative positions in the vessel (all in one frame), or a single sherd. Each sherd
-/// contributes the information of its walls about the axis (`AxisWitness`): a short arc contributes little, and less along one
-/// direction than along another. The common axis and the tilt and offset of each sherd in the layout (`layout_angle`,
+/// contributes the information of its walls about the axis (`AxisEvidenceEvaluator`): a short arc contributes little, and less
+/// along one direction than along another. The common axis and the tilt and offset of each sherd in the layout (`layout_angle`,
 /// `layout_shift`) maximise the likelihood; sherds that contradict most others lose their weight (Geman and McClure). If the
 /// facets are not known, fractures are assumed to be a small share of the area, which the robust fit tolerates. Each sherd is
 /// moved by its most likely tilt and offset; one without an axis is not moved.

@@ -39,8 +39,8 @@ struct ClassAnswer {
     std::string off;      ///< message that the template does not lie on the object, which is then not a member; empty otherwise
     double most_off = 0;  ///< larger values of FitResiduals::off give this message
     bool hopeless =
-        false;  ///< more than half of both surfaces is off (hopeless_fit): rejects the object whatever the other checks say
-    std::optional<double> unlike;  ///< dissimilarity to the members (unlikeness.h)
+        false;  ///< more than half of both surfaces is off (uninformative_fit): rejects the object whatever the other checks say
+    std::optional<double> unlike;  ///< dissimilarity to the members (dissimilarity.h)
     std::vector<QuantityCheck> checks;
     std::vector<std::size_t>
         against;  ///< indices of failed deciding checks: proportions, constraints and relations first, then by excess

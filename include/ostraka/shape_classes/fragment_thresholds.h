@@ -33,8 +33,8 @@ struct UsedThreshold : FragmentThreshold {
 /// Replaces the defaults in `options` by the thresholds of the class, but not options given by the user (`specified` tests an
 /// option by name). Members do not show errors of scans and measuring, so the slack of a constraint is never below the default.
 /// Returns the values of "residual", "scale-tolerance" and "slack" in effect; without a class none of them changes.
-std::vector<UsedThreshold> take_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
-                                           const std::function<bool(const std::string&)>& specified);
+std::vector<UsedThreshold> apply_class_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
+                                                  const std::function<bool(const std::string&)>& specified);
 /// JSON form used in assemblies.
 JsonValue thresholds_to_json(const std::vector<UsedThreshold>& thresholds, JsonAllocator& allocator);
 

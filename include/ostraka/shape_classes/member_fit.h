@@ -5,7 +5,7 @@
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/placement.h"
 #include "ostraka/registration/align.h"
-#include "ostraka/shape_classes/off_regions.h"
+#include "ostraka/shape_classes/deviating_regions.h"
 
 #include <memory>
 #include <optional>
@@ -64,26 +64,26 @@ struct MemberFit {
     std::optional<FitResiduals> residuals;  ///< none in correspondence
     double contact_distance = 0;            ///< distance up to which surfaces lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
-    /// (insides_of_walls). It is excluded from the residuals and from the measures of the whole shape. `outer` is the object
+    /// (inner_wall_faces). It is excluded from the residuals and from the measures of the whole shape. `outer` is the object
     /// without this inside, closed where it was cut off; null if there is no such inside.
     double cavity = 0;
     std::shared_ptr<const Mesh> outer;
     /// Regions of the object on which no part of the template lies, and regions of the fitted template that do not lie on the
     /// object, in the object's coordinates. Empty in correspondence.
-    std::vector<OffRegion> foreign, missing;
+    std::vector<DeviatingRegion> foreign, missing;
 };
 
 /// Above this share of both surfaces off each other (FitResiduals::off) a fit is not informative.
-inline constexpr double hopeless_fit = 0.5;
+inline constexpr double uninformative_fit = 0.5;
 
 /// Message, with numbers, that the template does not lie on the object because `off()` is above `maximum`; empty if it does, or
 /// if there are no residuals.
-std::string fit_is_off(const MemberFit& fit, double maximum);
+std::string fit_off_message(const MemberFit& fit, double maximum);
 
 /// Messages, one per line: how much of the object the template explains, how much of the template lies on the object, the
 /// distance threshold, and for each region that is off its position, area, distance, and the nearest part of the template.
 /// Empty in correspondence.
-std::vector<std::string> explained_text(const MemberFit& fit);
+std::vector<std::string> fit_explanation(const MemberFit& fit);
 
 /// Whether an object has the template's triangles: the same number of vertices and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);

@@ -28,10 +28,10 @@ std::optional<double> own_disagreement(const ClassTemplate& class_template, cons
 
 /// Root mean square of ln(value / expected) over the pairs where both exist and are positive, and the pair that is farthest
 /// off.
-struct PartsOff {
+struct PartsDeviation {
     double off = 0;
     std::size_t count = 0, worst = 0;  ///< `worst` is an index into the list
 };
-PartsOff parts_off(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected);
+PartsDeviation parts_deviation(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected);
 
 }  // namespace ostraka

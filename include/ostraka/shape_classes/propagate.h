@@ -29,7 +29,7 @@ struct Propagated {
 
 /// Registers the template to the member (fit_by_method) and transfers its annotations to the member's surface (`transfer`); in
 /// correspondence the annotations stay the same. Measures are taken again. Annotations are also transferred if the template
-/// does not lie on the member (`fit_is_off`), and a note reports it.
+/// does not lie on the member (`fit_off_message`), and a note reports it.
 Propagated propagate(const ClassTemplate& class_template, const WholeObject& member, const PropagateOptions& options = {});
 
 }  // namespace ostraka

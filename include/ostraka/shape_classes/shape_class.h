@@ -108,8 +108,8 @@ ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<Le
 /// Sets, for each range, whether it can reject, its share of `reject`, and the accepted range: the prediction interval
 /// (`predict`) of its values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities
 /// present and among the quantities of each kind (Bonferroni), so that it holds for any dependence between them. Quantities of
-/// single parts, and those that enter the dissimilarity (unlikeness.h), only reject in combination. Attributes get bounds as if
-/// they were a kind of their own; their rate is additional if they are set to decide.
+/// single parts, and those that enter the dissimilarity (dissimilarity.h), only reject in combination. Attributes get bounds as
+/// if they were a kind of their own; their rate is additional if they are set to decide.
 void learn_thresholds(ShapeClass& learnt);
 
 /// The same for classes that are queried together. The variance of a geometry quantity, or of the combined parts, is moderated
@@ -120,13 +120,13 @@ void moderate_thresholds(std::vector<ShapeClass>& classes);
 
 /// The quantities of single parts, combined into residuals of kind `part`: "sizes of the parts", "places of the parts"; `worst`
 /// is the index of the range that is farthest off.
-struct PartsTogether {
+struct CombinedParts {
     ClassQuantity quantity;
     std::size_t worst = 0;
     double expected = 0;  ///< expected value of that range
 };
 /// `values` and `expected` have one entry per range.
-std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges,
+std::vector<CombinedParts> combined_parts(const std::vector<LearntRange>& ranges,
                                           const std::vector<std::optional<double>>& values,
                                           const std::vector<std::optional<double>>& expected);
 /// The geometric mean of the members' values for each range of a part; none for other ranges. `without` leaves out one member.

@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-struct BreakOptions {
+struct FragmentOptions {
     double share = 0.25;     ///< fraction of the surface area
     double roughness = 0.1;  ///< amplitude of the waves of the fracture line, relative to the fragment's size
     double noise = 0;  ///< standard deviation of the vertex displacement along the normal, relative to the diagonal of the object
@@ -20,7 +20,7 @@ struct BreakOptions {
     void describe(OptionList& visit);
 };
 
-struct BrokenPiece {
+struct SyntheticFragment {
     Mesh mesh;                    ///< a single piece, open at the fracture
     std::vector<Index> vertices;  ///< one per vertex: index of the vertex of the object
     std::vector<Index> faces;     ///< one per face: index of the face of the object
@@ -31,6 +31,6 @@ struct BrokenPiece {
 /// area, and keeps the connected piece that contains the nearest face. Then removes the eroded strip along the fracture and
 /// applies noise and motion. Throws Error (input) for a mesh without area, (usage) for options out of range, (failure) if
 /// nothing is left.
-BrokenPiece break_off(const Mesh& object, const Point& centre, const BreakOptions& options = {});
+SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, const FragmentOptions& options = {});
 
 }  // namespace ostraka

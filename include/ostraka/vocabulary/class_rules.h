@@ -44,7 +44,7 @@ struct ClassRules {
     std::string object_class;
     std::vector<ClassRule> rules;
     /// True if any rule is about relationships.
-    [[nodiscard]] bool about_relations() const;
+    [[nodiscard]] bool uses_relations() const;
 };
 
 /// Reads *.rules.json. Throws Error (input) that names the file, the JSON pointer and the remedy.
@@ -60,7 +60,7 @@ struct RelationFact {
 };
 
 /// A violated rule, with a text that explains the violation.
-struct BrokenRule {
+struct RuleViolation {
     std::string rule;
     std::optional<int> annotation;  ///< the annotation that violates it, if it is a single one
     std::string text;
@@ -69,7 +69,7 @@ struct BrokenRule {
 /// Every violated rule; a rule that applies to each annotation is listed once for each that violates it. Tags and words are
 /// compared by the vocabulary (labels in any language, narrower concepts), without a vocabulary by their letters. Throws Error
 /// (input) if a rule names a tag that is not in the vocabulary; `where` names the file of the rules.
-std::vector<BrokenRule> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
-                                          const std::vector<RelationFact>& relations, const std::string& where);
+std::vector<RuleViolation> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
+                                             const std::vector<RelationFact>& relations, const std::string& where);
 
 }  // namespace ostraka

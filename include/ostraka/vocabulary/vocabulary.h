@@ -129,7 +129,7 @@ public:
     [[nodiscard]] std::vector<std::size_t> lineage(std::size_t concept_index) const;
     /// The concepts that this one is a part of, as stated by it or by a broader concept, followed by the wholes of those; one
     /// list per level, nearest first.
-    [[nodiscard]] std::vector<std::vector<std::size_t>> wholes_of(std::size_t concept_index) const;
+    [[nodiscard]] std::vector<std::vector<std::size_t>> containing_concepts(std::size_t concept_index) const;
     /// The attributes that the concept may have: its own, those of broader concepts, and those of every concept; of equal names
     /// the nearer wins.
     [[nodiscard]] std::vector<const AllowedAttribute*> attributes_of(std::size_t concept_index) const;

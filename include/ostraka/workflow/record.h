@@ -73,12 +73,12 @@ std::vector<std::pair<std::string, std::string>> dependencies(const StudyPlan& p
                                                               FileChecksums& checksums, const Path& program_folder);
 
 /// The reason why an instance has to run again; empty if nothing has changed. `run_folder`: folder of all instances.
-std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& record,
-                      const std::vector<std::pair<std::string, std::string>>& depends, const StudyInstance& instance,
-                      const Path& run_folder, FileChecksums& checksums);
+std::string rerun_reason(const StudyPlan& plan, const std::optional<StudyRecord>& record,
+                         const std::vector<std::pair<std::string, std::string>>& depends, const StudyInstance& instance,
+                         const Path& run_folder, FileChecksums& checksums);
 
 /// Prefix of names of files in the run folder.
-inline const std::string in_run = "run:";
+inline const std::string run_folder_prefix = "run:";
 
 /// Path of the program with this name in the folder of programs. Throws Error (input).
 Path find_program(const std::string& name, const Path& program_folder, const std::string& where);

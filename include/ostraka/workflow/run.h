@@ -1,7 +1,7 @@
 // Runs the instances of a study: unchanged instances are skipped, independent ones run in parallel.
 #pragma once
 
-#include "ostraka/core/share.h"
+#include "ostraka/core/shard.h"
 #include "ostraka/workflow/record.h"
 
 namespace ostraka {

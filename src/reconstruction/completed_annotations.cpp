@@ -1,0 +1,20 @@
+#include "ostraka/geom/with_points.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/transfer/transfer.h"
+
+namespace ostraka {
+
+AnnotationSet completed_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result) {
+    TransferOptions options;
+    options.overlap = false;
+    options.force = true;  // the fitted template is in the frame of the object
+    const Mesh fitted = with_points(mesh, result.points);
+    AnnotationSet moved_set = set;
+    move_extents(mesh, set, fitted, moved_set);
+    AnnotationSet carried = transfer(fitted, moved_set, SurfaceSearch(result.object.mesh), options).annotations;
+    move_extents(fitted, moved_set, result.object.mesh, carried);
+    return carried;
+}
+
+}  // namespace ostraka
