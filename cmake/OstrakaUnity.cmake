@@ -3,7 +3,7 @@
 # own, are compiled separately.
 set(OSTRAKA_UNITY_BATCH 250000 CACHE STRING "Bytes of source a batch")
 set(OSTRAKA_UNITY_JOINED 150000 CACHE STRING "Bytes up to which small modules share a batch")
-set(OSTRAKA_UNITY_ALONE src/coords/cage_interior.cpp src/core/dense.cpp src/workbench/server.cpp)
+set(OSTRAKA_UNITY_ALONE src/coords/cage_interior.cpp src/algebra/dense.cpp src/workbench/server.cpp)
 # Files with the largest algorithms of CGAL, grouped by the templates they share.
 set(OSTRAKA_UNITY_TOGETHER "src/axis/skeleton.cpp|src/remesh/remesh.cpp|src/io/wrap.cpp"
   "src/point_cloud/point_cloud.cpp|src/point_cloud/point_surface.cpp")

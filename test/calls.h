@@ -1,7 +1,7 @@
 // Calls operations with settings whose file names are relative to a folder.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/operations/table.h"
 
 #include <string>

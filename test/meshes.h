@@ -1,7 +1,7 @@
 // Small meshes of all topologies.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 // Shared by tests: temporary folders, and running the built command through the shell.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,6 +1,6 @@
 // Memory bandwidth: the maximum, and the share that loops over a mesh achieve.
 #include "benchmarks.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 // How long operations on a million faces take to stop when they are cancelled.
 #include "benchmarks.h"
 #include "calls.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/files/json.h"
 #include "ostraka/operations/table.h"
 
 #include <atomic>

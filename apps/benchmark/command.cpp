@@ -1,7 +1,7 @@
 // The built command as a whole: wall time, processor time, peak memory.
 #include "benchmarks.h"
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 // Coordinates of 100,000 points in a cage of 200 vertices, and deformation by them.
 #include "benchmarks.h"
 #include "ostraka/coords/certificate.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <cmath>
 #include <map>

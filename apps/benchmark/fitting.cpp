@@ -1,6 +1,6 @@
 // Fits a template of 25,000 vertices to fragments: time of placement, refinement, fit, completion.
 #include "benchmarks.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/synthetic/fragments.h"

@@ -1,8 +1,8 @@
 // Inserts the results into the page that shows them, with the machine and the date.
 #include "benchmarks.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <ctime>

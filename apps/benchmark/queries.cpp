@@ -1,6 +1,6 @@
 // Queries on a target of a million vertices, from every vertex of the source.
 #include "benchmarks.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <map>
 #include <string>

@@ -1,6 +1,6 @@
 // Slices of a million vertices, two million faces, and their descriptors.
 #include "benchmarks.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/slicing/slice_descriptors.h"
 #include "ostraka/synthetic/make_mesh.h"

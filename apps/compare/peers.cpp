@@ -1,10 +1,10 @@
 // Performs one task with CGAL's own functions, with OpenMesh or with this library, one task per process, and prints its cost
 // and result.
 //     ostraka_peers TASK PEER ARGUMENTS...
-#include "ostraka/core/mesh.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_halfedge_graph_segment_primitive.h>

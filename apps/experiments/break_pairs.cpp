@@ -1,7 +1,7 @@
 // Registers two halves of a bottle, and neighbouring scanned sherds, by their fracture surfaces.
 #include "sherds.h"
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/reconstruction/fragment_file.h"

@@ -1,7 +1,7 @@
 #include "chair.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/axis/axis.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>

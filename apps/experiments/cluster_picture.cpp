@@ -1,8 +1,8 @@
 // Figure 3.7 of the thesis: clusters of arbitrary form, as found by DBSCAN.
 #include "harness.h"
 
-#include "ostraka/report/plot.h"
-#include "ostraka/report/table.h"
+#include "ostraka/figures/plot.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/stats/clustering.h"
 #include "ostraka/stats/random.h"
 

@@ -2,7 +2,7 @@
 
 #include "harness.h"
 
-#include "ostraka/report/plot.h"
+#include "ostraka/figures/plot.h"
 
 #include <algorithm>
 

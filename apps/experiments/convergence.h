@@ -1,7 +1,7 @@
 // Convergence of the solver to the best known objective: plain and accelerated iterations compared.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/solver/solve.h"
 
 #include <functional>

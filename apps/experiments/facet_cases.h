@@ -1,7 +1,7 @@
 // Fragments with known fracture faces: objects broken by simulation, and scanned fragments in assembled layout.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 #include "harness.h"
 #include "scenes.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/fracture/facets.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #include "harness.h"
 
 #include "ostraka/collection/proportions.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/report/plot.h"
-#include "ostraka/report/table.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/figures/plot.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/stats/random.h"
 
 #include <algorithm>

@@ -3,11 +3,11 @@
 #include "scenes.h"
 
 #include "ostraka/collection/statuette_annotations.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/reconstruction/template_cage.h"
-#include "ostraka/report/table.h"
 #include "ostraka/shape_classes/shape_class.h"
 #include "ostraka/stats/scores.h"
 #include "ostraka/synthetic/fragments.h"

@@ -3,8 +3,8 @@
 #include "scenes.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"

@@ -1,6 +1,6 @@
 #include "harness.h"
 
-#include "ostraka/core/csv.h"
+#include "ostraka/files/csv.h"
 
 #include <algorithm>
 #include <cstdio>

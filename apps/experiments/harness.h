@@ -1,9 +1,9 @@
 // What all experiments share: the list of experiments with their options, tables and rows of results, time and memory.
 #pragma once
 
-#include "ostraka/core/file.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/file.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // Pairs of fragments of broken objects: accuracy of the pose found, and calibration of its confidence.
 #include "boxes.h"
 
-#include "ostraka/core/csv.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/stats/boosted_trees.h"
 

@@ -3,7 +3,7 @@
 #include "harness.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <CLI/CLI.hpp>
 

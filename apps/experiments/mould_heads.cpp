@@ -3,7 +3,7 @@
 #include "scenes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/diffusion.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/mesh_file.h"

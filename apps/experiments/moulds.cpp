@@ -1,8 +1,8 @@
 // The mould study on synthetic heads and on mixes of scanned faces: which similarity and epsilon recover the moulds.
 #include "mould_heads.h"
 
-#include "ostraka/report/plot.h"
-#include "ostraka/report/table.h"
+#include "ostraka/figures/plot.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/stats/scores.h"
 
 #include <algorithm>

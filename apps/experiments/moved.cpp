@@ -5,7 +5,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/io/mesh_file.h"
 

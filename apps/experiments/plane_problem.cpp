@@ -1,6 +1,6 @@
 #include "plane_problem.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // Figures 5.3 and 5.4 of the thesis: the flowered teapot is stretched vertically; its flowers keep their shape and level.
 #include "semantics.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/axis/axis.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
+#include "ostraka/figures/plot.h"
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/report/plot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/rigid_fit.h"
 #include "ostraka/geom/with_points.h"

@@ -1,8 +1,8 @@
 #include "semantics.h"
 
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/npy.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/npy.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/make_mesh.h"

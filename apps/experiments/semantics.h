@@ -5,7 +5,7 @@
 #include "harness.h"
 #include "scenes.h"
 
-#include "ostraka/report/table.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/semantic/deform.h"
 #include "ostraka/solver/make_constraint.h"
 

@@ -1,8 +1,8 @@
 // A synthetic vessel, broken into sherds with exactly known positions, neighbours and facets.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 #include <vector>

@@ -6,8 +6,8 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
+#include "ostraka/figures/plot.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/report/plot.h"
 
 #include <algorithm>
 #include <map>

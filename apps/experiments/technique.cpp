@@ -2,9 +2,9 @@
 #include "harness.h"
 
 #include "ostraka/collection/technique_study.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/report/plot.h"
-#include "ostraka/report/table.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/figures/plot.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/synthetic/statuettes.h"
 
 #include <algorithm>

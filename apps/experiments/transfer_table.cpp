@@ -2,7 +2,7 @@
 #include "harness.h"
 #include "scenes.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"

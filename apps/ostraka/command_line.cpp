@@ -4,11 +4,11 @@
 #include "signals.h"
 #include "workbench.h"
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/file.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/operations/table.h"
 

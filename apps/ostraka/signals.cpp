@@ -2,8 +2,8 @@
 
 #include "command_line.h"
 
-#include "ostraka/core/child_process.h"
-#include "ostraka/core/file.h"
+#include "ostraka/execution/child_process.h"
+#include "ostraka/files/file.h"
 
 #include <unistd.h>
 

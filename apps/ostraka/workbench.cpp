@@ -6,7 +6,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/workbench/server.h"
 
 #include <fmt/core.h>

@@ -2,12 +2,12 @@
 // objects. It names no operation; apps/python/ostraka generates the functions from the declarations.
 #include "objects.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/operation/operation.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/framework/operation.h"
 #include "ostraka/operations/table.h"
 
 #include <fmt/core.h>

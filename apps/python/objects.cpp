@@ -4,10 +4,10 @@
 #include "saved.h"
 
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/framework/operation.h"
 #include "ostraka/io/mesh_of_polygons.h"
-#include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 
 #include <fmt/core.h>

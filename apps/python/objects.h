@@ -3,7 +3,7 @@
 
 #include "running.h"
 
-#include "ostraka/operation/objects.h"
+#include "ostraka/framework/objects.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

@@ -1,8 +1,8 @@
 #include "running.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/file.h"
 
 #include <unistd.h>
 

@@ -2,11 +2,11 @@
 
 #include "archive.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/core/npy.h"
-#include "ostraka/core/safe_path.h"
-#include "ostraka/operation/operation.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/npy.h"
+#include "ostraka/files/safe_path.h"
+#include "ostraka/framework/operation.h"
 #include "ostraka/render/values.h"
 
 #include <fmt/core.h>

@@ -1,8 +1,8 @@
 #include "ostraka/annotation/annotation.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/ids.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,14 +1,14 @@
 // Conditions that every annotation must satisfy, whatever its source.
-#include "annotation_places.h"
+#include "annotation/annotation_places.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/npy.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/npy.h"
+#include "ostraka/files/safe_path.h"
+#include "ostraka/mesh/limits.h"
 
 #include <cmath>
 #include <set>

@@ -1,9 +1,9 @@
 // Conversion of JSON to annotations.
-#include "annotation_places.h"
+#include "annotation/annotation_places.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/flood.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

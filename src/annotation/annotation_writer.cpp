@@ -2,9 +2,9 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/mesh/flood.h"
 
 namespace ostraka {
 

@@ -1,10 +1,10 @@
 #include "ostraka/annotation/curves.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/insert_curves.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // The prototype's .ant files: types Area, Line and Point, the key color, flat attributes. Read as far as possible.
-#include "annotation_places.h"
+#include "annotation/annotation_places.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json_build.h"
 
 #include <algorithm>
 #include <cctype>

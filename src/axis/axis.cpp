@@ -1,9 +1,9 @@
 // Moments, principal axes, circles, and the selection of the method.
 #include "ostraka/axis/axis.h"
 
-#include "axis_methods.h"
+#include "axis/axis_methods.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
 
 #include <cstdio>

@@ -1,9 +1,9 @@
 // Evidence of one part on an axis.
 #include "ostraka/axis/axis_evidence.h"
 
-#include "revolved_profile.h"
+#include "axis/revolved_profile.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Profiles of parts about a line.
-#include "revolved_profile.h"
+#include "axis/revolved_profile.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/stats/summary.h"
 

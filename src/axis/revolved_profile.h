@@ -1,7 +1,7 @@
 // The profile of a part about a line, and the step of the line that makes the part rounder about it.
 #pragma once
 
-#include "axis_methods.h"
+#include "axis/axis_methods.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,9 +1,9 @@
 // Axis of a surface of revolution from normals, refined on positions.
-#include "axis_methods.h"
-#include "revolved_profile.h"
+#include "axis/axis_methods.h"
+#include "axis/revolved_profile.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/line_complex.h"
 #include "ostraka/stats/summary.h"

@@ -1,13 +1,13 @@
 // Mean curvature skeleton of a part with filled holes.
-#include "axis_methods.h"
+#include "axis/axis_methods.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/run_interruptibly.h"
+#include "ostraka/execution/run_interruptibly.h"
 #include "ostraka/geom/submesh.h"
 
 // The library orders the edges of its working mesh by their addresses, so that the result depends on its allocator. This one
 // returns ascending addresses, independent of earlier allocations.
-#include "ascending_allocator.h"
+#include "axis/ascending_allocator.h"
 #pragma push_macro("CGAL_ALLOCATOR")
 #undef CGAL_ALLOCATOR
 #define CGAL_ALLOCATOR(T) ostraka::detail::AscendingAllocator<T>

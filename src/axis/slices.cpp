@@ -1,7 +1,7 @@
 // Axis of a tubular part from the centres of its slices.
-#include "axis_methods.h"
+#include "axis/axis_methods.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 namespace ostraka {
 

@@ -1,12 +1,12 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/nested.h"
-#include "ostraka/core/flood.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/watched_tree.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/mesh/flood.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>

@@ -1,7 +1,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // Mirror-symmetric surfaces: cutting off one half, and joining a half with its image.
-#include "shrink.h"
+#include "cage/shrink.h"
 
 #include <map>
 

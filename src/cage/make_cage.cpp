@@ -1,10 +1,10 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/text.h"
 #include "ostraka/io/wrap.h"
+#include "ostraka/mesh/limits.h"
 
-#include "shrink.h"
+#include "cage/shrink.h"
 
 #include <fmt/core.h>
 

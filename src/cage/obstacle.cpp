@@ -1,6 +1,6 @@
-#include "ostraka/core/disjoint_sets.h"
+#include "cage/shrink.h"
 #include "ostraka/geom/watched_tree.h"
-#include "shrink.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>

@@ -1,9 +1,9 @@
-#include "shrink.h"
+#include "cage/shrink.h"
 
-#include "triangle_grid.h"
+#include "cage/triangle_grid.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
 

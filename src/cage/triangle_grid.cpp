@@ -1,4 +1,4 @@
-#include "triangle_grid.h"
+#include "cage/triangle_grid.h"
 
 #include <CGAL/Kernel/global_functions.h>
 #include <CGAL/intersections.h>

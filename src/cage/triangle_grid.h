@@ -1,7 +1,7 @@
 // Spatial hash of triangles with insertion and removal.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <unordered_map>

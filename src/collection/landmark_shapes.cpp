@@ -1,8 +1,8 @@
 #include "ostraka/collection/landmark_shapes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/interchange/landmarks.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 #include "ostraka/collection/measure_definitions.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include "ostraka/collection/measure_definitions.h"
-#include "ostraka/core/csv.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json_build.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include "ostraka/collection/moulds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/stats/summary.h"
 

@@ -1,8 +1,8 @@
 #include "ostraka/collection/moulds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>

@@ -1,11 +1,11 @@
 #include "ostraka/collection/objects.h"
 
-#include "ostraka/core/csv.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/safe_path.h"
 
 #include <fmt/core.h>
 

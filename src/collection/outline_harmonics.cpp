@@ -1,4 +1,4 @@
-#include "outline_harmonics.h"
+#include "collection/outline_harmonics.h"
 #include "ostraka/core/angles.h"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 #include "ostraka/collection/proportion_graph.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <fmt/core.h>

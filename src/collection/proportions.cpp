@@ -1,10 +1,10 @@
 #include "ostraka/collection/proportions.h"
 
-#include "ostraka/core/disjoint_sets.h"
+#include "collection/ratio_tests.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
-#include "ratio_tests.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <fmt/core.h>
 

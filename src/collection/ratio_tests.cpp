@@ -1,7 +1,7 @@
-#include "ratio_tests.h"
+#include "collection/ratio_tests.h"
 
-#include "ostraka/core/dense.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/inference.h"
 #include "ostraka/stats/random.h"
 

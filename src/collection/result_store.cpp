@@ -1,11 +1,11 @@
 #include "ostraka/collection/objects.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/provenance.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/provenance.h"
+#include "ostraka/files/safe_path.h"
 
 #include <new>
 

@@ -1,12 +1,12 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/measure_definitions.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/text.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/slicing/clay.h"
 
 #include <fmt/core.h>

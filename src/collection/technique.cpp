@@ -1,11 +1,11 @@
 #include "ostraka/collection/technique.h"
 
-#include "outline_harmonics.h"
+#include "collection/outline_harmonics.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/geom/circle.h"
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"

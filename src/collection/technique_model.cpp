@@ -1,5 +1,5 @@
-#include "technique_model.h"
-#include "ostraka/core/dense.h"
+#include "collection/technique_model.h"
+#include "ostraka/algebra/dense.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Out-of-class objects of a technique study.
-#include "technique_model.h"
+#include "collection/technique_model.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/summary.h"
 
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "ostraka/collection/technique_study.h"
-#include "technique_model.h"
+#include "collection/technique_model.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 

@@ -1,7 +1,7 @@
 // Accuracy of a classifier on held-out objects.
-#include "technique_model.h"
+#include "collection/technique_model.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 

@@ -1,5 +1,5 @@
 // Explanations of the answers of a technique study.
-#include "technique_model.h"
+#include "collection/technique_model.h"
 
 #include <fmt/core.h>
 

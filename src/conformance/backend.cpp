@@ -1,9 +1,9 @@
 // Backends as programs, started for each case or once.
 #include "ostraka/conformance/kit.h"
-#include "ostraka/core/child_process.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/child_process.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/conformance/kit.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/npy.h"
+#include "ostraka/files/npy.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
 

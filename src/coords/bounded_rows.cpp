@@ -1,7 +1,7 @@
-#include "bounded_rows.h"
+#include "coords/bounded_rows.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <fmt/core.h>

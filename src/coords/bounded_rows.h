@@ -1,7 +1,7 @@
 // Rows of weights projected to be valid: non-negative, with sum one, reproducing the point.
 #pragma once
 
-#include "cage_interior.h"
+#include "coords/cage_interior.h"
 
 #include "ostraka/coords/coordinates.h"
 

@@ -1,4 +1,4 @@
-#include "cage_arrays.h"
+#include "coords/cage_arrays.h"
 
 #include "ostraka/core/error.h"
 

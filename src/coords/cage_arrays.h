@@ -1,10 +1,10 @@
 // The cage as flat arrays, for the loops over points.
 #pragma once
 
-#include "vector3.h"
+#include "coords/vector3.h"
 
-#include "ostraka/core/mesh.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "cage_interior.h"
+#include "coords/cage_interior.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"

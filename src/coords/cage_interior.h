@@ -1,8 +1,8 @@
 // Tetrahedralisation of the interior of a cage.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

@@ -3,8 +3,8 @@
 #include "ostraka/coords/influence.h"
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 
 #include <fmt/core.h>
 

@@ -1,12 +1,12 @@
 #include "ostraka/coords/coordinates.h"
 
-#include "kinds.h"
+#include "coords/kinds.h"
 
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

@@ -6,9 +6,9 @@
 // where nu_e is the outward normal of edge e in the plane, delta_e = nu_e . (e - x'), L_e = int_e 1/r and Omega the solid angle
 // of T. L_e serves both faces of an edge. What vanishes near an edge (delta, h) comes from one and the same vector q from x to
 // the foot on its line, so that the solid angles of its two faces still add up. Gamma_i(x') = delta_i / height_i.
-#include "cage_arrays.h"
-#include "kinds.h"
-#include "lanes.h"
+#include "coords/cage_arrays.h"
+#include "coords/kinds.h"
+#include "coords/lanes.h"
 
 #include "ostraka/core/error.h"
 

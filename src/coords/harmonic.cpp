@@ -1,8 +1,8 @@
 // Harmonic coordinates (Joshi, Meyer, DeRose, Green and Sanocki 2007) by linear finite elements.
-#include "interior_weights.h"
-#include "kinds.h"
+#include "coords/interior_weights.h"
+#include "coords/kinds.h"
 
-#include "ostraka/core/cholesky.h"
+#include "ostraka/algebra/cholesky.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/stopwatch.h"

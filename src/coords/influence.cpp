@@ -1,7 +1,7 @@
 #include "ostraka/coords/influence.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

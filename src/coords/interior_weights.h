@@ -1,8 +1,8 @@
 // Weights at the nodes of the tetrahedra inside a cage.
 #pragma once
 
-#include "bounded_rows.h"
-#include "cage_interior.h"
+#include "coords/bounded_rows.h"
+#include "coords/cage_interior.h"
 
 namespace ostraka::coords {
 

@@ -1,11 +1,11 @@
 // Local barycentric coordinates (Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu 2014): the weights of minimum total
 // variation among all weights that are non-negative, sum to one, reproduce their point and are linear on the cage.
-#include "interior_weights.h"
-#include "kinds.h"
+#include "coords/interior_weights.h"
+#include "coords/kinds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <Eigen/SparseCholesky>
 

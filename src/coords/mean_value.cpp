@@ -5,9 +5,9 @@
 // the vectors p from x to the corners, it gives the weights W. The mean vectors of a closed mesh sum to zero, hence linear
 // precision. The contribution of an edge to m is used for both of its faces. W_i = (m . c_i) / det with c_i = p_(i+1) x p_(i+2)
 // and det = p_1 . (p_2 x p_3).
-#include "cage_arrays.h"
-#include "kinds.h"
-#include "lanes.h"
+#include "coords/cage_arrays.h"
+#include "coords/kinds.h"
+#include "coords/lanes.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,7 +1,7 @@
 #include "ostraka/coords/nested.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
 

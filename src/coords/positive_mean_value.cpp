@@ -1,10 +1,10 @@
 // Positive mean value coordinates (Lipman, Kopf, Cohen-Or and Levin 2007): only the part of the cage visible from a point has a
 // weight.
-#include "interior_weights.h"
-#include "kinds.h"
+#include "coords/interior_weights.h"
+#include "coords/kinds.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <Eigen/Geometry>
 

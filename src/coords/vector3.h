@@ -1,7 +1,7 @@
 // Vectors of three numbers, and one in each lane.
 #pragma once
 
-#include "lanes.h"
+#include "coords/lanes.h"
 
 #include <array>
 #include <cmath>

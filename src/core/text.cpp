@@ -1,7 +1,5 @@
 #include "ostraka/core/text.h"
 
-#include "ostraka/core/json.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -2,8 +2,8 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/geom/neighbourhood.h"
 

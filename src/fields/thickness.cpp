@@ -2,8 +2,8 @@
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/neighbourhood.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"

@@ -1,6 +1,6 @@
 // Context features: the classification of a patch's surroundings, since a fracture is recognised by contrast with intact
 // surface.
-#include "facet_columns.h"
+#include "fracture/facet_columns.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "ostraka/fracture/facet_evidence.h"
 
-#include "facet_columns.h"
-#include "facet_sides.h"
+#include "fracture/facet_columns.h"
+#include "fracture/facet_sides.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/point_tree.h"
 

@@ -1,8 +1,8 @@
 #include "ostraka/fracture/facet_graph.h"
 
-#include "filtered_normals.h"
+#include "fracture/filtered_normals.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "ostraka/core/file.h"
-#include "ostraka/core/json.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json.h"
 #include "ostraka/fracture/facet_evidence.h"
 
 namespace ostraka {

@@ -1,8 +1,8 @@
 // Features of the parts of a surface between sharp convex edges, relative to the other parts.
-#include "facet_columns.h"
+#include "fracture/facet_columns.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>

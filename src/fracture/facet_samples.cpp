@@ -1,6 +1,6 @@
-#include "facet_columns.h"
+#include "fracture/facet_columns.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
 
 namespace ostraka {

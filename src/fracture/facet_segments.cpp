@@ -1,8 +1,8 @@
 // Parts of a surface between sharp convex edges.
 #include "ostraka/fracture/facet_graph.h"
 
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "facet_sides.h"
+#include "fracture/facet_sides.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/axis/axis.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "ostraka/fracture/facet_graph.h"
 
-#include "facet_sides.h"
+#include "fracture/facet_sides.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"
 

@@ -1,6 +1,6 @@
 #include "ostraka/fracture/facets.h"
 
-#include "facet_sides.h"
+#include "fracture/facet_sides.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

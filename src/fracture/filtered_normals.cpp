@@ -1,6 +1,6 @@
-#include "filtered_normals.h"
+#include "fracture/filtered_normals.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

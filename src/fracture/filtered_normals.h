@@ -1,7 +1,7 @@
 // Denoised normals that preserve edges.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "fracture_align.h"
+#include "fracture/fracture_align.h"
 
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/plane_motion.h"

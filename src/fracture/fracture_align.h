@@ -1,7 +1,7 @@
 // Refines and scores poses of one fracture against another.
 #pragma once
 
-#include "fracture_side.h"
+#include "fracture/fracture_side.h"
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/geom/surface_search.h"
 

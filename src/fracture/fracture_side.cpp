@@ -1,8 +1,8 @@
-#include "fracture_side.h"
+#include "fracture/fracture_side.h"
 
-#include "filtered_normals.h"
+#include "fracture/filtered_normals.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <cmath>

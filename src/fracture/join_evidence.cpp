@@ -1,9 +1,9 @@
 #include "ostraka/fracture/join_evidence.h"
 
-#include "ostraka/core/dense.h"
+#include "fracture/prepared_fracture.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/summary.h"
-#include "prepared_fracture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "ostraka/fracture/join_evidence.h"
 
-#include "ostraka/core/file.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json.h"
 #include "ostraka/stats/boosted_trees.h"
 
 #include <fmt/core.h>

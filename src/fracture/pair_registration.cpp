@@ -1,14 +1,14 @@
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/core/angles.h"
 
-#include "fracture_align.h"
+#include "fracture/fracture_align.h"
+#include "fracture/prepared_fracture.h"
+#include "fracture/rim_stretches.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/geom/plane_motion.h"
 #include "ostraka/registration/pose_json.h"
-#include "prepared_fracture.h"
-#include "rim_stretches.h"
 
 #include <fmt/core.h>
 

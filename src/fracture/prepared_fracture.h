@@ -1,7 +1,7 @@
 // Data for matching a fragment's fracture, precomputed once.
 #pragma once
 
-#include "fracture_side.h"
+#include "fracture/fracture_side.h"
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/geom/line_complex.h"
 #include "ostraka/geom/surface_search.h"

@@ -1,6 +1,6 @@
-#include "rim_stretches.h"
+#include "fracture/rim_stretches.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

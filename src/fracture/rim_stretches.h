@@ -1,7 +1,7 @@
 // Matching stretches of two rims.
 #pragma once
 
-#include "fracture_side.h"
+#include "fracture/fracture_side.h"
 
 namespace ostraka {
 

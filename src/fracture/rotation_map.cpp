@@ -1,4 +1,4 @@
-#include "rotations.h"
+#include "fracture/rotations.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"

@@ -1,5 +1,5 @@
+#include "fracture/rotations.h"
 #include "ostraka/core/angles.h"
-#include "rotations.h"
 
 #include <algorithm>
 #include <cmath>

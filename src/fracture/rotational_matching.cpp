@@ -1,12 +1,12 @@
 #include "ostraka/fracture/rotational_matching.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
-#include "rotations.h"
+#include "fracture/rotations.h"
 
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/mesh/disjoint_sets.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "rotations.h"
+#include "fracture/rotations.h"
 
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Pairwise scores of sherds of a vessel over their relative rotations, and the rotations of all sherds at once.
 #pragma once
 
-#include "fracture_align.h"
+#include "fracture/fracture_align.h"
 #include "ostraka/fracture/rotational_matching.h"
 #include "ostraka/geom/surface_search.h"
 

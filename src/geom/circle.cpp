@@ -1,7 +1,7 @@
 // Circle fits, and integrals of the distance from a circle along segments.
 #include "ostraka/geom/circle.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
 #include <Eigen/LU>
 

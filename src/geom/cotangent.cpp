@@ -1,4 +1,4 @@
-#include "cotangent.h"
+#include "geom/cotangent.h"
 
 #include <algorithm>
 #include <cmath>

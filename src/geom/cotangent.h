@@ -1,7 +1,7 @@
 // Edge weights of the cotangent Laplacian.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 namespace ostraka {
 

@@ -1,6 +1,6 @@
 #include "ostraka/geom/curve_filling.h"
 
-#include "face_verdict.h"
+#include "geom/face_verdict.h"
 
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/distance.h"

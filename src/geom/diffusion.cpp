@@ -1,9 +1,9 @@
 #include "ostraka/geom/diffusion.h"
 
-#include "cotangent.h"
+#include "geom/cotangent.h"
 
+#include "ostraka/algebra/sparse.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/sparse.h"
 #include "ostraka/geom/eigen.h"
 
 #include <cmath>

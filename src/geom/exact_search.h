@@ -3,9 +3,9 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <CGAL/Surface_mesh_shortest_path.h>
 

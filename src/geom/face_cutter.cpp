@@ -1,4 +1,4 @@
-#include "face_cutter.h"
+#include "geom/face_cutter.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/surface_search.h"

@@ -1,6 +1,6 @@
-#include "face_order.h"
+#include "geom/face_order.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The faces of a mesh in the order of a space-filling curve.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 #include <memory>

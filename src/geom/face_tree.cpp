@@ -1,7 +1,7 @@
-#include "face_tree.h"
+#include "geom/face_tree.h"
 
-#include "face_order.h"
-#include "ostraka/core/parallel.h"
+#include "geom/face_order.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>

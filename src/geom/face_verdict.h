@@ -1,7 +1,7 @@
 // The two sides of curves in a face.
 #pragma once
 
-#include "face_cutter.h"
+#include "geom/face_cutter.h"
 
 #include <array>
 #include <map>

@@ -1,13 +1,13 @@
 #include "ostraka/geom/geodesic.h"
 
-#include "exact_search.h"
+#include "geom/exact_search.h"
+#include "geom/surface_patch.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/run_interruptibly.h"
+#include "ostraka/execution/run_interruptibly.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
-#include "surface_patch.h"
 
 #include <fmt/core.h>
 

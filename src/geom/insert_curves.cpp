@@ -1,6 +1,6 @@
 #include "ostraka/geom/insert_curves.h"
 
-#include "face_verdict.h"
+#include "geom/face_verdict.h"
 #include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>

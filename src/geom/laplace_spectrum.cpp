@@ -1,11 +1,11 @@
 #include "ostraka/geom/laplace_spectrum.h"
 
-#include "cotangent.h"
-#include "ostraka/core/dense.h"
+#include "geom/cotangent.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/algebra/sparse.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/sparse.h"
+#include "ostraka/mesh/flood.h"
 
 #include <cmath>
 #include <random>

@@ -1,6 +1,6 @@
 // Total least squares line from the eigenvectors of the covariance.
 #include "ostraka/geom/line.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 namespace ostraka {
 

@@ -1,12 +1,12 @@
 // Oriented bounding box: directions are tested on a few hundred extreme points; the result is measured on all points.
 #include "ostraka/geom/oriented_box.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
-#include "calipers.h"
+#include "geom/calipers.h"
 
-#include "ostraka/core/mesh.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

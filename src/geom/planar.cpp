@@ -1,9 +1,9 @@
 // Minimum-area rectangle around a convex polygon.
 #include "ostraka/geom/planar.h"
 
-#include "calipers.h"
+#include "geom/calipers.h"
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 namespace ostraka {
 

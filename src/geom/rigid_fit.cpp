@@ -1,5 +1,5 @@
 #include "ostraka/geom/rigid_fit.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,6 +1,6 @@
 #include "ostraka/geom/submesh.h"
 
-#include "surface_patch.h"
+#include "geom/surface_patch.h"
 
 #include "ostraka/core/error.h"
 

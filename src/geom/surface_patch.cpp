@@ -1,4 +1,4 @@
-#include "surface_patch.h"
+#include "geom/surface_patch.h"
 
 #include "ostraka/core/progress.h"
 

@@ -1,6 +1,6 @@
 #include "ostraka/geom/surface_search.h"
 
-#include "face_tree.h"
+#include "geom/face_tree.h"
 
 #include "ostraka/core/error.h"
 

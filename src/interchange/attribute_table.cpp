@@ -1,6 +1,6 @@
-#include "ostraka/interchange/attribute_table.h"
+#include "interchange/attribute_table.h"
 
-#include "text.h"
+#include "interchange/text.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,6 +1,6 @@
 #include "ostraka/interchange/difference.h"
 
-#include "fields.h"
+#include "interchange/fields.h"
 
 #include <algorithm>
 #include <map>

@@ -1,17 +1,17 @@
 #include "ostraka/interchange/edit.h"
 
-#include "fields.h"
+#include "interchange/fields.h"
 
-#include "text.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/ids.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/flood.h"
+#include "ostraka/mesh/ids.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "feature_file.h"
+#include "interchange/feature_file.h"
 
-#include "text.h"
+#include "interchange/text.h"
 
 #include "ostraka/core/error.h"
 

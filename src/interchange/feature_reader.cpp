@@ -1,18 +1,18 @@
 // Conversion of GLB with EXT_mesh_features and EXT_structural_metadata to annotations on a mesh.
 #include "ostraka/interchange/feature_glb.h"
 
-#include "feature_file.h"
-#include "landmark_formats.h"
-#include "placing.h"
-#include "text.h"
+#include "interchange/feature_file.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/placing.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <fmt/core.h>

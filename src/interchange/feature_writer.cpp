@@ -1,19 +1,19 @@
 // Conversion of annotations to GLB with EXT_mesh_features and EXT_structural_metadata.
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/interchange/feature_glb.h"
 
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/glb.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
-#include "fields.h"
+#include "interchange/fields.h"
 
-#include "text.h"
+#include "interchange/text.h"
 
 #include <fmt/core.h>
 

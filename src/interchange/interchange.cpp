@@ -1,12 +1,12 @@
 #include "ostraka/interchange/interchange.h"
 
-#include "landmark_formats.h"
+#include "interchange/landmark_formats.h"
 
+#include "interchange/attribute_table.h"
+#include "interchange/prototype_files.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/interchange/attribute_table.h"
 #include "ostraka/interchange/feature_glb.h"
-#include "ostraka/interchange/prototype_files.h"
 #include "ostraka/interchange/web_annotation.h"
 
 #include <fmt/core.h>

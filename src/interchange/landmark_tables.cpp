@@ -1,10 +1,10 @@
 // Landmarks in line-based formats: CSV, tps, fcsv.
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/limits.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

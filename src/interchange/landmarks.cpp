@@ -1,8 +1,8 @@
 #include "ostraka/interchange/landmarks.h"
 
-#include "landmark_formats.h"
-#include "placing.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/placing.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"

@@ -1,9 +1,9 @@
 // 3D Slicer markups (.mrk.json), schema 1.0.3.
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 // Three-way merge: each item has three states, and changes of only one side are applied.
 #include "ostraka/interchange/difference.h"
 
-#include "fields.h"
+#include "interchange/fields.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 // MeshLab's picked points (.pp), read and written with pugixml, which resolves no external entities.
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"

@@ -1,11 +1,11 @@
-#include "placing.h"
+#include "interchange/placing.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/flood.h"
 
 #include <fmt/core.h>
 

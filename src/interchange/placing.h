@@ -1,11 +1,11 @@
 // Maps points given by coordinates to a mesh.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/interchange/landmarks.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <memory>
 #include <string>

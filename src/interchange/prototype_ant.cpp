@@ -1,14 +1,14 @@
 // Writer for the prototype's .ant files.
-#include "ostraka/interchange/prototype_files.h"
+#include "interchange/prototype_files.h"
 
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/ids.h"
 
 #include <fmt/core.h>
 

@@ -1,13 +1,13 @@
 // The prototype's .fct files: facets of a fragment by their borders and inner vertices.
-#include "ostraka/interchange/prototype_files.h"
+#include "interchange/prototype_files.h"
 
-#include "landmark_formats.h"
-#include "text.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/text.h"
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
+#include "ostraka/mesh/flood.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "text.h"
+#include "interchange/text.h"
 
-#include "ostraka/core/markup.h"
+#include "ostraka/files/markup.h"
 
 #include <cmath>
 

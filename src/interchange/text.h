@@ -1,9 +1,9 @@
 // Text in other formats: cells and numbers, escaped so that nothing can become a formula, markup or a script.
 #pragma once
 
-#include "ostraka/core/csv.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json.h"
 
 #include <array>
 #include <optional>

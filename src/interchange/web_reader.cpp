@@ -1,14 +1,14 @@
 // Conversion of W3C Web Annotation JSON-LD to annotations.
 #include "ostraka/interchange/web_annotation.h"
 
-#include "landmark_formats.h"
-#include "placing.h"
-#include "text.h"
-#include "web_terms.h"
+#include "interchange/landmark_formats.h"
+#include "interchange/placing.h"
+#include "interchange/text.h"
+#include "interchange/web_terms.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
 
 #include <fmt/core.h>

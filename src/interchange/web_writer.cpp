@@ -1,13 +1,13 @@
 // Conversion of annotations to W3C Web Annotation JSON-LD.
 #include "ostraka/interchange/web_annotation.h"
 
-#include "text.h"
-#include "web_terms.h"
+#include "interchange/text.h"
+#include "interchange/web_terms.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/mesh/flood.h"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
 #include "ostraka/io/diagnose.h"
 
+#include "io/repair_steps.h"
+#include "io/soup_edges.h"
+#include "io/soup_geometry.h"
 #include "ostraka/core/progress.h"
-#include "repair_steps.h"
-#include "soup_edges.h"
-#include "soup_geometry.h"
 
 #include <fmt/core.h>
 

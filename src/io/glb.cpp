@@ -1,10 +1,10 @@
 #include "ostraka/io/glb.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/markup.h"
-#include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/markup.h"
+#include "ostraka/files/provenance.h"
 
 #include <fmt/core.h>
 

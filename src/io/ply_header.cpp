@@ -1,7 +1,7 @@
-#include "ply_header.h"
+#include "io/ply_header.h"
 
+#include "io/text_reader.h"
 #include "ostraka/core/error.h"
-#include "text_reader.h"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
 // The body of a PLY file as a sequence of numbers, from text or from bytes of either order.
 #pragma once
 
+#include "io/ply_header.h"
+#include "io/text_reader.h"
 #include "ostraka/core/error.h"
-#include "ply_header.h"
-#include "text_reader.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "polygon_cutter.h"
+#include "io/polygon_cutter.h"
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "formats.h"
+#include "io/formats.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_of_polygons.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

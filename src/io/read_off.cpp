@@ -1,6 +1,6 @@
-#include "formats.h"
+#include "io/formats.h"
+#include "io/text_reader.h"
 #include "ostraka/core/error.h"
-#include "text_reader.h"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
-#include "formats.h"
+#include "io/formats.h"
+#include "io/ply_rows.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
 #include "ostraka/io/ply.h"
-#include "ply_rows.h"
 
 #include <fmt/core.h>
 

@@ -1,12 +1,12 @@
 #include "ostraka/io/repair.h"
 
+#include "io/repair_steps.h"
+#include "io/soup_geometry.h"
+#include "io/triangle_tree.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/wrap.h"
-#include "repair_steps.h"
-#include "soup_geometry.h"
-#include "triangle_tree.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 // Fills holes with triangles between their border vertices.
+#include "io/repair_steps.h"
+#include "io/soup_geometry.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
-#include "repair_steps.h"
-#include "soup_geometry.h"
+#include "ostraka/execution/parallel.h"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // Removal of self-intersections: folds are smoothed; remaining intersecting triangles are cut out and the gaps are filled.
-#include "repair_steps.h"
+#include "io/repair_steps.h"
 
+#include "io/soup_geometry.h"
 #include "ostraka/core/progress.h"
-#include "soup_geometry.h"
 
 namespace ostraka::detail {
 

@@ -1,9 +1,9 @@
 // The soup under repair: bookkeeping, merging of points, invalid triangles, components.
-#include "ostraka/core/parallel.h"
+#include "io/repair_steps.h"
+#include "io/soup_geometry.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
-#include "repair_steps.h"
-#include "soup_geometry.h"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // The soup under repair and the repair steps. Private to the module.
 #pragma once
 
+#include "io/soup_edges.h"
 #include "ostraka/io/repair.h"
-#include "soup_edges.h"
 
 namespace ostraka::detail {
 

@@ -1,7 +1,7 @@
 // Orientation, and splitting of non-manifold edges and vertices.
+#include "io/repair_steps.h"
+#include "io/soup_geometry.h"
 #include "ostraka/core/angles.h"
-#include "repair_steps.h"
-#include "soup_geometry.h"
 
 #include <cmath>
 

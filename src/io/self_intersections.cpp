@@ -1,10 +1,10 @@
 // Self-intersections: candidates from the tree of bounding boxes, decided by exact orientation predicates. The triangles around
 // a vertex of very high valence all touch: among these, only pairs whose directions from the vertex overlap are candidates.
-#include "ostraka/core/parallel.h"
+#include "io/soup_edges.h"
+#include "io/soup_geometry.h"
+#include "io/triangle_tree.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/diagnose.h"
-#include "soup_edges.h"
-#include "soup_geometry.h"
-#include "triangle_tree.h"
 
 #include <CGAL/intersections.h>
 

@@ -1,8 +1,8 @@
-#include "soup_edges.h"
+#include "io/soup_edges.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 // Edges of a triangle soup, without assumptions about its topology. Private to the module.
 #pragma once
 
-#include "ostraka/core/disjoint_sets.h"
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/disjoint_sets.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

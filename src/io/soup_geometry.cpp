@@ -1,7 +1,7 @@
-#include "soup_geometry.h"
+#include "io/soup_geometry.h"
 
-#include "ostraka/core/parallel.h"
-#include "triangle_tree.h"
+#include "io/triangle_tree.h"
+#include "ostraka/execution/parallel.h"
 
 #include <cmath>
 

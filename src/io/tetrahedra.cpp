@@ -1,8 +1,8 @@
 // Tetrahedral meshes: Medit's .mesh (text) and VTK's .vtu (text). All other modules use their surface.
-#include "formats.h"
+#include "io/formats.h"
+#include "io/text_reader.h"
+#include "io/text_writer.h"
 #include "ostraka/core/error.h"
-#include "text_reader.h"
-#include "text_writer.h"
 
 #include <fmt/core.h>
 #include <pugixml.hpp>

@@ -1,4 +1,4 @@
-#include "text_reader.h"
+#include "io/text_reader.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,8 +1,8 @@
 // Buffered writing of text or bytes to an atomic file.
 #pragma once
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/files/file.h"
 
 #include <charconv>
 #include <string>

@@ -1,6 +1,6 @@
-#include "triangle_tree.h"
+#include "io/triangle_tree.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

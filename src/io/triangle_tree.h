@@ -2,7 +2,7 @@
 // nearest triangle. Private to the module.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 #include <vector>

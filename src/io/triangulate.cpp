@@ -1,5 +1,5 @@
+#include "io/polygon_cutter.h"
 #include "ostraka/io/mesh_file.h"
-#include "polygon_cutter.h"
 
 namespace ostraka {
 

@@ -1,8 +1,8 @@
-#include "formats.h"
+#include "io/formats.h"
+#include "io/text_writer.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/io/glb.h"
-#include "text_writer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "formats.h"
+#include "io/formats.h"
 #include "ostraka/core/error.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
-#include "formats.h"
-#include "text_writer.h"
+#include "io/formats.h"
+#include "io/text_writer.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "formats.h"
+#include "io/formats.h"
+#include "io/text_writer.h"
 #include "ostraka/core/error.h"
-#include "text_writer.h"
 
 #include <fmt/core.h>
 

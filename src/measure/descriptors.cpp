@@ -2,9 +2,9 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
 #include "ostraka/geom/oriented_box.h"
 #include "ostraka/measure/solid.h"
+#include "ostraka/mesh/ids.h"
 
 #include <fmt/core.h>
 

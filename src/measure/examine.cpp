@@ -1,10 +1,10 @@
 #include "ostraka/measure/examine.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/flood.h"
 
 #include <fmt/core.h>
 

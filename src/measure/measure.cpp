@@ -2,13 +2,13 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/mesh/ids.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

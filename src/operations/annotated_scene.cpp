@@ -1,14 +1,14 @@
-#include "annotated_scene.h"
+#include "operations/annotated_scene.h"
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/smooth_regions.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
+#include "ostraka/framework/report.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/operation/report.h"
 
 #include <algorithm>
 #include <map>

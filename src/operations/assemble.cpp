@@ -1,10 +1,10 @@
 // assemble: joins fragments along their fracture surfaces.
-#include "completed_output.h"
-#include "operations.h"
-#include "turned_groups.h"
+#include "operations/completed_output.h"
+#include "operations/operations.h"
+#include "operations/turned_groups.h"
 
 #include "ostraka/collection/objects.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reassembly/reassembly_json.h"
 #include "ostraka/reassembly/suspicious_fragments.h"

@@ -1,7 +1,7 @@
 // axis
 #include "ostraka/axis/axis.h"
 
-#include "file_attribute.h"
+#include "operations/file_attribute.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "ostraka/operations/command_words.h"
+#include "operations/command_words.h"
 
 #include "ostraka/core/text.h"
 

@@ -1,4 +1,4 @@
-#include "completed_output.h"
+#include "operations/completed_output.h"
 
 namespace ostraka {
 

@@ -1,7 +1,7 @@
 // Writes a completed object with colours and labels for the origin of its surface.
 #pragma once
 
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/reconstruction/complete.h"
 

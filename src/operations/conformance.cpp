@@ -1,12 +1,12 @@
 // conformance run, conformance self: golden cases, given to another program or to this one.
-#include "operations.h"
+#include "operations/operations.h"
 
+#include "operations/command_words.h"
 #include "ostraka/conformance/kit.h"
-#include "ostraka/core/child_process.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/transaction.h"
-#include "ostraka/operations/command_words.h"
+#include "ostraka/execution/child_process.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/transaction.h"
 
 #include <fmt/core.h>
 

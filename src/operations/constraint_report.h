@@ -1,7 +1,7 @@
 // Constraints of a deformation in reports.
 #pragma once
 
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/semantic/deform.h"
 

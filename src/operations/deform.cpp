@@ -1,5 +1,5 @@
 // deform: an edit of a shape that preserves its annotations and relations.
-#include "constraint_report.h"
+#include "operations/constraint_report.h"
 
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"

@@ -1,8 +1,8 @@
 // A diagnosis of a mesh in reports.
 #pragma once
 
+#include "ostraka/framework/report.h"
 #include "ostraka/io/diagnose.h"
-#include "ostraka/operation/report.h"
 
 namespace ostraka {
 

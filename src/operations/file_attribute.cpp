@@ -1,7 +1,7 @@
-#include "file_attribute.h"
+#include "operations/file_attribute.h"
 
-#include "ostraka/core/ids.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/safe_path.h"
+#include "ostraka/mesh/ids.h"
 
 #include <fmt/core.h>
 

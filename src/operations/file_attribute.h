@@ -1,7 +1,7 @@
 // An attribute whose value is a file written by the same operation: a map, an axis.
 #pragma once
 
-#include "operations.h"
+#include "operations/operations.h"
 
 namespace ostraka {
 

@@ -1,6 +1,6 @@
 // fit: reconstructs the whole object from fragments.
-#include "completed_output.h"
-#include "constraint_report.h"
+#include "operations/completed_output.h"
+#include "operations/constraint_report.h"
 
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/assembly.h"

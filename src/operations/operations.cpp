@@ -1,5 +1,5 @@
 // operations: the table of operations itself
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/operations/pages.h"
 

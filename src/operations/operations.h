@@ -3,9 +3,9 @@
 
 #include "ostraka/operations/table.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/vocabulary/tag_matcher.h"
 
 namespace ostraka {

@@ -1,7 +1,7 @@
 #include "ostraka/operations/page_results.h"
 
-#include "ostraka/core/csv.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/csv.h"
 #include "ostraka/io/ply.h"
 #include "ostraka/slicing/slice_descriptors.h"
 

@@ -1,5 +1,5 @@
 // pair: registers two fragments along their common fracture.
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/fracture/pair_registration.h"
 #include "ostraka/reassembly/suspicious_fragments.h"

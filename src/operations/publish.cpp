@@ -1,10 +1,10 @@
 // publish: an annotated object as a static web folder: IIIF manifest, GLB with features, annotations, a page.
-#include "annotated_scene.h"
-#include "operations.h"
+#include "operations/annotated_scene.h"
+#include "operations/operations.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/interchange/feature_glb.h"
 #include "ostraka/interchange/web_annotation.h"

@@ -1,7 +1,7 @@
 // Registers two meshes given to an operation.
 #pragma once
 
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/registration/mesh_registration.h"
 

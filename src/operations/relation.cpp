@@ -1,11 +1,11 @@
 // relation extract, add, remove, list, check, export
-#include "operations.h"
+#include "operations/operations.h"
 
+#include "ostraka/figures/bracket_graph.h"
 #include "ostraka/relation/geometric.h"
 #include "ostraka/relation/layout.h"
 #include "ostraka/relation/part_of.h"
 #include "ostraka/relation/rules.h"
-#include "ostraka/report/bracket_graph.h"
 #include "ostraka/semantic/measure_constraints.h"
 
 #include <algorithm>

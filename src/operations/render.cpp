@@ -1,9 +1,9 @@
 // render: a picture of meshes, their annotations and maps.
-#include "annotated_scene.h"
-#include "operations.h"
+#include "operations/annotated_scene.h"
+#include "operations/operations.h"
 
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/render/render.h"
 
 #include <fmt/core.h>

@@ -1,13 +1,13 @@
 // report: one self-contained HTML page of results: objects in 3D with tables and drawings.
-#include "annotated_scene.h"
-#include "operations.h"
+#include "operations/annotated_scene.h"
+#include "operations/operations.h"
 #include "ostraka/operations/page_results.h"
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
 #include "ostraka/render/values.h"

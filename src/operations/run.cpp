@@ -1,10 +1,10 @@
 // run: executes the steps of a study file; replay: repeats a run and compares the results.
-#include "operations.h"
+#include "operations/operations.h"
 
-#include "ostraka/core/child_process.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/execution/child_process.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/workflow/collect.h"
 #include "ostraka/workflow/crate.h"
 

@@ -1,12 +1,12 @@
 // slice: cuts an object into slices, describes and draws them.
-#include "operations.h"
-#include "slice_report.h"
+#include "operations/operations.h"
+#include "operations/slice_report.h"
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/report/slice_drawing.h"
+#include "ostraka/figures/slice_drawing.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/slicing/silhouette.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
 // Remarks that `ostraka slice` adds to its tables.
-#include "slice_report.h"
+#include "operations/slice_report.h"
 
 #include <fmt/core.h>
 

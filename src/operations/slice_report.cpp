@@ -1,9 +1,9 @@
-#include "slice_report.h"
+#include "operations/slice_report.h"
 
 #include "ostraka/core/angles.h"
-#include "ostraka/core/csv.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <fmt/core.h>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/axis/object_slices.h"
+#include "ostraka/framework/report.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/operation/report.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
-#include "turned_groups.h"
+#include "operations/turned_groups.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 // Reports the axes of revolution of groups of joined fragments, and of single fragments.
 #pragma once
 
-#include "ostraka/core/json.h"
-#include "ostraka/operation/report.h"
+#include "ostraka/files/json.h"
+#include "ostraka/framework/report.h"
 #include "ostraka/reassembly/reassembly.h"
 #include "ostraka/revolution/group_axes.h"
 

@@ -1,5 +1,5 @@
 // vocabulary check, show, convert
-#include "operations.h"
+#include "operations/operations.h"
 
 #include "ostraka/vocabulary/skos.h"
 

@@ -1,6 +1,6 @@
-#include "geometry.h"
+#include "page/geometry.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/io/glb.h"
 
 #include <meshoptimizer.h>

@@ -1,7 +1,7 @@
 // Geometry in the format that browsers load.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <string>
 

@@ -1,10 +1,10 @@
 #include "ostraka/page/page.h"
 
-#include "viewer.h"
+#include "page/viewer.h"
 
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/markup.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/markup.h"
 #include "ostraka/measure/measure.h"
 
 #include <zlib.h>

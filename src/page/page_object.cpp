@@ -1,15 +1,15 @@
 #include "ostraka/page/page.h"
 
-#include "geometry.h"
+#include "page/geometry.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/provenance.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/relation/layout.h"
 #include "ostraka/render/colour_scale.h"
 

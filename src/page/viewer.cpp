@@ -1,7 +1,7 @@
-#include "viewer.h"
+#include "page/viewer.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/page/content_policy.h"
 
 #include <fmt/core.h>

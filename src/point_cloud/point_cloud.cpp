@@ -1,7 +1,7 @@
 #include "ostraka/point_cloud/point_cloud.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
 
 #include <CGAL/jet_estimate_normals.h>

@@ -1,8 +1,8 @@
 // Reads points without faces from files.
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/io/ply.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
 #include <fmt/core.h>

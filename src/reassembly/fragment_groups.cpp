@@ -1,10 +1,10 @@
-#include "fragment_groups.h"
+#include "reassembly/fragment_groups.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/plane_motion.h"
-#include "refine_group.h"
+#include "reassembly/refine_group.h"
 
 #include <fmt/core.h>
 

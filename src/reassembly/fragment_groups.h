@@ -1,7 +1,7 @@
 // Joins fragments to groups, most certain join first.
 #pragma once
 
-#include "pair_graph.h"
+#include "reassembly/pair_graph.h"
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
-#include "pair_choice.h"
+#include "reassembly/pair_choice.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 

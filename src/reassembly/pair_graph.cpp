@@ -1,8 +1,8 @@
-#include "pair_graph.h"
+#include "reassembly/pair_graph.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <mutex>

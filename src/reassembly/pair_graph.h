@@ -1,7 +1,7 @@
 // All candidates of all pairs that were tried, and the loops they close.
 #pragma once
 
-#include "prepared_fragments.h"
+#include "reassembly/prepared_fragments.h"
 
 #include <cmath>
 #include <map>

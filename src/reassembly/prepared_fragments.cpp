@@ -1,8 +1,8 @@
-#include "prepared_fragments.h"
+#include "reassembly/prepared_fragments.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <fmt/core.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/reassembly/reassembly.h"
-#include "pair_choice.h"
+#include "reassembly/pair_choice.h"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 #include "ostraka/reassembly/reassembly.h"
 
-#include "fragment_groups.h"
 #include "ostraka/core/error.h"
+#include "reassembly/fragment_groups.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include "ostraka/reassembly/reassembly_json.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/registration/pose_json.h"
 
 #include <fmt/core.h>

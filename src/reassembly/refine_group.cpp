@@ -1,4 +1,4 @@
-#include "refine_group.h"
+#include "reassembly/refine_group.h"
 
 #include "ostraka/core/progress.h"
 

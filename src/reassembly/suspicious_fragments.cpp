@@ -1,9 +1,9 @@
 #include "ostraka/reassembly/suspicious_fragments.h"
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/rigid_fit.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 #include "ostraka/reconstruction/assembly.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/registration/pose_json.h"

@@ -1,4 +1,4 @@
-#include "assignment.h"
+#include "reconstruction/assignment.h"
 
 #include <lemon/network_simplex.h>
 #include <lemon/smart_graph.h>

@@ -1,11 +1,11 @@
 #include "ostraka/reconstruction/complete.h"
 #include "ostraka/core/angles.h"
 
-#include "seam.h"
+#include "reconstruction/seam.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 

@@ -1,10 +1,10 @@
 #include "ostraka/reconstruction/fit.h"
 
-#include "fitter.h"
+#include "reconstruction/fitter.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/reconstruction/template_cage.h"

@@ -1,10 +1,10 @@
-#include "fitter.h"
+#include "reconstruction/fitter.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // One fit, level by level, over one mesh of the template.
 #pragma once
 
-#include "level_system.h"
-#include "match_search.h"
+#include "reconstruction/level_system.h"
+#include "reconstruction/match_search.h"
 
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/template_cage.h"

@@ -1,4 +1,4 @@
-#include "fragment_trees.h"
+#include "reconstruction/fragment_trees.h"
 
 #include "ostraka/geom/submesh.h"
 

@@ -1,4 +1,4 @@
-#include "joint_curves.h"
+#include "reconstruction/joint_curves.h"
 
 #include "ostraka/geom/eigen.h"
 

@@ -1,7 +1,7 @@
-#include "level_system.h"
+#include "reconstruction/level_system.h"
 
-#include "ostraka/core/dense.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/solver/make_constraint.h"
 

@@ -1,7 +1,7 @@
 // The linear system of a fit's levels on one mesh of the template: built once, used by every fit.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/solver/solve.h"
 
 #include <memory>

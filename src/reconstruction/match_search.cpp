@@ -1,9 +1,9 @@
-#include "match_search.h"
+#include "reconstruction/match_search.h"
 
-#include "outline_correspondences.h"
-#include "shared_faces.h"
+#include "reconstruction/outline_correspondences.h"
+#include "reconstruction/shared_faces.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>

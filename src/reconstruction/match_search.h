@@ -1,8 +1,8 @@
 // Matches of the template's vertices on the fragments.
 #pragma once
 
-#include "fragment_trees.h"
-#include "joint_curves.h"
+#include "reconstruction/fragment_trees.h"
+#include "reconstruction/joint_curves.h"
 
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/vertex_assignment.h"

@@ -1,4 +1,4 @@
-#include "outline_correspondences.h"
+#include "reconstruction/outline_correspondences.h"
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/geom/eigen.h"

@@ -1,4 +1,4 @@
-#include "patch.h"
+#include "reconstruction/patch.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 // Part of a surface bounded by simple loops.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

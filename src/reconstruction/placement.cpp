@@ -1,5 +1,5 @@
 #include "ostraka/reconstruction/placement.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"

@@ -1,9 +1,9 @@
 #include "ostraka/reconstruction/pose_searches.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/provenance.h"
 
 #include <algorithm>
 

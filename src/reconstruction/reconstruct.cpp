@@ -1,7 +1,7 @@
 #include "ostraka/reconstruction/reconstruct.h"
 
-#include "fragment_trees.h"
-#include "reconstruction_verdict.h"
+#include "reconstruction/fragment_trees.h"
+#include "reconstruction/reconstruction_verdict.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"

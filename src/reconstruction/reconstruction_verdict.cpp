@@ -1,4 +1,4 @@
-#include "reconstruction_verdict.h"
+#include "reconstruction/reconstruction_verdict.h"
 
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"

@@ -1,4 +1,4 @@
-#include "seam.h"
+#include "reconstruction/seam.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/distance.h"

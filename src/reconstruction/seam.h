@@ -1,7 +1,7 @@
 // Replaces the part of a surface that a patch of another surface covers by that patch.
 #pragma once
 
-#include "patch.h"
+#include "reconstruction/patch.h"
 
 #include "ostraka/geom/surface_search.h"
 

@@ -1,11 +1,11 @@
 #include "ostraka/reconstruction/shape_prior.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
-#include "match_search.h"
+#include "reconstruction/match_search.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/stats/summary.h"

@@ -1,6 +1,6 @@
-#include "shared_faces.h"
+#include "reconstruction/shared_faces.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/submesh.h"
 

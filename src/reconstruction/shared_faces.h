@@ -1,7 +1,7 @@
 // Detects fragments whose faces are the template's, and identifies their vertices by connectivity.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,11 +1,11 @@
 #include "ostraka/reconstruction/vertex_assignment.h"
 #include "ostraka/core/angles.h"
 
-#include "assignment.h"
-#include "outline_correspondences.h"
+#include "reconstruction/assignment.h"
+#include "reconstruction/outline_correspondences.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
 
 #include <fmt/core.h>

@@ -1,8 +1,8 @@
 #include "ostraka/registration/align.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
-#include "trimmed_registration.h"
+#include "registration/trimmed_registration.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"

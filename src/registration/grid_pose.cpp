@@ -1,4 +1,4 @@
-#include "grid_pose.h"
+#include "registration/grid_pose.h"
 
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/plane_motion.h"

@@ -1,7 +1,7 @@
 // Scores and refines poses of points on a surface with a grid of its points, for searches over many poses.
 #pragma once
 
-#include "nearest_grid.h"
+#include "registration/nearest_grid.h"
 
 #include "ostraka/geom/rigid_fit.h"
 

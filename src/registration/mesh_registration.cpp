@@ -1,14 +1,14 @@
 #include "ostraka/registration/mesh_registration.h"
 
-#include "grid_pose.h"
-#include "trimmed_registration.h"
+#include "registration/grid_pose.h"
+#include "registration/trimmed_registration.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 

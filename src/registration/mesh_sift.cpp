@@ -1,7 +1,7 @@
 #include "ostraka/registration/mesh_sift.h"
 #include "ostraka/core/angles.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/geom/diffusion.h"
 #include "ostraka/geom/eigen.h"

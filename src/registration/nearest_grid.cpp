@@ -1,4 +1,4 @@
-#include "nearest_grid.h"
+#include "registration/nearest_grid.h"
 
 #include <Eigen/Geometry>
 

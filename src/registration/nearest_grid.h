@@ -1,7 +1,7 @@
 // Grid lookup of the nearest point of a surface, for searches over many poses.
 #pragma once
 
-#include "ostraka/registration/surface_points.h"
+#include "registration/surface_points.h"
 
 #include <vector>
 

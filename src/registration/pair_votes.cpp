@@ -1,8 +1,8 @@
-#include "ostraka/registration/pair_votes.h"
+#include "registration/pair_votes.h"
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>

@@ -1,12 +1,12 @@
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/core/angles.h"
 
-#include "trimmed_registration.h"
+#include "registration/trimmed_registration.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/registration/surface_points.h"
+#include "registration/surface_points.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #include "ostraka/registration/pose_json.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 
 namespace ostraka {
 

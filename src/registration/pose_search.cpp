@@ -1,16 +1,16 @@
 #include "ostraka/registration/pose_search.h"
 #include "ostraka/core/angles.h"
 
-#include "grid_pose.h"
+#include "registration/grid_pose.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/plane_motion.h"
-#include "ostraka/registration/pair_votes.h"
 #include "ostraka/registration/part_alignment.h"
+#include "registration/pair_votes.h"
 
 #include <fmt/core.h>
 

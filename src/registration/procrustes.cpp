@@ -1,9 +1,9 @@
 #include "ostraka/registration/procrustes.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 #include <Eigen/LU>

@@ -1,5 +1,5 @@
 #include "ostraka/registration/slippable_motions.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/message_text.h"
 
 #include <algorithm>

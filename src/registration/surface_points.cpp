@@ -1,7 +1,7 @@
-#include "ostraka/registration/surface_points.h"
+#include "registration/surface_points.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/random.h"
 

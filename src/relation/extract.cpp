@@ -1,14 +1,14 @@
 // Candidates for geometric relationships, each measured before it is reported. Steps that are quadratic in the number of
 // regions only compare numbers; the number of expensive measurements and of reported relationships is bounded.
-#include "bit_table.h"
-#include "meter.h"
+#include "relation/bit_table.h"
+#include "relation/meter.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
-#include "ostraka/core/ids.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/ids.h"
+#include "ostraka/mesh/limits.h"
 
 #include <map>
 #include <queue>

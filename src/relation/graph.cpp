@@ -2,10 +2,10 @@
 #include "ostraka/relation/graph.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
+#include "ostraka/mesh/ids.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Reading and writing *.graph.json.
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/relation/graph.h"
 
 namespace ostraka {

@@ -1,10 +1,10 @@
 // Measurement of the geometric relationships.
-#include "meter.h"
+#include "relation/meter.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/relation/topology.h"
 
 namespace ostraka {

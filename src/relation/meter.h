@@ -1,7 +1,7 @@
 // The parts of a set and the contacts between them, computed on demand.
 #pragma once
 
-#include "parts.h"
+#include "relation/parts.h"
 
 #include "ostraka/relation/geometric.h"
 

@@ -1,6 +1,6 @@
-#include "parts.h"
+#include "relation/parts.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/dense.h"
 
 #include <map>
 

@@ -1,6 +1,6 @@
 #include "ostraka/relation/query.h"
 
-#include "query_parser.h"
+#include "relation/query_parser.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

@@ -1,4 +1,4 @@
-#include "query_parser.h"
+#include "relation/query_parser.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

@@ -1,7 +1,7 @@
 // Parser of queries.
 #pragma once
 
-#include "query_node.h"
+#include "relation/query_node.h"
 
 namespace ostraka::detail {
 

@@ -1,13 +1,13 @@
 #include "ostraka/relation/topology.h"
 
-#include "bit_table.h"
+#include "relation/bit_table.h"
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <bit>
 #include <numeric>

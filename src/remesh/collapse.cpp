@@ -1,4 +1,4 @@
-#include "collapse.h"
+#include "remesh/collapse.h"
 
 namespace ostraka {
 

@@ -1,6 +1,6 @@
-#include "collapse_rules.h"
+#include "remesh/collapse_rules.h"
 
-#include "collapse.h"
+#include "remesh/collapse.h"
 
 namespace ostraka {
 

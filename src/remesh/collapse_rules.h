@@ -1,7 +1,7 @@
 // Collapses allowed by borders and marked parts, and the end that keeps its position.
 #pragma once
 
-#include "metric.h"
+#include "remesh/metric.h"
 
 #include <cstdint>
 #include <optional>

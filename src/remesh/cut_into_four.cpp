@@ -1,7 +1,7 @@
-#include "collapse.h"
 #include "ostraka/core/angles.h"
-#include "property_carrier.h"
-#include "subdivide.h"
+#include "remesh/collapse.h"
+#include "remesh/property_carrier.h"
+#include "remesh/subdivide.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
-#include "metric.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "property_carrier.h"
-#include "subdivide.h"
+#include "remesh/metric.h"
+#include "remesh/property_carrier.h"
+#include "remesh/subdivide.h"
 
 #include <algorithm>
 

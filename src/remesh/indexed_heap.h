@@ -1,7 +1,7 @@
 // A binary heap over the indices 0 .. n-1 with mutable keys; ties are in the order of the indices.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

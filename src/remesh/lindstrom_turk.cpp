@@ -1,5 +1,5 @@
-#include "collapse.h"
-#include "metric.h"
+#include "remesh/collapse.h"
+#include "remesh/metric.h"
 
 #include <array>
 #include <cmath>

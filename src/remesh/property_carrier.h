@@ -1,7 +1,7 @@
 // Copies the values of an element, in every property map of a plain type, to an element cut from it.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 // Quadratic functions of a point: sums of weighted squared distances to planes and points.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <optional>

@@ -1,6 +1,6 @@
-#include "collapse.h"
-#include "metric.h"
-#include "quadric.h"
+#include "remesh/collapse.h"
+#include "remesh/metric.h"
+#include "remesh/quadric.h"
 
 namespace ostraka {
 

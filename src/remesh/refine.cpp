@@ -2,7 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
-#include "subdivide.h"
+#include "remesh/subdivide.h"
 
 #include <fmt/core.h>
 

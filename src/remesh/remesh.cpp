@@ -1,14 +1,14 @@
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/core/angles.h"
 
-#include "metric.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/watched_tree.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/simplify.h"
+#include "remesh/metric.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>

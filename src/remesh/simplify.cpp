@@ -1,13 +1,13 @@
 #include "ostraka/remesh/simplify.h"
 #include "ostraka/core/angles.h"
 
-#include "collapse.h"
-#include "collapse_rules.h"
-#include "indexed_heap.h"
-#include "metric.h"
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/disjoint_sets.h"
+#include "remesh/collapse.h"
+#include "remesh/collapse_rules.h"
+#include "remesh/indexed_heap.h"
+#include "remesh/metric.h"
 
 #include <fmt/core.h>
 

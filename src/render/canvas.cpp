@@ -1,4 +1,4 @@
-#include "canvas.h"
+#include "render/canvas.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"

@@ -1,6 +1,6 @@
-#include "drawing.h"
+#include "render/drawing.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/chains.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Line drawing of a surface: contours, creases, borders, edges.
 #pragma once
 
-#include "overlay.h"
+#include "render/overlay.h"
 
 namespace ostraka::detail {
 

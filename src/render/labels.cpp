@@ -1,6 +1,6 @@
-#include "labels.h"
+#include "render/labels.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

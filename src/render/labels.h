@@ -1,9 +1,9 @@
 // Labels beside an object, with lines to the labelled parts.
 #pragma once
 
-#include "canvas.h"
 #include "ostraka/render/render.h"
-#include "overlay.h"
+#include "render/canvas.h"
+#include "render/overlay.h"
 
 namespace ostraka::detail {
 

@@ -1,7 +1,7 @@
-#include "overlay.h"
+#include "render/overlay.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 #include <boost/geometry.hpp>

@@ -1,10 +1,10 @@
 // Overlay of the shaded surface: lines, markers, legend, colour bar and scale bar.
 #pragma once
 
-#include "camera.h"
-#include "canvas.h"
 #include "ostraka/render/colour_scale.h"
-#include "surface.h"
+#include "render/camera.h"
+#include "render/canvas.h"
+#include "render/surface.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "ostraka/render/picture.h"
 
-#include "canvas.h"
 #include "ostraka/core/error.h"
+#include "render/canvas.h"
 
 #include <cairo.h>
 #include <fmt/core.h>

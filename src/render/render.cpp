@@ -1,13 +1,13 @@
 #include "ostraka/render/render.h"
 
-#include "drawing.h"
-#include "labels.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
-#include "overlay.h"
-#include "shading.h"
+#include "ostraka/execution/parallel.h"
+#include "render/drawing.h"
+#include "render/labels.h"
+#include "render/overlay.h"
+#include "render/shading.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
-#include "shading.h"
+#include "render/shading.h"
 
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <Eigen/Geometry>
 

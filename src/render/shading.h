@@ -1,9 +1,9 @@
 // Rendering of the coloured, lit surface to pixels.
 #pragma once
 
-#include "camera.h"
 #include "ostraka/render/colour_scale.h"
-#include "surface.h"
+#include "render/camera.h"
+#include "render/surface.h"
 
 #include <cstdint>
 #include <vector>

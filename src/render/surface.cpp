@@ -1,7 +1,7 @@
-#include "surface.h"
+#include "render/surface.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/core.h>

@@ -1,8 +1,8 @@
 #include "ostraka/render/values.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/npy.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/npy.h"
 
 #include <fmt/core.h>
 

@@ -1,13 +1,13 @@
 // Maximum likelihood estimate of the common axis of all sherds, and of the tilt and offset of each in the layout.
-#include "stages.h"
+#include "revolution/stages.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/axis/axis_evidence.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>

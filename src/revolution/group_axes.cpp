@@ -1,6 +1,6 @@
 #include "ostraka/revolution/group_axes.h"
 
-#include "stages.h"
+#include "revolution/stages.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"

@@ -1,4 +1,4 @@
-#include "stages.h"
+#include "revolution/stages.h"
 
 #include "ostraka/core/error.h"
 

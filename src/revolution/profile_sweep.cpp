@@ -1,5 +1,5 @@
 #include "ostraka/core/angles.h"
-#include "stages.h"
+#include "revolution/stages.h"
 
 #include <algorithm>
 #include <cmath>

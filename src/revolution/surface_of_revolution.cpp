@@ -1,7 +1,7 @@
 #include "ostraka/revolution/surface_of_revolution.h"
 #include "ostraka/core/angles.h"
 
-#include "stages.h"
+#include "revolution/stages.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"

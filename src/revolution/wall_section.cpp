@@ -1,7 +1,7 @@
-#include "stages.h"
+#include "revolution/stages.h"
 
 #include "ostraka/core/angles.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

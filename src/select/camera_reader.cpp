@@ -1,9 +1,9 @@
-#include "camera_reader.h"
+#include "select/camera_reader.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
-#include "ostraka/select/screen.h"
+#include "ostraka/mesh/limits.h"
+#include "select/screen.h"
 
 #include <algorithm>
 #include <cmath>

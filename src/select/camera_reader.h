@@ -1,7 +1,7 @@
 // Reads the cameras of recipes.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/render/camera.h"
 
 #include <functional>

@@ -1,8 +1,8 @@
-#include "expression.h"
+#include "select/expression.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/select/selections.h"
 
 #include <algorithm>

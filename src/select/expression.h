@@ -1,14 +1,14 @@
 // Selection expressions of recipes: one JSON object each, nested by set operations.
 #pragma once
 
-#include "camera_reader.h"
+#include "select/camera_reader.h"
 
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/select/scalars.h"
-#include "ostraka/select/screen.h"
+#include "select/screen.h"
 
 #include <functional>
 #include <map>

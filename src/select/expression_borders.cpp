@@ -1,12 +1,12 @@
 // Borders of selections through the faces, for free outlines.
-#include "expression.h"
+#include "select/expression.h"
 
-#include "ostraka/core/flood.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/select/growth.h"
+#include "ostraka/mesh/flood.h"
 #include "ostraka/select/selections.h"
+#include "select/growth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 // Expressions computed from distances and other scalars on the surface.
-#include "expression.h"
+#include "select/expression.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/render/values.h"
-#include "ostraka/select/growth.h"
 #include "ostraka/select/selections.h"
+#include "select/growth.h"
 
 #include <algorithm>
 

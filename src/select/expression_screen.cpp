@@ -1,5 +1,5 @@
 // Expressions and picks through a camera.
-#include "expression.h"
+#include "select/expression.h"
 
 #include "ostraka/core/text.h"
 

@@ -1,4 +1,4 @@
-#include "ostraka/select/growth.h"
+#include "select/growth.h"
 
 #include "ostraka/geom/geodesic.h"
 

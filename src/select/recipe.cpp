@@ -3,9 +3,9 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/measure/measure.h"
-#include "recipe_step.h"
+#include "select/recipe_step.h"
 
 #include <fmt/core.h>
 

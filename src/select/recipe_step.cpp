@@ -1,4 +1,4 @@
-#include "recipe_step.h"
+#include "select/recipe_step.h"
 
 #include "ostraka/core/error.h"
 

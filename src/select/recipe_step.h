@@ -1,7 +1,7 @@
 // A step of a recipe.
 #pragma once
 
-#include "expression.h"
+#include "select/expression.h"
 
 #include <array>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "ostraka/select/scalars.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/fields/statistics.h"
+#include "ostraka/mesh/limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "ostraka/select/screen.h"
+#include "select/screen.h"
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/run_interruptibly.h"
+#include "ostraka/execution/run_interruptibly.h"
 #include "ostraka/select/scalars.h"
 
 #include <CGAL/mesh_segmentation.h>

@@ -1,10 +1,10 @@
 #include "ostraka/select/selections.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/flood.h"
+#include "ostraka/mesh/limits.h"
 
 #include <limits>
 #include <sstream>

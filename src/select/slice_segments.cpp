@@ -3,7 +3,7 @@
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
 #include "ostraka/stats/scores.h"

@@ -1,9 +1,9 @@
 // Constraints between the axes of parts. The last member is the reference, whose axis is not changed.
-#include "continuity.h"
-#include "statements.h"
+#include "semantic/continuity.h"
+#include "semantic/statements.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/relation/geometric.h"
 
 namespace ostraka::semantic {

@@ -1,9 +1,9 @@
 #include "ostraka/semantic/cage_reach.h"
 
-#include "deformer.h"
+#include "semantic/deformer.h"
 
-#include "ostraka/core/dense.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/semantic/cage_density.h"
 
 namespace ostraka {

@@ -1,4 +1,4 @@
-#include "constraint_members.h"
+#include "semantic/constraint_members.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,8 +1,8 @@
 // The members of a constraint on a shape, and what its statements need of them.
 #pragma once
 
-#include "constraint_spec.h"
-#include "statement.h"
+#include "semantic/constraint_spec.h"
+#include "semantic/statement.h"
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "constraint_spec.h"
+#include "semantic/constraint_spec.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

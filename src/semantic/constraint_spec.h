@@ -4,7 +4,7 @@
 // the parameters that it knows.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/solver/make_constraint.h"
 

@@ -1,4 +1,4 @@
-#include "continuity.h"
+#include "semantic/continuity.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/eigen.h"

@@ -1,7 +1,7 @@
 #include "ostraka/semantic/deform.h"
 
-#include "deformer.h"
-#include "seating.h"
+#include "semantic/deformer.h"
+#include "semantic/seating.h"
 
 #include "ostraka/geom/eigen.h"
 

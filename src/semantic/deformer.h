@@ -4,13 +4,13 @@
 #include <cmath>
 #include <deque>
 #include <set>
-#include "distortion.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/semantic/deform.h"
-#include "sizes.h"
-#include "statement.h"
+#include "semantic/distortion.h"
+#include "semantic/sizes.h"
+#include "semantic/statement.h"
 
 namespace ostraka::semantic {
 

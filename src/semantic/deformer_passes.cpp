@@ -1,9 +1,9 @@
 // What an edit and a graph ask for, and the passes in which it is solved for: each follows what the one before moved.
-#include "deformer.h"
+#include "semantic/deformer.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "verdict.h"
+#include "ostraka/files/json_build.h"
+#include "semantic/verdict.h"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // The linear system of one pass: constraints, what holds positions, and what the surface tends to; over the mesh or the cage.
-#include "deformer.h"
+#include "semantic/deformer.h"
 
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"

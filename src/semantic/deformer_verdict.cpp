@@ -1,10 +1,10 @@
 // What is said of the result: what holds, what stands against it, and which constraints fight.
-#include "deformer.h"
+#include "semantic/deformer.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
-#include "verdict.h"
+#include "semantic/verdict.h"
 
 #include <algorithm>
 

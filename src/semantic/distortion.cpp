@@ -1,6 +1,6 @@
-#include "distortion.h"
+#include "semantic/distortion.h"
 
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include "ostraka/fields/thickness.h"
 #include "ostraka/geom/eigen.h"

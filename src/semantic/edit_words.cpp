@@ -1,12 +1,12 @@
 #include "ostraka/semantic/edit_words.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/ids.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/ids.h"
 
 #include <fmt/core.h>
 

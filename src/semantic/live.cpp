@@ -1,6 +1,6 @@
 #include "ostraka/semantic/live.h"
 
-#include "deformer.h"
+#include "semantic/deformer.h"
 
 #include <cmath>
 #include <set>

@@ -1,6 +1,6 @@
 // Constraints of the solver, stated by their own names (thesis, section 4.2), on the vertices of annotations.
 #include "ostraka/core/angles.h"
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include <set>
 

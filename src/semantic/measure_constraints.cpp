@@ -1,6 +1,6 @@
 #include "ostraka/semantic/measure_constraints.h"
 
-#include "statement.h"
+#include "semantic/statement.h"
 
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"

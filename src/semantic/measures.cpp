@@ -1,5 +1,5 @@
 // Constraints on measures: of one part, of a part relative to another, of parts among each other.
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/measure/measure.h"

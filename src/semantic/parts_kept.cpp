@@ -1,5 +1,5 @@
 // Relations between parts that a deformation preserves, and position and direction of single parts.
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/axis/axis.h"

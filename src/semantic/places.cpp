@@ -1,5 +1,5 @@
 // Constraints on positions of points and parts: on a plane, on a line, mirrored, adjacent.
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"

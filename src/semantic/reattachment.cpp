@@ -1,7 +1,7 @@
-#include "reattachment.h"
+#include "semantic/reattachment.h"
 
-#include "ostraka/core/dense.h"
-#include "ostraka/core/sparse.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/algebra/sparse.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"

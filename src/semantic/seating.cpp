@@ -1,8 +1,8 @@
-#include "seating.h"
+#include "semantic/seating.h"
 
-#include "reattachment.h"
+#include "semantic/reattachment.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Constraints on parts that keep their shape, and on features on one level.
-#include "ostraka/core/dense.h"
-#include "statements.h"
+#include "ostraka/algebra/dense.h"
+#include "semantic/statements.h"
 
 namespace ostraka::semantic {
 

@@ -1,4 +1,4 @@
-#include "sizes.h"
+#include "semantic/sizes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Enforces hard constraints on measures by adjusting stretch factors.
 #pragma once
 
-#include "statement.h"
+#include "semantic/statement.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
-#include "statement.h"
+#include "semantic/statement.h"
 
-#include "statements.h"
+#include "semantic/statements.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/text.h"

@@ -2,7 +2,7 @@
 // holds.
 #pragma once
 
-#include "reattachment.h"
+#include "semantic/reattachment.h"
 
 #include "ostraka/geom/eigen.h"
 #include "ostraka/relation/check.h"

@@ -1,7 +1,7 @@
 // What constraints of each type mean.
 #pragma once
 
-#include "constraint_members.h"
+#include "semantic/constraint_members.h"
 
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/error.h"

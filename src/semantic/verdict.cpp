@@ -1,4 +1,4 @@
-#include "verdict.h"
+#include "semantic/verdict.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/io/diagnose.h"

@@ -1,9 +1,9 @@
 #include "ostraka/shape_classes/class_file.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/npy.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/npy.h"
+#include "ostraka/files/safe_path.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #include "ostraka/shape_classes/deviating_regions.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/submesh.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "ostraka/shape_classes/dissimilarity.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include <algorithm>
 #include <cmath>

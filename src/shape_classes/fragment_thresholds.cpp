@@ -1,8 +1,8 @@
 #include "ostraka/shape_classes/fragment_thresholds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/reconstruction/rigid_scale.h"
 #include "ostraka/registration/procrustes.h"
 #include "ostraka/shape_classes/thresholds.h"

@@ -1,6 +1,6 @@
 #include "ostraka/shape_classes/member_fit.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"

@@ -1,8 +1,8 @@
-#include "ostraka/shape_classes/parts.h"
+#include "shape_classes/parts.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"

@@ -6,8 +6,8 @@
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/semantic/deform.h"
-#include "ostraka/shape_classes/parts.h"
 #include "ostraka/stats/random.h"
+#include "shape_classes/parts.h"
 
 #include <fmt/core.h>
 

@@ -3,9 +3,9 @@
 #include "ostraka/core/error.h"
 #include "ostraka/shape_classes/dissimilarity.h"
 #include "ostraka/shape_classes/fragment_thresholds.h"
-#include "ostraka/shape_classes/parts.h"
 #include "ostraka/shape_classes/thresholds.h"
 #include "ostraka/stats/summary.h"
+#include "shape_classes/parts.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 #include "ostraka/shape_classes/shape_modes.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,5 +1,5 @@
 // Completeness of the outline of a slice.
-#include "contour_classification.h"
+#include "slicing/contour_classification.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/geom/point_tree.h"

@@ -1,10 +1,10 @@
 // Order, orientation and soundness of contours.
-#include "contour_classification.h"
+#include "slicing/contour_classification.h"
 
-#include "joining.h"
+#include "slicing/joining.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <fmt/core.h>
 

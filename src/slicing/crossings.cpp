@@ -1,9 +1,9 @@
 // Intersections of contours with one another and with themselves.
-#include "contour_classification.h"
 #include "ostraka/core/angles.h"
+#include "slicing/contour_classification.h"
 
-#include "segment_tree.h"
-#include "strips.h"
+#include "slicing/segment_tree.h"
+#include "slicing/strips.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
 // Planes across a curve, and the component of each that belongs to the curve.
-#include "ostraka/slicing/curve_slices.h"
+#include "slicing/curve_slices.h"
 
-#include "contour_classification.h"
-#include "joining.h"
-#include "plane_search.h"
+#include "slicing/contour_classification.h"
+#include "slicing/joining.h"
+#include "slicing/plane_search.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

@@ -2,8 +2,8 @@
 #include "ostraka/slicing/slice.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/text.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

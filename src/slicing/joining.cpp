@@ -1,5 +1,5 @@
 // Joins face segments to contours.
-#include "joining.h"
+#include "slicing/joining.h"
 
 #include <algorithm>
 

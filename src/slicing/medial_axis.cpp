@@ -1,10 +1,10 @@
 // Voronoi edges of boundary samples, pruned and joined into poly-lines.
 #include "ostraka/slicing/medial_axis.h"
 
-#include "strips.h"
+#include "slicing/strips.h"
 
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>

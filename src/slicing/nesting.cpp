@@ -1,7 +1,7 @@
 // Nesting of contours, by votes of their points.
-#include "contour_classification.h"
+#include "slicing/contour_classification.h"
 
-#include "strips.h"
+#include "slicing/strips.h"
 
 #include <algorithm>
 

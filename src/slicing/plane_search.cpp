@@ -1,5 +1,5 @@
 // Search for the faces near a plane.
-#include "plane_search.h"
+#include "slicing/plane_search.h"
 
 #include "ostraka/geom/eigen.h"
 

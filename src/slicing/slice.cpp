@@ -1,12 +1,12 @@
 // Faces are sorted into the planes that cross them and joined by their halfedges.
 #include "ostraka/slicing/slice.h"
 
-#include "contour_classification.h"
-#include "joining.h"
+#include "slicing/contour_classification.h"
+#include "slicing/joining.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 

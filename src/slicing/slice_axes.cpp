@@ -2,11 +2,11 @@
 #include "ostraka/slicing/slice_axes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/line.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/stats/k_means.h"
 #include "ostraka/stats/summary.h"
 

@@ -2,11 +2,11 @@
 #include "ostraka/slicing/slice_descriptors.h"
 #include "ostraka/core/angles.h"
 
-#include "contour_classification.h"
-#include "segment_tree.h"
+#include "slicing/contour_classification.h"
+#include "slicing/segment_tree.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/planar.h"
 
 #include <fmt/core.h>

@@ -1,9 +1,9 @@
 #include "ostraka/slicing/sliced_object.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/slicing/curve_slices.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/summary.h"
+#include "slicing/curve_slices.h"
 
 #include <fmt/core.h>
 

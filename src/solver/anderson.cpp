@@ -1,7 +1,7 @@
-#include "anderson.h"
+#include "solver/anderson.h"
 
-#include "ostraka/core/dense.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/algebra/dense.h"
+#include "ostraka/execution/parallel.h"
 
 namespace ostraka::solver {
 

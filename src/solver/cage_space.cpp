@@ -1,11 +1,11 @@
 // The solver over the points of a cage. All quantities are expressed in displacements d = c - c0 of the cage from rest, so that
 // no digits are lost far from the origin: rows are r0 + M d with M = B W.
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/solver/solve.h"
 
-#include "kernels.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
+#include "solver/kernels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "ostraka/solver/constraint.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
-#include "create.h"
+#include "solver/create.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
-#include "constraint_rows.h"
+#include "solver/constraint_rows.h"
 
-#include "ostraka/core/disjoint_sets.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>

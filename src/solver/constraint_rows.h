@@ -1,7 +1,7 @@
 // Rows of B over the unknowns of a sparse system, and the matrices built from them.
 #pragma once
 
-#include "ostraka/core/cholesky.h"
+#include "ostraka/algebra/cholesky.h"
 #include "ostraka/solver/constraint.h"
 
 #include <span>

@@ -1,7 +1,7 @@
 // Declarations shared by the sources of constraint kinds.
 #pragma once
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/solver/make_constraint.h"
 
 namespace ostraka::solver {

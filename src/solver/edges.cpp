@@ -1,6 +1,6 @@
 // Constraints on differences of points: lengths, angles and directions.
-#include "create.h"
 #include "ostraka/core/angles.h"
+#include "solver/create.h"
 
 #include <algorithm>
 #include <cmath>

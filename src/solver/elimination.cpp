@@ -1,4 +1,4 @@
-#include "elimination.h"
+#include "solver/elimination.h"
 
 namespace ostraka::solver {
 

@@ -1,7 +1,7 @@
 // Linear constraints enforced exactly, by elimination from the normal equations.
 #pragma once
 
-#include "constraint_rows.h"
+#include "solver/constraint_rows.h"
 
 #include <functional>
 

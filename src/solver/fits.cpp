@@ -1,5 +1,5 @@
 // Constraints of points to positions, a surface, a line or a plane.
-#include "create.h"
+#include "solver/create.h"
 
 namespace ostraka::solver {
 

@@ -1,4 +1,4 @@
-#include "kernels.h"
+#include "solver/kernels.h"
 
 // Eight separate sums and no fused operations give the same bits for every vector width.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)

@@ -1,5 +1,5 @@
 // Laplacian constraints (weighted mean of the neighbours minus the point), and bending across an edge.
-#include "create.h"
+#include "solver/create.h"
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // Constraints on stations of an axis, levels, mirrored pairs and proportions.
-#include "create.h"
+#include "solver/create.h"
 
 #include <fmt/core.h>
 

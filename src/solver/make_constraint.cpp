@@ -1,6 +1,6 @@
 #include "ostraka/solver/make_constraint.h"
 
-#include "create.h"
+#include "solver/create.h"
 
 #include <fmt/core.h>
 

@@ -1,10 +1,10 @@
 // The solver over the points themselves.
 #include "ostraka/solver/solve.h"
 
-#include "constraint_rows.h"
-#include "elimination.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
+#include "solver/constraint_rows.h"
+#include "solver/elimination.h"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // Groups that are rotated rigidly: to a plane normal, onto an axis, to an angle with a direction.
-#include "create.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
+#include "solver/create.h"
 
 #include <cmath>
 

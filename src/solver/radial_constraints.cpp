@@ -1,6 +1,6 @@
 // Circles and spheres: geometric least squares by damped Gauss-Newton, initialised by the algebraic fit.
-#include "create.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
+#include "solver/create.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Groups of points that keep their shape up to a class of motions, and quadrilaterals.
-#include "create.h"
 #include "ostraka/core/angles.h"
+#include "solver/create.h"
 
 #include <cmath>
 

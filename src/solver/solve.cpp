@@ -1,9 +1,9 @@
 #include "ostraka/solver/solve.h"
 
-#include "anderson.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
+#include "solver/anderson.h"
 
 #include <cmath>
 #include <sstream>

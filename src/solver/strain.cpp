@@ -1,5 +1,5 @@
 // Edges, triangles and tetrahedra with limited strain (ShapeUp; Bouaziz et al. 2014, Projective Dynamics).
-#include "create.h"
+#include "solver/create.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "ostraka/stats/boosted_trees.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "check_samples.h"
+#include "stats/check_samples.h"
 
 #include "ostraka/core/error.h"
 

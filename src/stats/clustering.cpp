@@ -1,10 +1,10 @@
 #include "ostraka/stats/clustering.h"
 #include "ostraka/core/angles.h"
 
-#include "check_samples.h"
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/disjoint_sets.h"
+#include "stats/check_samples.h"
 
 #include <algorithm>
 #include <cmath>

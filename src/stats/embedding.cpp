@@ -1,8 +1,8 @@
 #include "ostraka/stats/embedding.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
-#include "check_samples.h"
 #include "ostraka/core/error.h"
+#include "stats/check_samples.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "ostraka/stats/k_means.h"
 
-#include "check_samples.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
+#include "stats/check_samples.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Synthetic animals: an elephant and a bird.
-#include "builder.h"
+#include "synthetic/builder.h"
 
 namespace ostraka::shapes {
 

@@ -1,5 +1,5 @@
 // Synthetic figures: a hand and a statuette with a drum.
-#include "builder.h"
+#include "synthetic/builder.h"
 
 namespace ostraka::shapes {
 

@@ -1,5 +1,5 @@
 // Synthetic furniture: an armchair.
-#include "builder.h"
+#include "synthetic/builder.h"
 
 namespace ostraka::shapes {
 

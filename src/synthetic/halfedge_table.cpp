@@ -1,4 +1,4 @@
-#include "uniform_remesher.h"
+#include "synthetic/uniform_remesher.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "ostraka/synthetic/heads.h"
 
-#include "builder.h"
 #include "ostraka/stats/random.h"
+#include "synthetic/builder.h"
 
 #include <algorithm>
 #include <cmath>

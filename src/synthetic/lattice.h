@@ -1,7 +1,7 @@
 // Closed triangle meshes of implicit surfaces by marching tetrahedra on a body-centred cubic lattice.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/synthetic/synthetic_object.h"
 
 #include <Eigen/Geometry>

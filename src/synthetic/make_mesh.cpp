@@ -1,11 +1,11 @@
 #include "ostraka/synthetic/make_mesh.h"
 
-#include "lattice.h"
-#include "uniform_remesher.h"
+#include "synthetic/lattice.h"
+#include "synthetic/uniform_remesher.h"
 
-#include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/memory.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/disjoint_sets.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "builder.h"
+#include "synthetic/builder.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

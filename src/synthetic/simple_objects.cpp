@@ -1,6 +1,6 @@
 // Objects with closed-form area and volume.
-#include "builder.h"
 #include "ostraka/core/angles.h"
+#include "synthetic/builder.h"
 
 namespace ostraka::shapes {
 

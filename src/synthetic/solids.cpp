@@ -1,6 +1,6 @@
 #include "ostraka/synthetic/solid.h"
 
-#include "spline.h"
+#include "synthetic/spline.h"
 
 #include "ostraka/core/error.h"
 

@@ -1,7 +1,7 @@
 // Components of a synthetic statuette.
 #pragma once
 
-#include "warp.h"
+#include "synthetic/warp.h"
 
 #include "ostraka/synthetic/statuettes.h"
 

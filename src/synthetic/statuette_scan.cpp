@@ -2,9 +2,9 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/synthetic/statuettes.h"
 
-#include "statuette_build.h"
+#include "synthetic/statuette_build.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/random.h"

@@ -1,9 +1,9 @@
 #include "ostraka/synthetic/statuettes.h"
 #include "ostraka/core/angles.h"
 
-#include "builder.h"
-#include "statuette_build.h"
-#include "warp.h"
+#include "synthetic/builder.h"
+#include "synthetic/statuette_build.h"
+#include "synthetic/warp.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/stats/random.h"

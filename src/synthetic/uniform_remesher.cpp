@@ -1,7 +1,7 @@
-#include "uniform_remesher.h"
+#include "synthetic/uniform_remesher.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 // Remeshes the irregular triangles of a marched surface into a given number of uniform triangles, without leaving the surface.
 #pragma once
 
-#include "lattice.h"
+#include "synthetic/lattice.h"
 
 namespace ostraka::shapes {
 

@@ -1,6 +1,6 @@
 // Synthetic vessels: the flowered teapot and the vase.
-#include "builder.h"
 #include "ostraka/core/angles.h"
+#include "synthetic/builder.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include "warp.h"
+#include "synthetic/warp.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 
 namespace ostraka::shapes {
 

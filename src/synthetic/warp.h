@@ -1,7 +1,7 @@
 // Warped bodies: horizontal sections of a solid are shifted, and the surface is displaced radially from their centres.
 #pragma once
 
-#include "spline.h"
+#include "synthetic/spline.h"
 
 #include "ostraka/synthetic/solid.h"
 

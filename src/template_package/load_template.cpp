@@ -1,11 +1,11 @@
 // Checks the parts of a template, separately and together.
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/npy.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/npy.h"
+#include "ostraka/files/safe_path.h"
+#include "ostraka/mesh/limits.h"
 #include "ostraka/relation/rules.h"
 #include "ostraka/template_package/template.h"
 

@@ -1,8 +1,8 @@
 // *.template.json
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/template_package/template.h"
 
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "attribute_carrier.h"
+#include "transfer/attribute_carrier.h"
 
 namespace ostraka {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "path_tracer.h"
+#include "transfer/path_tracer.h"
 
 #include <optional>
 #include <tuple>

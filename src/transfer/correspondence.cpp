@@ -1,8 +1,8 @@
 #include "ostraka/transfer/correspondence.h"
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <Eigen/Geometry>
 

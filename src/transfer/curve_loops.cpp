@@ -1,9 +1,9 @@
-#include "curve_loops.h"
+#include "transfer/curve_loops.h"
 
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/distance.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

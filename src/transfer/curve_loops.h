@@ -1,8 +1,8 @@
 // Removal of small loops and small parts that arise when curves are projected onto another surface.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_point.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

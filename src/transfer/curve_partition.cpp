@@ -1,10 +1,10 @@
-#include "curve_partition.h"
+#include "transfer/curve_partition.h"
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

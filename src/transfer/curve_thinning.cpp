@@ -1,4 +1,4 @@
-#include "curve_thinning.h"
+#include "transfer/curve_thinning.h"
 
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/shortest_path.h"

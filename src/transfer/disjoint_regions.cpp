@@ -1,6 +1,6 @@
-#include "disjoint_regions.h"
+#include "transfer/disjoint_regions.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <map>

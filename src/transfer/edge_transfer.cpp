@@ -1,9 +1,9 @@
-#include "edge_transfer.h"
+#include "transfer/edge_transfer.h"
 
-#include "disjoint_regions.h"
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/parallel.h"
-#include "outline_rounding.h"
+#include "ostraka/execution/parallel.h"
+#include "transfer/disjoint_regions.h"
+#include "transfer/outline_rounding.h"
 
 #include <algorithm>
 #include <map>

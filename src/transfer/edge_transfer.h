@@ -1,8 +1,8 @@
 // Transfer of annotations along the edges of the target.
 #pragma once
 
-#include "path_tracer.h"
-#include "region_transfer.h"
+#include "transfer/path_tracer.h"
+#include "transfer/region_transfer.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
-#include "face_parts.h"
+#include "transfer/face_parts.h"
 
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 // Partition of the faces of a mesh along the outlines of all regions.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <utility>
 #include <vector>

@@ -1,10 +1,10 @@
 #include "ostraka/transfer/misalignment.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/execution/parallel.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
-#include "outline_rounding.h"
+#include "transfer/outline_rounding.h"
 
 #include "ostraka/core/progress.h"
-#include "scores.h"
+#include "transfer/scores.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "path_tracer.h"
-#include "region_transfer.h"
+#include "transfer/path_tracer.h"
+#include "transfer/region_transfer.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "path_tracer.h"
+#include "transfer/path_tracer.h"
 
 #include "ostraka/geom/distance.h"
 

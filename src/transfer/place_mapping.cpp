@@ -1,7 +1,7 @@
-#include "place_mapping.h"
+#include "transfer/place_mapping.h"
 
-#include "ostraka/core/limits.h"
 #include "ostraka/geom/distance.h"
+#include "ostraka/mesh/limits.h"
 
 #include <Eigen/Dense>
 

@@ -1,20 +1,20 @@
 #include "ostraka/transfer/project_curves.h"
 
-#include "curve_loops.h"
-#include "curve_partition.h"
-#include "curve_thinning.h"
 #include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/distance.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
-#include "place_mapping.h"
-#include "region_settling.h"
+#include "ostraka/mesh/limits.h"
+#include "transfer/curve_loops.h"
+#include "transfer/curve_partition.h"
+#include "transfer/curve_thinning.h"
+#include "transfer/place_mapping.h"
+#include "transfer/region_settling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "region_settling.h"
+#include "transfer/region_settling.h"
 
-#include "curve_loops.h"
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/flood.h"
-#include "ostraka/core/limits.h"
 #include "ostraka/geom/insert_curves.h"
-#include "region_transfer.h"
-#include "scores.h"
+#include "ostraka/mesh/flood.h"
+#include "ostraka/mesh/limits.h"
+#include "transfer/curve_loops.h"
+#include "transfer/region_transfer.h"
+#include "transfer/scores.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "region_transfer.h"
+#include "transfer/region_transfer.h"
 
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/flood.h"
 #include "ostraka/core/progress.h"
-#include "scores.h"
+#include "ostraka/mesh/flood.h"
+#include "transfer/scores.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Interior of transferred regions.
 #pragma once
 
-#include "face_parts.h"
 #include "ostraka/annotation/annotation.h"
-#include "path_tracer.h"
+#include "transfer/face_parts.h"
+#include "transfer/path_tracer.h"
 
 #include <functional>
 #include <mutex>

@@ -1,6 +1,6 @@
-#include "scores.h"
+#include "transfer/scores.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,16 +1,16 @@
 #include "ostraka/transfer/transfer.h"
 
-#include "attribute_carrier.h"
-#include "curve_partition.h"
-#include "edge_transfer.h"
 #include "ostraka/annotation/curves.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/transfer/project_curves.h"
-#include "scores.h"
+#include "transfer/attribute_carrier.h"
+#include "transfer/curve_partition.h"
+#include "transfer/edge_transfer.h"
+#include "transfer/scores.h"
 
 #include <algorithm>
 #include <optional>

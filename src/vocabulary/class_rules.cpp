@@ -4,7 +4,7 @@
 #include "ostraka/vocabulary/tag_matcher.h"
 #include "ostraka/vocabulary/text_match.h"
 
-#include "words.h"
+#include "vocabulary/words.h"
 
 #include <fmt/core.h>
 

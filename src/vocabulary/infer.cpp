@@ -1,10 +1,10 @@
 #include "ostraka/vocabulary/infer.h"
 
-#include "ostraka/core/ids.h"
 #include "ostraka/core/text.h"
+#include "ostraka/mesh/ids.h"
 #include "ostraka/vocabulary/text_match.h"
 
-#include "words.h"
+#include "vocabulary/words.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "owl.h"
+#include "vocabulary/owl.h"
 
-#include "skos_terms.h"
+#include "vocabulary/skos_terms.h"
 
 #include "ostraka/core/message_text.h"
 

@@ -1,7 +1,7 @@
 // Converts OWL classes to SKOS concepts.
 #pragma once
 
-#include "rdf.h"
+#include "vocabulary/rdf.h"
 
 namespace ostraka {
 

@@ -1,8 +1,8 @@
-#include "rdf.h"
+#include "vocabulary/rdf.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json.h"
 
 #include <raptor.h>
 

@@ -1,8 +1,8 @@
 // Converts SKOS to a vocabulary.
-#include "owl.h"
-#include "rdf.h"
-#include "rules_json.h"
-#include "skos_terms.h"
+#include "vocabulary/owl.h"
+#include "vocabulary/rdf.h"
+#include "vocabulary/rules_json.h"
+#include "vocabulary/skos_terms.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

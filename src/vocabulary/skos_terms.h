@@ -1,8 +1,8 @@
 // URIs used in SKOS files.
 #pragma once
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/file.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // Validation of vocabularies, and VocabularySearch.
 #include "ostraka/vocabulary/vocabulary.h"
 
-#include "skos_terms.h"
+#include "vocabulary/skos_terms.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/vocabulary/text_match.h"

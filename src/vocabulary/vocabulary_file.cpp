@@ -1,12 +1,12 @@
 // Converts vocabularies to and from JSON.
-#include "rules_json.h"
-#include "skos_terms.h"
+#include "vocabulary/rules_json.h"
+#include "vocabulary/skos_terms.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/vocabulary/skos.h"
 
-#include "words.h"
+#include "vocabulary/words.h"
 
 #include <fmt/core.h>
 

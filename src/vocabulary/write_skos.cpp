@@ -1,6 +1,6 @@
 // Converts a vocabulary to SKOS.
-#include "rdf.h"
-#include "skos_terms.h"
+#include "vocabulary/rdf.h"
+#include "vocabulary/skos_terms.h"
 
 #include "ostraka/vocabulary/skos.h"
 

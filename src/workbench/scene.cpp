@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "workbench/scene.h"
 
 #include "ostraka/operations/page_results.h"
 #include "ostraka/render/values.h"

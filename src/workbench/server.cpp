@@ -1,8 +1,8 @@
 // The only file that uses Boost.Beast.
 #include "ostraka/workbench/server.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/page/content_policy.h"
 
 #include <fmt/core.h>

@@ -1,10 +1,10 @@
 #include "ostraka/workbench/session.h"
 
-#include "session_names.h"
+#include "workbench/session_names.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/safe_path.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/template_package/template.h"
 

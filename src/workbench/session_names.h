@@ -1,7 +1,7 @@
 // Names of objects, parts and files of a session.
 #pragma once
 
-#include "request.h"
+#include "workbench/request.h"
 
 #include "ostraka/core/message_text.h"
 #include "ostraka/workbench/session.h"

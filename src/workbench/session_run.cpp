@@ -1,8 +1,8 @@
 // Runs operations as steps of a session.
-#include "session_names.h"
+#include "workbench/session_names.h"
 
-#include "ostraka/core/json_build.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/safe_path.h"
 
 #include <fmt/core.h>
 

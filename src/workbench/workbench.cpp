@@ -1,12 +1,12 @@
 #include "ostraka/workbench/workbench.h"
 
-#include "request.h"
-#include "scene.h"
+#include "workbench/request.h"
+#include "workbench/scene.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/select/recipe.h"

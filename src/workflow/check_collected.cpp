@@ -1,5 +1,5 @@
 // Checks the tables, plots and the page of a study before the first step runs.
-#include "row_sources.h"
+#include "workflow/row_sources.h"
 
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"

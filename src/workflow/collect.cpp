@@ -1,12 +1,12 @@
 #include "ostraka/workflow/collect.h"
 
-#include "row_sources.h"
+#include "workflow/row_sources.h"
 
-#include "ostraka/core/csv.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/report/markdown.h"
-#include "ostraka/report/plot.h"
+#include "ostraka/figures/markdown.h"
+#include "ostraka/figures/plot.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json_build.h"
 
 #include <fmt/core.h>
 

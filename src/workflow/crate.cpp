@@ -1,7 +1,7 @@
 #include "ostraka/workflow/crate.h"
 
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/json_build.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "ostraka/workflow/file_pattern.h"
+#include "workflow/file_pattern.h"
 
 #include "ostraka/core/progress.h"
 

@@ -1,9 +1,9 @@
 #include "ostraka/workflow/record.h"
 
 #include "ostraka/collection/objects.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/safe_path.h"
 
 #include <fmt/core.h>
 

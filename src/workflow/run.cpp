@@ -1,16 +1,16 @@
 #include "ostraka/workflow/run.h"
 
-#include "run_folder.h"
+#include "workflow/run_folder.h"
 
-#include "ostraka/core/child_process.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/core/parallel.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/stopwatch.h"
-#include "ostraka/core/transaction.h"
-#include "ostraka/operation/object_files.h"
+#include "ostraka/execution/child_process.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/json_build.h"
+#include "ostraka/files/safe_path.h"
+#include "ostraka/files/transaction.h"
+#include "ostraka/framework/object_files.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
-#include "run_folder.h"
+#include "workflow/run_folder.h"
 
 #include "ostraka/core/progress.h"
-#include "ostraka/core/safe_path.h"
+#include "ostraka/files/safe_path.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -3,8 +3,8 @@
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/core/safe_path.h"
-#include "ostraka/workflow/file_pattern.h"
+#include "ostraka/files/safe_path.h"
+#include "workflow/file_pattern.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 // The built command, as people run it.
 #include "annotation/example_meshes.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"
 

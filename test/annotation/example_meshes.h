@@ -1,7 +1,7 @@
 // Small meshes for the tests of annotations, selections and measures.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <map>

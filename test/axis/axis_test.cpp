@@ -3,7 +3,7 @@
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/synthetic/synthetic_object.h"

@@ -4,8 +4,8 @@
 #include "scratch.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/npy.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/npy.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/stats/scores.h"
 #include "ostraka/synthetic/head_casts.h"

@@ -4,7 +4,7 @@
 #include "scratch.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <atomic>

@@ -5,9 +5,9 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/measure_definitions.h"
 #include "ostraka/collection/measure_table.h"
-#include "ostraka/core/csv.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "ostraka/collection/proportions.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
 
 #include <gtest/gtest.h>

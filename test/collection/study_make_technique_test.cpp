@@ -1,7 +1,7 @@
 // `ostraka study make technique` as people run it.
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/objects.h"
-#include "ostraka/core/csv.h"
+#include "ostraka/files/csv.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
 #include "scratch.h"

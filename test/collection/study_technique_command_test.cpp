@@ -1,7 +1,7 @@
 // `ostraka study technique` and `ostraka study segments` as people run them.
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/core/csv.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/csv.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/synthetic/statuettes.h"
 #include "scratch.h"

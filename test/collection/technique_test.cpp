@@ -1,7 +1,7 @@
 // Technique: descriptors of bodies whose deviations are known, and answers of populations whose truth is.
 #include "ostraka/collection/technique_study.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/synthetic/statuettes.h"
 

@@ -2,8 +2,8 @@
 // the class stands in src/operations/mesh/edges.cpp and its entry in src/operations/table.cpp; the command, its help, the JSON
 // schema and the Python function follow from the declaration.
 #include <ostraka/core/error.h>
-#include <ostraka/core/parallel.h>
-#include <ostraka/operation/operation.h>
+#include <ostraka/execution/parallel.h>
+#include <ostraka/framework/operation.h>
 #include <ostraka/synthetic/make_mesh.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "cages.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/npy.h"
+#include "ostraka/files/npy.h"
 #include "scratch.h"
 
 namespace ostraka {

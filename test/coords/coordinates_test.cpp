@@ -3,7 +3,7 @@
 #include "ostraka/coords/certificate.h"
 #include "ostraka/coords/influence.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <cstring>
 

@@ -3,8 +3,8 @@
 #include "ostraka/coords/certificate.h"
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/npy.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
+#include "ostraka/files/npy.h"
 #include "scratch.h"
 
 #include <cmath>

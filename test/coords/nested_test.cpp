@@ -4,7 +4,7 @@
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/certificate.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/fields/statistics.h"
 
 #include <gtest/gtest.h>

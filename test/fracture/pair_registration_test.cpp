@@ -1,7 +1,7 @@
 #include "ostraka/fracture/pair_registration.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/fracture/facets.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"

@@ -1,7 +1,7 @@
 #include "child.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <linux/landlock.h>
 

@@ -1,7 +1,7 @@
 // One run: in a separate process with limits, which can write only into the folder of all runs.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <functional>
 #include <mutex>

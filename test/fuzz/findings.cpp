@@ -1,7 +1,7 @@
 #include "findings.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 
 #include <algorithm>
 #include <array>

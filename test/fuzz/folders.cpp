@@ -2,8 +2,8 @@
 #include "subjects.h"
 
 #include "ostraka/conformance/kit.h"
-#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/operations/table.h"
 #include "ostraka/workbench/workbench.h"
 

@@ -3,7 +3,7 @@
 
 #include "dice.h"
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <functional>
 #include <string>

@@ -1,7 +1,7 @@
 // Cases of the conformance kit as subjects, and what all subjects share.
 #include "subjects.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/operations/table.h"
 
 #include <algorithm>

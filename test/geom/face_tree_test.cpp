@@ -1,7 +1,7 @@
 #include "../../src/geom/face_tree.h"
 
 #include "meshes.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Attributes as a table: there and back, edited, damaged; no cell is a formula.
-#include "ostraka/interchange/attribute_table.h"
+#include "interchange/attribute_table.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
 #include "sets.h"

@@ -1,5 +1,5 @@
 // What we write, read by programs that are not ours.
-#include "ostraka/interchange/attribute_table.h"
+#include "interchange/attribute_table.h"
 #include "ostraka/interchange/landmarks.h"
 #include "scratch.h"
 #include "sets.h"

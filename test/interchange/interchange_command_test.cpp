@@ -1,5 +1,5 @@
 // The built command: export, import, edit, diff and merge on good and bad input, and on real landmarks.
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/interchange/interchange.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"

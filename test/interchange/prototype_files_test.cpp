@@ -1,5 +1,5 @@
 // The prototype's .ant and .fct: there and back, what is lost, damage.
-#include "ostraka/interchange/prototype_files.h"
+#include "interchange/prototype_files.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
 #include "sets.h"

@@ -1,6 +1,6 @@
 // Files that are small, or plain, and would take very much time or memory if each pair were looked at.
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"

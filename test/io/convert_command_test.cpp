@@ -1,6 +1,6 @@
 // `mesh convert` as people run it: right, wrong and impossible input.
 #include "io_examples.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "ostraka/io/diagnose.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "soups.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // A GLB file's container, counts, bounds and bytes follow glTF 2.0.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The built commands mesh info and mesh repair, as users run them.
-#include "ostraka/core/file.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "soups.h"
 

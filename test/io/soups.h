@@ -1,7 +1,7 @@
 // Small soups with known answers for the tests of diagnosis and repair.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <map>

@@ -30,6 +30,9 @@ refuses src/io/a.cpp '#include "ostraka/nowhere/a.h"' 'module nowhere is not in 
 refuses src/io/a.cpp '#include "../render/canvas.h"' 'by a path'
 refuses src/nowhere/a.cpp '#include <vector>' 'module nowhere is not in the table'
 refuses src/a.cpp '#include <vector>' 'belongs to no module'
+refuses src/io/a.cpp '#include "render/canvas.h"' 'src/io/a.cpp:1: includes render/canvas.h, a private header of render'
+refuses src/io/a.cpp '#include "formats.h"' 'write "io/formats.h"'
+accepts src/io/a.cpp '#include "io/formats.h"'
 mkdir -p "$scratch/include/ostraka/io"
 printf 'namespace ostraka {\nstruct Same {\n};\n}\n' >"$scratch/include/ostraka/core/same.h"
 refuses src/io/same.h 'namespace ostraka {

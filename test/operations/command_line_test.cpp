@@ -1,7 +1,7 @@
 // What stands on the command line, right and wrong, whatever the operation.
-#include "ostraka/core/child_process.h"
-#include "ostraka/core/json.h"
 #include "ostraka/core/stopwatch.h"
+#include "ostraka/execution/child_process.h"
+#include "ostraka/files/json.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>

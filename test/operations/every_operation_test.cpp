@@ -1,7 +1,7 @@
 // Laws of the whole table: every operation is declared soundly, its report keeps its schema, and from objects in memory it gives
 // the same bytes as from files.
 #include "calls.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/vocabulary/vocabulary.h"
 #include "scratch.h"

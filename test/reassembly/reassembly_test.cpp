@@ -1,7 +1,7 @@
 #include "ostraka/reassembly/reassembly.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/reassembly/suspicious_fragments.h"

@@ -4,7 +4,7 @@
 #include "meshes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"

@@ -1,7 +1,7 @@
 #include "scratch.h"
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "pieces.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 

@@ -3,7 +3,7 @@
 #include "pieces.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "sherds.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reconstruction/open_rotations.h"
 #include "ostraka/stats/random.h"

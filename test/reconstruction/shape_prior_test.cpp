@@ -4,7 +4,7 @@
 #include "pieces.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

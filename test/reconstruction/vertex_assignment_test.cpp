@@ -5,7 +5,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <gtest/gtest.h>

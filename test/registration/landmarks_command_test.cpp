@@ -1,7 +1,7 @@
 // `ostraka study landmarks` as users run it.
 #include "scratch.h"
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/registration/procrustes.h"
 #include "ostraka/stats/random.h"

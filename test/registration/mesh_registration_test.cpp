@@ -4,8 +4,8 @@
 #include "select/real_mesh.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/remesh/simplify.h"

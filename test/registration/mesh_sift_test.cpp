@@ -3,7 +3,7 @@
 #include "registration/heads.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/submesh.h"
 
 #include <gtest/gtest.h>

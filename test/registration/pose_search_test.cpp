@@ -3,10 +3,10 @@
 #include "meshes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/registration/pair_votes.h"
 #include "ostraka/synthetic/fragments.h"
+#include "registration/pair_votes.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "scratch.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/stats/embedding.h"
 #include "ostraka/stats/random.h"

@@ -1,5 +1,5 @@
 // mesh register, as people run it.
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/synthetic/make_mesh.h"

@@ -1,7 +1,7 @@
 // Drawings of graphs: no bracket lies on another, and the tree is that of the containment.
 #include "ostraka/relation/layout.h"
 #include "ostraka/core/error.h"
-#include "ostraka/report/bracket_graph.h"
+#include "ostraka/figures/bracket_graph.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The built command, as people run it.
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "scratch.h"
 

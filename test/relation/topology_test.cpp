@@ -2,7 +2,7 @@
 #include "ostraka/relation/topology.h"
 
 #include "meshes.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/relation/rules.h"
 
 #include <gtest/gtest.h>

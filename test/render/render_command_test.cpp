@@ -1,5 +1,5 @@
 // `ostraka render` as people run it.
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/render/colour_scale.h"
 #include "read_png.h"
 #include "scenes.h"

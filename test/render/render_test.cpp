@@ -1,6 +1,6 @@
 #include "ostraka/render/render.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "read_png.h"
 #include "scenes.h"
 #include "scratch.h"

@@ -1,7 +1,7 @@
 #include "scratch.h"
 
-#include "ostraka/core/file.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/file.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/template_package/template.h"
 #include "shatter.h"

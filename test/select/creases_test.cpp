@@ -5,7 +5,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/synthetic/make_mesh.h"
 

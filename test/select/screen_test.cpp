@@ -1,4 +1,4 @@
-#include "ostraka/select/screen.h"
+#include "select/screen.h"
 
 #include "annotation/example_meshes.h"
 #include "ostraka/render/render.h"

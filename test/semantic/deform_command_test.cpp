@@ -1,5 +1,5 @@
 // 'ostraka cage make', 'cage check' and 'deform', as people run them.
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
 #include "scratch.h"

@@ -1,5 +1,5 @@
 #include "ostraka/shape_classes/landmark_class.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/shape_classes/class_file.h"
 #include "scratch.h"

@@ -1,4 +1,4 @@
-#include "ostraka/shape_classes/parts.h"
+#include "shape_classes/parts.h"
 
 #include "shape_classes/towers.h"
 

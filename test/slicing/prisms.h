@@ -1,7 +1,7 @@
 // Walls over planar figures, whose slices are known exactly.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

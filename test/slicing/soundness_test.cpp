@@ -1,13 +1,13 @@
 // Meshes that pass through themselves, or whose shells are not oriented alike: what is said of them, and what is left unsaid.
 #include "ostraka/slicing/clay.h"
-#include "ostraka/slicing/curve_slices.h"
 #include "ostraka/slicing/medial_axis.h"
 #include "ostraka/slicing/slice_descriptors.h"
+#include "slicing/curve_slices.h"
 
 #include "meshes.h"
 #include "prisms.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

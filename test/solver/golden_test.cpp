@@ -1,7 +1,7 @@
 // test/solver/golden_projections.json: each example's B, rows and projection, so that another implementation can be checked kind
 // by kind. With OSTRAKA_WRITE_GOLDEN=FILE in the environment, the test writes such a file instead.
 #include "examples.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <gtest/gtest.h>
 

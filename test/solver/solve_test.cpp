@@ -1,6 +1,6 @@
 // The solver: against a dense reference, on singular and contradictory systems, for any number of threads.
 #include "ostraka/solver/solve.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/solver/make_constraint.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "ostraka/synthetic/make_mesh.h"
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "meshes.h"
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"

@@ -2,7 +2,7 @@
 #include "ostraka/synthetic/statuettes.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

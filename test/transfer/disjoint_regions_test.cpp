@@ -2,7 +2,7 @@
 
 #include "annotation/example_meshes.h"
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/remesh/simplify.h"

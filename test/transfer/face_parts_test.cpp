@@ -3,7 +3,7 @@
 #include "meshes.h"
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/annotation/outline.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 
 #include <gtest/gtest.h>
 

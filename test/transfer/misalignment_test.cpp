@@ -1,7 +1,7 @@
 #include "ostraka/transfer/misalignment.h"
 
 #include "meshes.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/synthetic/make_mesh.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/fair_outlines.h"
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "ostraka/transfer/bound_mesh.h"
 #include "ostraka/transfer/transfer.h"

@@ -1,7 +1,7 @@
 // The built command, as people run it.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "scratch.h"

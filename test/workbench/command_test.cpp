@@ -1,7 +1,7 @@
 // The workbench as a command: what its address is given to, and how it ends.
 #include "scratch.h"
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <gtest/gtest.h>
 

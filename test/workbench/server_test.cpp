@@ -2,8 +2,8 @@
 #include "meshes.h"
 #include "scratch.h"
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/page/content_policy.h"
 #include "ostraka/workbench/server.h"

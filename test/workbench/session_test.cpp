@@ -3,7 +3,7 @@
 #include "mutate.h"
 #include "scratch.h"
 
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/workbench/workbench.h"
 

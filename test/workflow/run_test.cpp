@@ -1,8 +1,8 @@
 // Studies that run: what is done is not done again, whatever stops them, however many threads there are.
 #include "ostraka/core/text.h"
 #include "ostraka/workflow/crate.h"
-#include "ostraka/workflow/file_pattern.h"
 #include "studies.h"
+#include "workflow/file_pattern.h"
 
 #include <atomic>
 #include <map>

@@ -1,7 +1,7 @@
 // The studies that come with the toolkit: all that they compute is shown.
 #include "studies.h"
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <filesystem>
 #include <set>

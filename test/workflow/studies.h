@@ -1,7 +1,7 @@
 // Shared by the tests of studies.
 #pragma once
 
-#include "ostraka/core/parallel.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/operations/table.h"
 #include "ostraka/workflow/collect.h"
 #include "scratch.h"

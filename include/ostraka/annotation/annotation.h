@@ -1,9 +1,9 @@
 // Annotations: statements about parts of a mesh (thesis, section 2.2: A = (I, S, P)).
 #pragma once
 
-#include "ostraka/core/json.h"
-#include "ostraka/core/mesh.h"
+#include "ostraka/files/json.h"
 #include "ostraka/geom/surface_point.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <optional>

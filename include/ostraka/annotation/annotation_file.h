@@ -4,7 +4,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/core/options.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/provenance.h"
 
 namespace ostraka {
 

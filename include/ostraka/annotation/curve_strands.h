@@ -1,8 +1,8 @@
 // Splits the curves of several annotations at their junctions, so that shared stretches are processed once.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_point.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

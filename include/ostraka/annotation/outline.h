@@ -1,7 +1,7 @@
 // Outlines of regions: extraction (thesis, Algorithm 4, with its erratum) and filling (section 2.4.1).
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 namespace ostraka {
 

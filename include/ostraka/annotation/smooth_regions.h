@@ -1,7 +1,7 @@
 // Smooth borders of regions for display, where the regions' outlines zigzag along the edges of the mesh.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <vector>

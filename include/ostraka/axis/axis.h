@@ -1,8 +1,8 @@
 // Axes of objects and of annotated parts: principal, of slices, of rotation, of the skeleton; or the reason why there is none.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <string>
 #include <vector>

@@ -4,8 +4,8 @@
 
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/finding.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 #include <optional>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/collection/object_part.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/registration/align.h"
 #include "ostraka/registration/consistent.h"
 #include "ostraka/registration/mesh_sift.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/collection/objects.h"
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/vocabulary/tag_matcher.h"
 
 #include <exception>

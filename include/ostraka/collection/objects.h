@@ -2,8 +2,8 @@
 // and finished results are not computed again.
 #pragma once
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/shard.h"
+#include "ostraka/files/json.h"
 
 #include <functional>
 #include <map>

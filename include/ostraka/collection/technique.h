@@ -2,9 +2,9 @@
 // and 3.2.1).
 #pragma once
 
-#include "ostraka/core/json.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/json.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <limits>

@@ -1,7 +1,7 @@
 // The conformance kit: golden cases of every operation, and the evaluation of other programs on them.
 #pragma once
 
-#include "ostraka/operation/operation.h"
+#include "ostraka/framework/operation.h"
 
 #include <memory>
 #include <optional>

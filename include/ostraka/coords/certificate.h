@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/coords/coordinates.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <optional>
 

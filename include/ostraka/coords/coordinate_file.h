@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/coords/certificate.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/provenance.h"
 
 #include <optional>
 

@@ -2,8 +2,8 @@
 // triangle mesh, so that moving the cage moves the points (thesis, section 4.1.3; doc/coordinates.md).
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>

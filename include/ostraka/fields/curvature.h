@@ -1,8 +1,8 @@
 // Discrete mean and Gaussian curvature: values at vertices, and integrals over faces.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Statistics of values on a mesh over a region.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/stats/summary.h"
 
 #include <string>

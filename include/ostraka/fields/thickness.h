@@ -1,8 +1,8 @@
 // Thickness of a solid under each face: the shape diameter function.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Patch graph of a fragment's surface: the units that are classified.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // Registers two fragments along their common fracture.
 #pragma once
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/json.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/fracture/join_evidence.h"
 

@@ -1,8 +1,8 @@
 // The region enclosed by closed curves on the surface, computed without adding vertices.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_trace.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 #include <utility>

@@ -1,7 +1,7 @@
 // Diffusion on a surface: smoothing whose strength is a length, independent of the triangulation.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

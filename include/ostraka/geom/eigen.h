@@ -1,7 +1,7 @@
 // Conversion of points and vectors to and from Eigen.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

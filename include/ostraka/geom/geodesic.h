@@ -1,8 +1,8 @@
 // Exact geodesic distances on a triangle mesh: lengths of the shortest curves across faces.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_trace.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <limits>
 #include <optional>

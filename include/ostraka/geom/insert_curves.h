@@ -1,8 +1,8 @@
 // Insertion of surface curves as edges of the mesh.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_trace.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <map>
 #include <utility>

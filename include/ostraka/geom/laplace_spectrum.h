@@ -1,7 +1,7 @@
 // Laplacian spectrum of a surface, which is invariant under isometric bending.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

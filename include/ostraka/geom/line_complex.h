@@ -1,7 +1,7 @@
 // Axis of a surface of revolution from its normals.
 #pragma once
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <algorithm>

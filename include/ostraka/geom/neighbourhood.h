@@ -1,7 +1,7 @@
 // Vertices or faces inside a ball that are connected with its centre within the ball.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,7 +1,7 @@
 // Point-to-plane registration steps.
 #pragma once
 
-#include "ostraka/core/dense.h"
+#include "ostraka/algebra/dense.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Spatial search for points (k-d tree).
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <limits>
 #include <memory>

@@ -1,7 +1,7 @@
 // Distances between curves given as segments.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <utility>
 #include <vector>

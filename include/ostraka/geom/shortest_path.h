@@ -1,7 +1,7 @@
 // Shortest edge paths between vertices (thesis, Algorithm 3 with its erratum).
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 #include <string>

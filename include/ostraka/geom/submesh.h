@@ -1,7 +1,7 @@
 // A subset of the faces of a mesh as a separate mesh.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Points on the surface of a mesh.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <compare>

@@ -1,7 +1,7 @@
 // Nearest-point and segment queries on a mesh, with a tree of bounding boxes and normal cones.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 #include <memory>

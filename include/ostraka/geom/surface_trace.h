@@ -1,8 +1,8 @@
 // Straight lines traced over a mesh from face to face.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_point.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 // A mesh with new vertex positions.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 // Diagnosis of a triangle soup: topology, size, self-intersections.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/oriented_box.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <string>
 #include <utility>

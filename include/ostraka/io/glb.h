@@ -1,7 +1,7 @@
 // Container format and data tables of binary glTF 2.0 files.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <cstdint>
 #include <map>

@@ -1,8 +1,8 @@
 // Mesh files: strict reading, atomic writing; the order of vertices is kept.
 #pragma once
 
-#include "ostraka/core/file.h"
-#include "ostraka/core/mesh.h"
+#include "ostraka/files/file.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Additional properties in PLY files.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <array>
 #include <string>

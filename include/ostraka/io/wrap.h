@@ -1,7 +1,7 @@
 // Watertight wrap of any triangle soup.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 namespace ostraka {
 

@@ -1,7 +1,7 @@
 // The solid bounded by a region: its faces with their outlines closed.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/json_build.h"
+#include "ostraka/files/json_build.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/page/page.h"
 

@@ -1,7 +1,7 @@
 // The table of all operations.
 #pragma once
 
-#include "ostraka/operation/operation.h"
+#include "ostraka/framework/operation.h"
 
 namespace ostraka {
 

@@ -1,9 +1,9 @@
 // Point clouds of fragments: reading, normal estimation, surface reconstruction.
 #pragma once
 
-#include "ostraka/core/file.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/file.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <optional>
 #include <string>

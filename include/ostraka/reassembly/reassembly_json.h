@@ -1,7 +1,7 @@
 // Reassemblies and pair results as JSON.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/reassembly/reassembly.h"
 
 namespace ostraka {

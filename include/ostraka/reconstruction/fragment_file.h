@@ -1,8 +1,8 @@
 // Reads a fragment from its files: mesh or points, annotations, facets.
 #pragma once
 
-#include "ostraka/core/file.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/file.h"
 #include "ostraka/fracture/facets.h"
 #include "ostraka/point_cloud/point_cloud.h"
 

@@ -1,7 +1,7 @@
 // Cache of pose searches on one template: in memory, or in a file beside a result.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/registration/pose_search.h"
 

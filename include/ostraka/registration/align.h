@@ -1,9 +1,9 @@
 // Registers one surface to another and measures their distance.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <memory>
 #include <vector>

@@ -1,9 +1,9 @@
 // Registers two meshes of one object that differ in unit and pose: rotation, translation and scale.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/registration/slippable_motions.h"
 
 #include <string>

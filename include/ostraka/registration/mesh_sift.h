@@ -1,8 +1,8 @@
 // Salient points of a surface with local descriptors, and their matches on another surface.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Geometry>
 

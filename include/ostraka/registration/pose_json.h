@@ -1,7 +1,7 @@
 // A rigid motion as JSON: the rows of a 4 x 4 matrix.
 #pragma once
 
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 #include "ostraka/geom/rigid_fit.h"
 
 namespace ostraka {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/provenance.h"
 
 #include <memory>
 #include <optional>

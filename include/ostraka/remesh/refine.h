@@ -1,8 +1,8 @@
 // Refinement by splitting edges, with all attached data carried along.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <array>
 #include <cstdint>

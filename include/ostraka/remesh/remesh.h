@@ -1,8 +1,8 @@
 // Isotropic remeshing: a new mesh of the same surface, without correspondence to the old vertices.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 

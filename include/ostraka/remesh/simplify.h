@@ -1,8 +1,8 @@
 // Simplification by edge collapses, with all attached data carried along.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // Mapping between pixels of a picture and points, in the mesh's own coordinates.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/render/view.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // Pictures: pixels in memory, written as PNG files.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Contents of a picture of one object.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/render/picture.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // Lists of numbers, one per element, as stored in maps.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 
 #include <vector>
 

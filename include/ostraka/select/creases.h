@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 // Selections by a scalar value per vertex or face.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <limits>
 #include <string>

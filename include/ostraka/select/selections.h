@@ -1,8 +1,8 @@
 // Selections by geometry and topology, used by recipes and tools: a query in, indices or flags out.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <functional>
 #include <optional>

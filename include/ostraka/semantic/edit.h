@@ -4,7 +4,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/coords/coordinates.h"
-#include "ostraka/core/json.h"
+#include "ostraka/files/json.h"
 
 #include <Eigen/Core>
 

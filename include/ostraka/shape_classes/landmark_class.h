@@ -1,7 +1,7 @@
 // Landmark classes: members are landmark files with the same landmark names, without a surface.
 #pragma once
 
-#include "ostraka/core/file.h"
+#include "ostraka/files/file.h"
 #include "ostraka/shape_classes/shape_class.h"
 
 namespace ostraka {

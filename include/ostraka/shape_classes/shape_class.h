@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ostraka/core/options.h"
-#include "ostraka/core/provenance.h"
+#include "ostraka/files/provenance.h"
 #include "ostraka/reconstruction/shape_prior.h"
 #include "ostraka/shape_classes/quantities.h"
 #include "ostraka/shape_classes/thresholds.h"

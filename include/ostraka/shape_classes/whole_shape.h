@@ -1,7 +1,7 @@
 // Measures of a whole surface that are invariant to position, orientation and size, and nearly invariant to posture.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <optional>
 #include <vector>

@@ -1,8 +1,8 @@
 // Clay volume of an object whose inside was scanned in part, or not at all.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/slicing/slice.h"
 
 #include <limits>

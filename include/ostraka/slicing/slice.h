@@ -7,7 +7,7 @@
 // forth) are removed.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <Eigen/Core>
 

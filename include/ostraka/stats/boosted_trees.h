@@ -1,8 +1,8 @@
 // Gradient boosted decision trees for binary classification.
 #pragma once
 
-#include "ostraka/core/json.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/json.h"
 
 #include <cstdint>
 #include <span>

@@ -1,9 +1,9 @@
 // Synthetic fragments of a mesh, with known pose and position on the object.
 #pragma once
 
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <vector>
 

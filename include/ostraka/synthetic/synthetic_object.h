@@ -1,7 +1,7 @@
 // Objects composed of blended implicit solids, with known semantic parts at every point of the surface.
 #pragma once
 
-#include "ostraka/core/mesh.h"
+#include "ostraka/mesh/mesh.h"
 #include "ostraka/synthetic/solid.h"
 
 #include <array>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "ostraka/core/angles.h"
-#include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/mesh.h"
 
 #include <cmath>
 #include <string>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/core/file.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/core/options.h"
+#include "ostraka/files/file.h"
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
 // Collects results of a study: tables and plots from the reports of its steps, and one page.
 #pragma once
 
-#include "ostraka/report/table.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/workflow/run.h"
 
 namespace ostraka {

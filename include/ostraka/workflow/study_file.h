@@ -1,8 +1,8 @@
 // Study files: steps that each name an operation of the table, its inputs, options and parameter grids.
 #pragma once
 
-#include "ostraka/core/json.h"
-#include "ostraka/operation/operation.h"
+#include "ostraka/files/json.h"
+#include "ostraka/framework/operation.h"
 
 #include <map>
 #include <string>

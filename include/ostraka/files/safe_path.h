@@ -1,0 +1,66 @@
+// Paths read from files of unknown origin: they never lead out of the folders that the user named (doc/security.md).
+#pragma once
+
+#include "ostraka/files/file.h"
+
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file, `location` the
+/// position in it.
+void require_file_name(const std::string& name, const std::string& where, const std::string& location);
+
+/// Throws Error (input) unless `name` is a single path component: not empty, not "." or "..", without separators and control
+/// characters.
+void require_plain_name(const std::string& name, const std::string& where, const std::string& location);
+
+/// The path of `name`, which was read from a file in `folder`. Throws Error (input) with `remedy` if the name is absolute or
+/// leads out of the folder, also through links. `folder_description` describes the folder in the message.
+Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& location,
+                 const std::string& folder_description, const std::string& remedy);
+
+/// The absolute path with all links resolved, including dangling links (writing to a dangling link creates its target). Empty
+/// if links form a cycle.
+Path resolved(const Path& path);
+
+/// Whether the path, after resolving links, is the folder or lies in it. The path need not exist. False if it cannot be
+/// resolved.
+bool is_inside(const Path& path, const Path& folder);
+bool is_inside_any(const Path& path, const std::vector<Path>& folders);
+
+/// Throws Error (input) if writing to `file` would leave `folder` through a link, or would write to a device or a pipe.
+void require_writable_inside(const Path& file, const Path& folder);
+
+/// While it lives, this thread and the parallel loops that it starts may create files and folders in `folder` only, after
+/// resolving links; others are refused with Error (input). For work on folders of unknown origin, which may contain links.
+class WriteScope {
+public:
+    explicit WriteScope(Path folder);
+    ~WriteScope();
+    WriteScope(const WriteScope&) = delete;
+    WriteScope& operator=(const WriteScope&) = delete;
+
+    /// The scope of this thread, or nullptr.
+    static const WriteScope* current();
+    /// Sets the scope (or none) of this thread during its lifetime.
+    class Within {
+    public:
+        explicit Within(const WriteScope* scope);
+        ~Within();
+        Within(const Within&) = delete;
+        Within& operator=(const Within&) = delete;
+
+    private:
+        const WriteScope* outer_;
+    };
+    /// Throws Error (input) if the file lies outside the scope of this thread.
+    static void check(const Path& file);
+
+private:
+    Path folder_;
+    const WriteScope* outer_;
+};
+
+}  // namespace ostraka

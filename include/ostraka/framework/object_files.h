@@ -1,0 +1,12 @@
+// Writing objects in memory to files.
+#pragma once
+
+#include "ostraka/framework/objects.h"
+
+namespace ostraka {
+
+/// Writes `object` to `file` in the format of its kind; an in-memory folder is written with all its files. Throws Error (usage)
+/// that names `slot` if the object has no file form.
+void write_object(const Object& object, const Path& file, const std::string& slot);
+
+}  // namespace ostraka

@@ -1,0 +1,241 @@
+// The report of an operation: filled once, shown as a table, JSON, CSV or Markdown.
+#pragma once
+
+#include "ostraka/core/finding.h"
+#include "ostraka/core/message_text.h"
+#include "ostraka/files/provenance.h"
+
+#include <concepts>
+#include <deque>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace ostraka {
+
+class TextTable;
+
+/// Type of a report field. `any` is a JSON structure, shown to programs only.
+enum class FieldType { boolean, integer, number, text, numbers, texts, any };
+
+/// Declares a value of a report, or a column of one of its tables.
+struct Field {
+    std::string key;  ///< JSON key, '.' separates nested members; empty: shown to people only
+    FieldType type = FieldType::text;
+    std::string title = {};  ///< title for people; empty: for programs only
+    std::string unit = {};   ///< unit; "length", "length^2", ... are replaced by the report's unit (Report::set_unit)
+};
+
+/// Helpers to declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
+namespace fields {
+inline Field boolean(std::string key, std::string title = {}) { return {std::move(key), FieldType::boolean, std::move(title)}; }
+inline Field integer(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::integer, std::move(title), std::move(unit)};
+}
+inline Field number(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::number, std::move(title), std::move(unit)};
+}
+inline Field text(std::string key, std::string title = {}) { return {std::move(key), FieldType::text, std::move(title)}; }
+inline Field numbers(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::numbers, std::move(title), std::move(unit)};
+}
+inline Field texts(std::string key, std::string title = {}) { return {std::move(key), FieldType::texts, std::move(title)}; }
+inline Field any(std::string key, std::string title = {}, std::string unit = {}) {
+    return {std::move(key), FieldType::any, std::move(title), std::move(unit)};
+}
+/// A column for people only; an empty cell of a number column is shown as "-".
+inline Field people(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
+    return {{}, type, std::move(title), std::move(unit)};
+}
+}  // namespace fields
+
+/// The layout of a report, declared with the operation: its values and its tables.
+struct ReportLayout {
+    std::vector<Field> value_fields;
+    struct Table {
+        std::string key;  ///< key of an array of objects in JSON; empty: for people only
+        std::vector<Field> columns;
+        std::string title = {};  ///< heading line, for people
+    };
+    std::deque<Table> tables;
+    std::string schema;   ///< name of the schema (doc/schema) of the whole result; empty: only declared fields are allowed
+    bool checks = false;  ///< whether Report::findings is called
+
+    template <std::same_as<Field>... Columns>
+    void values(Columns... columns) {
+        (value_fields.push_back(std::move(columns)), ...);
+    }
+    template <std::same_as<Field>... Columns>
+    void table(std::string key, Columns... columns) {
+        table(std::move(key), std::vector<Field>{std::move(columns)...});
+    }
+    void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
+    /// Declares a table for people only; its rows are filled under its title.
+    void people_table(std::string title, std::initializer_list<const char*> columns) {
+        tables.push_back({{}, {}, std::move(title)});
+        for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
+    }
+
+    /// JSON schema (draft 4) of the member "result" of a report.
+    [[nodiscard]] JsonValue to_schema(JsonAllocator& allocator) const;
+};
+
+/// Text for people; numbers are shown with five significant digits.
+struct ReportText {
+    // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
+    ReportText(std::string value) : text(std::move(value)) {}
+    ReportText(const char* value) : text(value) {}
+    ReportText(double value);
+    template <std::integral Number>
+    ReportText(Number value) : text(std::to_string(value)) {}
+    // NOLINTEND(google-explicit-constructor)
+    std::string text;
+};
+
+/// A value of a report. It is absent for numbers that are not finite and for empty optionals.
+class ReportValue {
+public:
+    // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
+    ReportValue(bool value) : value_(value) {}
+    ReportValue(double value);
+    ReportValue(std::string value) : value_(std::move(value)) {}
+    ReportValue(const char* value) : value_(std::string(value)) {}
+    ReportValue(std::vector<double> values) : value_(std::move(values)) {}
+    ReportValue(std::vector<std::string> values) : value_(std::move(values)) {}
+    ReportValue(JsonValue value) : value_(std::move(value)) {}
+    template <std::integral Number>
+    ReportValue(Number value) : value_(static_cast<std::int64_t>(value)) {}
+    template <std::integral Number>
+    ReportValue(const std::vector<Number>& values) : value_(std::vector<std::int64_t>(values.begin(), values.end())) {}
+    template <class Value>
+    ReportValue(const std::optional<Value>& value) {
+        if (value) *this = ReportValue(*value);
+    }
+    // NOLINTEND(google-explicit-constructor)
+
+    [[nodiscard]] bool absent() const { return std::holds_alternative<std::monostate>(value_); }
+    /// The value as text for people; empty for structures.
+    [[nodiscard]] std::string text() const;
+    /// The value as JSON for programs; may be called once.
+    JsonValue json(JsonAllocator& allocator);
+
+private:
+    std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::int64_t>,
+                 std::vector<std::string>, JsonValue>
+        value_;
+};
+
+/// Output format of a report.
+enum class ReportFormat { table, json, csv, markdown };
+
+class Report {
+public:
+    Report(Provenance provenance, ReportLayout layout);
+
+    // ---- filled in by operations; undeclared keys throw std::logic_error ----
+
+    /// Sets the unit of length shown in column titles.
+    void set_unit(const std::string& unit) { unit_ = unit; }
+
+    /// Sets a value; `shown`: text for people if it differs from the default.
+    Report& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
+    /// Sets all members of an object that follows the schema of the report.
+    void values(const JsonValue& object);
+
+    /// A row of a table, filled cell by cell. Absent and unfilled cells are omitted from the JSON.
+    class Row {
+    public:
+        Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
+        /// Sets the text of a cell: of a column for people only (by its title), or of an absent cell (by its key).
+        Row& shown(std::string_view title_or_key, ReportText text);
+
+    private:
+        friend class Report;
+        Row(Report& report, std::size_t table, std::size_t row) : report_(report), table_(table), row_(row) {}
+        Report& report_;
+        std::size_t table_, row_;
+    };
+    Row row(const std::string& table);
+    /// Adds a complete row to a table for people only, one cell per column.
+    void row(const std::string& table, std::initializer_list<ReportText> cells);
+    /// Adds a table without rows; `shown`: whether people see its header.
+    void empty_table(const std::string& table, bool shown = true);
+
+    /// Adds a value for people only, below the previous values.
+    void people(const std::string& title, const std::string& text);
+    /// Adds a table for people that is also written to files unchanged.
+    void table(const TextTable& table);
+    /// Adds a line for people; values, tables and lines are shown in the order of the calls.
+    void line(std::string text);
+    /// Adds a remark to the result: printed on standard error, and in JSON as result.notes.
+    void note(std::string text);
+    void notes(const std::vector<std::string>& texts);
+    /// Sets the result of a check: result.sound, defects and findings. With a defect, the answer is "no". `place`: key and
+    /// heading for the places of the findings.
+    void findings(const std::vector<Finding>& findings, const std::string& place = "where");
+    /// Sets a value that may differ between identical runs, such as seconds; '.' in the key separates nested members.
+    void run(const std::string& key, double value);
+    /// Sets the answer to "no": a check found defects, a fragment was rejected, ...
+    void answer_no() { holds_ = false; }
+
+    /// Allocator for JSON structures.
+    JsonAllocator& allocator() { return result_.GetAllocator(); }
+
+    // ---- used by callers of operations ----
+
+    [[nodiscard]] bool holds() const { return holds_; }
+    [[nodiscard]] const JsonValue& result() const { return result_; }
+    [[nodiscard]] const std::vector<std::string>& noted() const { return notes_; }
+    [[nodiscard]] const ReportLayout& layout() const { return layout_; }
+    [[nodiscard]] const Provenance& provenance() const { return provenance_; }
+    void set_provenance(Provenance provenance) { provenance_ = std::move(provenance); }
+    /// Called with each note when it is added.
+    std::function<void(const std::string&)> on_note;
+
+    /// {"format": "ostraka-report", "command", "result", "provenance", "run"}.
+    [[nodiscard]] Json to_json() const;
+    [[nodiscard]] std::string to_text(ReportFormat format) const;
+    /// Durations of the run, for people: "read 0.1 s, triangulate 0.05 s"; empty if there are none.
+    [[nodiscard]] std::string times() const;
+
+private:
+    struct ShownTable {
+        std::size_t layout = 0;
+        std::map<std::string, int, std::less<>> places;  ///< key -> column, -1 for columns that only programs see
+        std::map<std::string, int, std::less<>> shown;   ///< key, or title for people only -> column
+        std::vector<std::string> empty;                  ///< cells of an unfilled row
+        std::vector<std::vector<std::string>> rows;
+    };
+    /// A block of text for people: a line, a value (title and text), or a table.
+    struct Block {
+        enum class Kind { line, value, table, text_table } kind = Kind::line;
+        std::string title, text;
+        std::size_t table = 0;
+        std::shared_ptr<const TextTable> text_table = {};
+    };
+    friend class Row;
+    ShownTable& table_of(const std::string& key);
+    [[nodiscard]] std::string in_unit(const Field& field) const;
+    [[nodiscard]] std::string shown_table(const ShownTable& table, ReportFormat format) const;
+
+    Provenance provenance_;
+    ReportLayout layout_;
+    Json result_, run_;
+    std::string unit_;
+    std::vector<Block> blocks_;
+    std::deque<ShownTable> tables_;
+    std::map<std::string, std::size_t> table_index_;
+    std::vector<std::string> notes_;
+    bool holds_ = true;
+};
+
+/// A number for people with `digits` significant digits.
+std::string number(double value, int digits = 5);
+
+}  // namespace ostraka

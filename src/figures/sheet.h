@@ -1,0 +1,80 @@
+// A drawing sheet that is written as an SVG, a PDF or a PNG file.
+#pragma once
+
+#include "ostraka/files/file.h"
+#include "ostraka/render/picture.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct _cairo;
+struct _cairo_surface;
+
+namespace ostraka::figures {
+
+inline constexpr double text_size = 13, margin = 14;
+inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, quiet_line{150, 150, 150}, paper{255, 255, 255};
+
+/// Colours that colour-blind readers can distinguish (Okabe and Ito), followed by further colours.
+Rgb series_colour(std::size_t index);
+/// The colour mixed with the paper colour: 0 is the colour, 1 is paper.
+Rgb lighter(const Rgb& colour, double fraction);
+
+struct Box {
+    double left = 0, top = 0, right = 0, bottom = 0;
+    [[nodiscard]] bool meets(const Box& other) const {
+        return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
+};
+
+/// Lengths are in points of the SVG, y points downwards.
+class Sheet {
+public:
+    enum class Format { svg, png, pdf };
+    Sheet(double width, double height, Format format = Format::svg);
+    ~Sheet();
+    Sheet(const Sheet&) = delete;
+    Sheet& operator=(const Sheet&) = delete;
+
+    void line(double x1, double y1, double x2, double y2, const Rgb& colour, double width, bool dashed = false);
+    void polyline(const std::vector<std::array<double, 2>>& places, const Rgb& colour, bool dashed = false, double width = 1.8);
+    /// Closed curves, filled by the even-odd rule.
+    void fill(const std::vector<std::vector<std::array<double, 2>>>& curves, const Rgb& colour);
+    void rectangle(const Box& box, const Rgb& colour);
+    void frame(const Box& box, const Rgb& colour, double width);
+    void dot(double x, double y, const Rgb& colour, double radius = 3);
+    /// A mark identified by its shape: dot, square, triangle, rhomb, cross, ring ...
+    void mark(double x, double y, std::size_t form, const Rgb& colour);
+
+    [[nodiscard]] double width_of(const std::string& words, double size = text_size);
+    /// `anchor`: fraction of the text's width to the left of x. y is the base line.
+    void text(const std::string& words, double x, double y, double anchor, double size = text_size, const Rgb& colour = ink);
+    /// Text rotated to read upwards; `anchor` is the fraction of its length below y.
+    void upward_text(const std::string& words, double x, double y, double anchor = 0.5, double size = text_size);
+    /// The text, shortened with an ellipsis to fit the width.
+    [[nodiscard]] std::string fitted(const std::string& words, double width, double size = text_size);
+
+    void clip(const Box& box);
+    void unclip();
+
+    /// The file's bytes; nothing may be drawn afterwards. Throws Error (failure) if drawing failed.
+    std::string finish();
+
+private:
+    void set(const Rgb& colour);
+    void stroke(const Rgb& colour, double width, bool dashed);
+
+    Format format_;
+    double width_, height_;
+    std::string bytes_;
+    std::unique_ptr<_cairo_surface, void (*)(_cairo_surface*)> surface_;
+    std::unique_ptr<_cairo, void (*)(_cairo*)> context_;
+};
+
+/// Writes the output of `draw` in the format given by the file's extension, creating folders.
+void write_sheet(const Path& file, const std::function<std::string(Sheet::Format)>& draw);
+
+}  // namespace ostraka::figures

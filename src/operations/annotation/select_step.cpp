@@ -1,0 +1,299 @@
+#include "operations/annotation/select_step.h"
+
+#include "ostraka/render/view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+const std::vector<std::string>& threshold_names() {
+    static const std::vector<std::string> names{"x", "y", "z", "mean-curvature", "gaussian-curvature", "thickness", "distance"};
+    return names;
+}
+
+/// Throws unless `of` is the name of a quantity, or a file.
+void check_threshold(const std::string& of) {
+    const auto& names = threshold_names();
+    if (std::find(names.begin(), names.end(), of) != names.end() || !extension(of).empty() || file_exists(of)) return;
+    fail_usage("--threshold '" + printable(of, 60) + "' is no known quantity and no file",
+               "use " + joined(names) + " or a file of values (.npy or text)");
+}
+
+}  // namespace
+
+void SelectStep::describe(OptionList& visit) {
+    visit("expression", expression, "selection, in the syntax of recipes (JSON)").positional();
+    visit.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
+    visit("all", all, "the whole mesh");
+    visit("rectangle", rectangle, "x0,y0,x1,y1 in pixels of the camera's picture");
+    visit("polygon", polygon, "x,y,x,y,... drawn around a part in the camera's picture");
+    visit("box", box, "six numbers: minimum and maximum corner");
+    visit("sphere", sphere, "x,y,z,radius");
+    visit("halfspace", halfspace, "six numbers: a point of the plane, and the normal towards the selected side");
+    visit("nearest", nearest, "x,y,z: the nearest vertex");
+    visit("threshold", threshold, "places whose value lies in a range; the value distance is measured from --seed",
+          Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
+    visit("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
+    visit("path", path, "picks joined by shortest paths along edges").words();
+    visit("lasso", lasso, "picks around a part; --seed lies within it").words();
+    visit("brush", brush, "picks; selects the geodesic discs of --radius around them").words();
+    visit("vertices", vertices, "picks").words();
+    visit("component", component, "selects the connected component of this pick");
+    visit("faces", faces, "indices of faces").words();
+    visit("labels", labels, "labels of the mesh file's faces").words();
+
+    visit.group("How");
+    visit("through", through, "rectangle and polygon: select hidden parts too");
+    visit("closed", closed, "path: back to the first pick");
+    visit("metric", metric, "path and lasso: the length that is minimised", Choices{"euclidean", "segment", "combined"});
+    visit("seed", seed, "lasso, segment, distance: a pick");
+    visit("radius", radius, "brush: geodesic radius, in lengths as --frame says");
+    visit("stroke", stroke, "brush: drawn from pick to pick");
+    visit("above", above,
+          "threshold: minimum value; lengths in the unit of --frame (curvature: its inverse), values of a file in their own");
+    visit("below", below, "threshold: maximum value, in the same unit");
+    visit("quantiles", quantiles, "threshold: the limits are quantiles by area, 0 to 1");
+    visit("scale", scale, "curvature: averaging radius; 0: from the mesh resolution", Range{0, 1}, "share of the diagonal");
+    visit("smoothing", smoothing, "segment: preference for short borders in concave places", Range{0, 1});
+    visit("grow", grow, "number of rings by which the selection is dilated", Range{0, 1000000});
+    visit("shrink", shrink, "number of rings by which the selection is eroded", Range{0, 1000000});
+    visit("invert", invert, "select the complement");
+    visit("frame", frame,
+          "mesh: coordinates and lengths in the unit of the mesh; box: coordinates as shares, 0 to 1, of the bounding box, "
+          "lengths as shares of its diagonal",
+          Choices{"mesh", "box"});
+
+    visit.group("Camera (that of 'ostraka render' without legend and title)");
+    visit(
+        "camera", camera_text,
+        "a camera of the recipe by its name, or a camera as JSON ('render --json' reports it), instead of the following options");
+    visit("view", view, "view direction", view_words());
+    visit("up", up, "upward direction, stored in a new file; otherwise that of the annotations, otherwise 0,0,1",
+          direction_words("--up"));
+    visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
+    visit("zoom", zoom, "magnification about the middle", Range{0.01, 1000});
+    visit("size", size, "width and height of the picture in pixels");
+
+    visit.group("Annotation");
+    visit("tag", tag, "tag of the annotation");
+    visit("id", id, "id of the annotation; a new annotation without one gets a free id");
+    visit("type", type, "type of a new annotation; otherwise that of the selection", Choices{"point", "line", "region"});
+    visit("outline", outline,
+          "free: through the faces of the mesh; edges: along its edges; if left out, an edited one is as it is, and a new region "
+          "free where its border is a level (of a volume, a picture's, a threshold's on vertices, a brush's, a lasso's, a "
+          "distance's), along the edges where it is a set of faces; lines run along the edges",
+          Choices{"edges", "free"});
+    visit("colour", colour, "red,green,blue", Range{0, 255});
+    visit("action", action, "how the selection changes the annotation of this id",
+          Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
+}
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+/// Writes the JSON of a step from its options.
+class StepWriter {
+public:
+    StepWriter(const SelectStep& step, JsonAllocator& allocator) : step_(step), a_(allocator) {}
+
+    /// The selection: that of the tool, grown, shrunk or inverted.
+    [[nodiscard]] JsonValue selected() const {
+        JsonValue result = tool();
+        if (step_.grow > 0 && step_.shrink > 0) fail_usage("both --grow and --shrink", "give one of them");
+        if (step_.grow > 0 || step_.shrink > 0)
+            result = object(step_.grow > 0 ? "grow" : "shrink",
+                            object("of", std::move(result), "rings", std::max(step_.grow, step_.shrink)));
+        return step_.invert ? object("invert", std::move(result)) : std::move(result);
+    }
+
+private:
+    template <class... Members>
+    JsonValue object(Members&&... members) const {
+        return json_object(a_, std::forward<Members>(members)...);
+    }
+    [[nodiscard]] JsonValue list(const Numbers& values) const {
+        for (const double x : values)
+            if (!std::isfinite(x)) fail_usage("a number of the step is not finite", "give finite numbers");
+        return json_value(values, a_);
+    }
+    [[nodiscard]] JsonValue part(const Numbers& values, std::size_t begin, std::size_t count) const {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(begin);
+        return list(Numbers(first, first + static_cast<std::ptrdiff_t>(count)));
+    }
+    [[nodiscard]] double finite(double x) const { return list({x})[0].GetDouble(); }
+    static void check_count(const Numbers& values, const std::string& option, std::size_t count) {
+        if (values.size() != count)
+            fail_usage("--" + option + " takes " + std::to_string(count) + " numbers, not " + std::to_string(values.size()),
+                       "separate them by commas, without blanks");
+    }
+    /// Splits a list of numbers into two points or vectors.
+    [[nodiscard]] JsonValue halves(const Numbers& values, const char* option, std::size_t count, const char* first,
+                                   const char* second) const {
+        check_count(values, option, 2 * count);
+        return object(first, part(values, 0, count), second, part(values, count, count));
+    }
+
+    [[nodiscard]] JsonValue camera() const {
+        if (step_.camera_text.starts_with('{')) return JsonValue(parse_json(step_.camera_text, "camera"), a_);
+        if (!step_.camera_text.empty()) return json_value(step_.camera_text, a_);
+        JsonValue value = object("view", step_.view);
+        if (!step_.up.empty()) add_members(value, a_, "up", direction_of(step_.up, "--up"));
+        add_members(value, a_, "projection", step_.projection);
+        if (step_.zoom != 1) add_members(value, a_, "zoom", step_.zoom);
+        int width = 0, height = 0;
+        char cross = 0, rest = 0;
+        if (std::sscanf(step_.size.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) != 3 || cross != 'x' || width < 16 ||
+            height < 16)
+            fail_usage("size '" + printable(step_.size, 60) + "' is not possible", "use WIDTHxHEIGHT such as 1200x900");
+        add_members(value, a_, "picture", std::array{width, height});
+        return value;
+    }
+    /// A shape drawn in the picture of the camera.
+    [[nodiscard]] JsonValue drawn(JsonValue shape) const {
+        JsonValue value = object("camera", camera());
+        for (auto& member : shape.GetObject()) add_members(value, a_, member.name.GetString(), std::move(member.value));
+        if (step_.through) add_members(value, a_, "visible", false);
+        return value;
+    }
+
+    [[nodiscard]] JsonValue pick(const std::string& text, const std::string& option) const {
+        const std::string name = "--" + option;
+        if (text.starts_with('@')) {
+            const auto pixel = numbers_of<double>(text.substr(1), name);
+            check_count(pixel, option, 2);
+            return object("camera", camera(), "pixel", list(pixel));
+        }
+        const auto values = numbers_of<double>(text, name);
+        if (values.size() == 3) return list(values);
+        if (values.size() == 1 && values[0] >= 0 && values[0] < no_index && values[0] == std::floor(values[0]))
+            return JsonValue(static_cast<std::uint32_t>(values[0]));
+        fail_usage(name + " '" + printable(text, 60) + "' is not a pick", "give an index, a point x,y,z or a pixel @x,y");
+    }
+    [[nodiscard]] JsonValue picks(const std::vector<std::string>& texts, const char* option) const {
+        return json_list(texts, a_, [&](const auto& text) { return pick(text, option); });
+    }
+    void need_seed(const std::string& what) const {
+        if (step_.seed.empty()) fail_usage(what + " needs a seed", "add --seed PICK, a place within it");
+    }
+
+    [[nodiscard]] JsonValue threshold() const {
+        const std::string& of = step_.threshold;
+        JsonValue value(rapidjson::kObjectType);
+        if (of == "mean-curvature" || of == "gaussian-curvature") {
+            add_members(value, a_, "curvature", of.substr(0, of.find('-')));
+            if (step_.scale != 0) add_members(value, a_, "scale", step_.scale);
+        } else if (of == "thickness") {
+            add_members(value, a_, "thickness", true);
+        } else if (of == "x" || of == "y" || of == "z") {
+            add_members(value, a_, "coordinate", direction_of(of, "--threshold"));
+        } else if (of == "distance") {
+            if (step_.seed.empty()) fail_usage("a threshold on the distance needs a place to start from", "add --seed PICK");
+            add_members(value, a_, "distance", picks({step_.seed}, "seed"));
+        } else {
+            add_members(value, a_, "map", of);
+        }
+        if (step_.above) add_members(value, a_, "above", finite(*step_.above));
+        if (step_.below) add_members(value, a_, "below", finite(*step_.below));
+        if (step_.quantiles) add_members(value, a_, "quantiles", true);
+        return value;
+    }
+
+    /// The selection expression of the given tool.
+    [[nodiscard]] JsonValue tool() const {
+        std::vector<std::string> given;
+        JsonValue result(rapidjson::kObjectType);
+        const auto when = [&](bool present, const char* kind, auto&& make) {
+            if (!present) return;
+            given.emplace_back(kind);
+            if (given.size() == 1) add_members(result, a_, kind, make());
+        };
+        when(step_.all, "all", [&] { return true; });
+        when(!step_.rectangle.empty(), "rectangle", [&] { return drawn(halves(step_.rectangle, "rectangle", 2, "from", "to")); });
+        when(!step_.polygon.empty(), "polygon", [&] {
+            const Numbers& polygon = step_.polygon;
+            if (polygon.size() < 6 || polygon.size() % 2 != 0)
+                fail_usage("--polygon has " + std::to_string(polygon.size()) + " numbers", "give x,y of three pixels or more");
+            JsonValue points(rapidjson::kArrayType);
+            for (std::size_t i = 0; i < polygon.size(); i += 2) points.PushBack(part(polygon, i, 2), a_);
+            return drawn(object("points", std::move(points)));
+        });
+        when(!step_.box.empty(), "box", [&] { return halves(step_.box, "box", 3, "min", "max"); });
+        when(!step_.sphere.empty(), "sphere", [&] {
+            check_count(step_.sphere, "sphere", 4);
+            return object("centre", part(step_.sphere, 0, 3), "radius", finite(step_.sphere[3]));
+        });
+        when(!step_.halfspace.empty(), "halfspace", [&] { return halves(step_.halfspace, "halfspace", 3, "point", "normal"); });
+        when(!step_.nearest.empty(), "nearest", [&] {
+            check_count(step_.nearest, "nearest", 3);
+            return list(step_.nearest);
+        });
+        when(!step_.vertices.empty(), "vertices", [&] { return picks(step_.vertices, "vertices"); });
+        when(!step_.faces.empty(), "faces", [&] { return step_.faces; });
+        when(!step_.labels.empty(), "labels", [&] { return step_.labels; });
+        when(!step_.component.empty(), "component", [&] { return object("seed", pick(step_.component, "component")); });
+        when(!step_.path.empty(), "path", [&] {
+            JsonValue value = object("points", picks(step_.path, "path"));
+            if (step_.closed) add_members(value, a_, "closed", true);
+            add_members(value, a_, "metric", step_.metric);
+            return value;
+        });
+        when(!step_.lasso.empty(), "lasso", [&] {
+            need_seed("a lasso");
+            return object("points", picks(step_.lasso, "lasso"), "seed", pick(step_.seed, "seed"), "metric", step_.metric);
+        });
+        when(!step_.brush.empty(), "brush", [&] {
+            if (!step_.radius || !(*step_.radius >= 0))
+                fail_usage("a brush needs a radius of zero or more", "add --radius LENGTH");
+            JsonValue value = object("points", picks(step_.brush, "brush"), "radius", finite(*step_.radius));
+            if (step_.stroke) add_members(value, a_, "stroke", true);
+            return value;
+        });
+        when(!step_.threshold.empty(), "threshold", [&] { return threshold(); });
+        when(step_.segment.has_value(), "segments", [&] {
+            need_seed("a segment");
+            return object("clusters", *step_.segment, "smoothing", step_.smoothing, "seeds", picks({step_.seed}, "seed"));
+        });
+        if (!step_.expression.empty()) {
+            given.emplace_back("expression");
+            const Json parsed = parse_json(step_.expression, "expression");
+            if (given.size() == 1) result.CopyFrom(parsed, a_);
+        }
+        if (given.empty())
+            fail_usage("nothing says what to select", "give an expression or a tool, such as --rectangle x0,y0,x1,y1");
+        if (given.size() > 1)
+            fail_usage("two tools at once: " + given[0] + " and " + given[1],
+                       "give one; join them by an expression, or by two commands");
+        return result;
+    }
+
+    const SelectStep& step_;
+    JsonAllocator& a_;
+};
+
+}  // namespace
+
+Json SelectStep::step(const AnnotationSet& set) const {
+    Json document(rapidjson::kObjectType);
+    auto& a = document.GetAllocator();
+    const bool makes = action == "make";
+    if (!makes) add_members(document, a, "action", action);
+    if (!makes && !id) fail_usage("the action '" + action + "' needs the annotation's --id", "see 'ostraka annotation list'");
+    add_members(document, a, "id", id ? *id : free_id(set));
+    if (makes && tag.empty()) fail_usage("a new annotation needs a tag", "add --tag TEXT");
+    if (action != "delete" && !tag.empty()) add_members(document, a, "tag", tag);
+    if (!colour.empty() && colour.size() != 3)
+        fail_usage("--colour has " + std::to_string(colour.size()) + " numbers", "give red,green,blue, each 0 to 255");
+    if (!colour.empty()) add_members(document, a, "colour", colour);
+    const char* made = !path.empty() ? "line" : nearest.empty() && vertices.empty() ? "region" : "point";
+    if (makes) add_members(document, a, "type", type.value_or(made));
+    if (outline && action != "delete" && action != "retag") add_members(document, a, "outline", *outline);
+    if (action != "delete" && action != "retag")
+        add_members(document, a, "frame", frame, "select", StepWriter(*this, a).selected());
+    return document;
+}
+
+}  // namespace ostraka

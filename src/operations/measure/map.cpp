@@ -1,0 +1,132 @@
+// measure map: curvature, thickness or distance at every vertex.
+#include "operations/file_attribute.h"
+
+#include "ostraka/geom/geodesic.h"
+#include "ostraka/measure/descriptors.h"
+#include "ostraka/render/values.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+struct MeasureMap final : Operation {
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.output("output", Kind::values, output, "file to write: one value per vertex or face (.npy, or text)");
+        p.options("of", quantity, "quantity to compute", Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"})
+            .required();
+        p.options("on", element, "whether there is one value per vertex or per face", Choices{"vertex", "face"});
+        p.options("from", source_vertices, "vertices that geodesic distances are measured from, like 12,88",
+                  Range{0, std::numeric_limits<int>::max()});
+        p.input_option("annotations", Kind::annotations, annotations,
+                       "annotations of the mesh (.ant.json), one of which gets the map as an attribute");
+        attribute.describe(p, "NAME of --of");
+        p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
+        p.options("unit", unit, "unit of the coordinates, if the annotations do not state it (any text, such as mm)");
+        options.curvature_options.describe(p.options);
+        options.thickness_options.describe(p.options);
+        quantity_option = p.options.find("of");
+        p.report.values(integer("values"), integer("without"));
+        for (const char* figure : {"min", "5 %", "median", "mean", "95 %", "max"}) p.report.values(number(figure, figure));
+    }
+
+    void check() const override {
+        if ((quantity == MapQuantity::geodesic) == source_vertices.empty())
+            fail_usage(
+                source_vertices.empty() ? "a geodesic map without --from" : "--from with a map of " + quantity_option->text(),
+                "--from names the vertices that geodesic distances are measured from");
+        if (element == MapElement::face && quantity != MapQuantity::thickness)
+            fail_usage(fmt::format("a map of {} on faces", quantity_option->text()), "only thickness is defined on faces");
+        if (!attribute && (annotations || !annotation.empty()))
+            fail_usage("annotations are given, but none are written", "add --annotations-out FILE, or leave them out");
+        if (!annotations && !annotation.empty())
+            fail_usage("--annotation names a part, but no annotation file is given", "add --annotations FILE");
+        attribute.check(output, ".npy");
+    }
+
+    void run(Context&, Report& report) override {
+        std::vector<double> values = compute(), finite;
+        for (double& value : values) {
+            if (std::isinf(value)) value = std::numeric_limits<double>::quiet_NaN();
+            if (std::isfinite(value)) finite.push_back(value);
+        }
+        if (finite.empty())
+            fail_input(mesh.file(), fmt::format("has no {} anywhere", quantity_option->text()),
+                       "check whether it is empty, or open on the side that the rays go to");
+        const Statistics s = statistics(finite, std::vector<double>(finite.size(), 1), quantity_option->text());
+        report.people(quantity_option->text(), fmt::format("{} of {} values", finite.size(), values.size()));
+        report("values", values.size())("without", values.size() - finite.size())("min", s.min)("5 %", s.percentile_5)(
+            "median", s.median)("mean", s.mean)("95 %", s.percentile_95)("max", s.max);
+        if (attribute) write_attribute(values, report);
+        output.write(std::move(values));
+    }
+
+    void write_attribute(const std::vector<double>& values, Report& report) const {
+        AnnotationSet set;
+        if (annotations) set = annotations.on(mesh->mesh);
+        if (set.unit.empty()) set.unit = unit;
+        const int holder =
+            annotation.empty() ? ensure_root(set, mesh->mesh).id : find_annotation(set, annotation, annotations.file()).id;
+        std::string attribute_unit = set.unit;
+        if (!attribute_unit.empty() && quantity == MapQuantity::mean_curvature) attribute_unit = "1/" + attribute_unit;
+        if (!attribute_unit.empty() && quantity == MapQuantity::gaussian_curvature)
+            attribute_unit = fmt::format("1/{}^2", attribute_unit);
+        attribute.write(std::move(set), holder, output, {quantity_option->text(), attribute_unit, checksum(values)}, mesh,
+                        report);
+    }
+
+    enum class MapQuantity { mean_curvature, gaussian_curvature, thickness, geodesic };
+    enum class MapElement { vertex, face };
+
+    [[nodiscard]] std::vector<double> compute() const {
+        const Mesh& surface = mesh->mesh;
+        DescriptorSearch search(surface, options);
+        switch (quantity) {
+            case MapQuantity::mean_curvature:
+                return search.curvature().mean;
+            case MapQuantity::gaussian_curvature:
+                return search.curvature().gaussian;
+            case MapQuantity::thickness:
+                return element == MapElement::face ? search.thickness() : vertices_from_faces(surface, search.thickness());
+            case MapQuantity::geodesic:
+                break;
+        }
+        const std::vector<Index> sources(source_vertices.begin(), source_vertices.end());
+        for (const Index source : sources)
+            if (source >= surface.number_of_vertices())
+                fail_usage(fmt::format("--from names vertex {}, but {} has {} vertices", source, mesh.file(),
+                                       surface.number_of_vertices()),
+                           "give a vertex of this mesh");
+        return geodesic_distances(surface, sources);
+    }
+
+    /// Checksum of the file of values; empty in memory, where no file is written yet.
+    [[nodiscard]] std::string checksum(const std::vector<double>& values) const {
+        if (output.sources.front().file.empty()) return {};
+        Object file = Object::of(values, output.file_name());
+        file.write = [&values](const Path& path) { write_values(path, values); };
+        return file.checksums().sha256;
+    }
+
+    MeshInput mesh;
+    ValuesOutput output;
+    MapQuantity quantity = MapQuantity::mean_curvature;
+    MapElement element = MapElement::vertex;
+    std::vector<int> source_vertices;
+    AnnotationsInput annotations;
+    FileAttribute attribute;
+    std::string annotation, unit;
+    DescriptorOptions options;
+    const Option* quantity_option = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_measure_map() { return make<MeasureMap>(); }
+
+}  // namespace ostraka

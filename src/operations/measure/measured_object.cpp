@@ -1,0 +1,38 @@
+#include "operations/measure/measured_object.h"
+
+#include <fmt/core.h>
+
+namespace ostraka {
+
+Slot& MeasuredObject::describe(Parameters& p) {
+    p.input("mesh", Kind::mesh, mesh, "mesh file");
+    Slot& annotations_slot = p.input_option("annotations", Kind::annotations, annotations,
+                                            "its annotations (.ant.json); the whole object is measured if left out");
+    p.output_option("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)");
+    p.options("unit", unit, "unit of the coordinates, if the annotations do not state it (any text, such as mm)");
+    return annotations_slot;
+}
+
+AnnotationSet MeasuredObject::read(Report& report) const {
+    AnnotationSet set;
+    if (annotations) set = annotations.on(mesh->mesh);
+    else ensure_root(set, mesh->mesh);
+    if (!unit.empty() && !set.unit.empty() && set.unit != unit)
+        report.note(fmt::format("the annotations are in {}, not in {}; their unit is used", set.unit, unit));
+    if (set.unit.empty()) set.unit = unit;
+    return set;
+}
+
+Annotation& MeasuredObject::require_annotation(AnnotationSet& set, const std::string& name) const {
+    if (!annotations)
+        fail_usage(fmt::format("--annotation '{}' names a part of {}, but no annotation file is given", printable(name, 60),
+                               printable(mesh.file(), 60)),
+                   "add --annotations FILE");
+    return *set.find(find_annotation(set, name, file()).id);
+}
+
+void MeasuredObject::write(AnnotationSet set) const {
+    if (output) output.write(std::move(set), mesh->mesh, mesh.file());
+}
+
+}  // namespace ostraka

@@ -1,0 +1,112 @@
+// mesh extract: cuts annotated parts out of an object.
+#include "operations/operations.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/annotation/part.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+struct MeshExtract final : AnnotatedMeshOperation {
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        p.output("output", Kind::mesh, output, "mesh file of the part to write");
+        p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
+        vocabulary.describe(p, "by which tags are compared with the names given");
+        p.options("annotation", names, "regions to cut out, by id or tag (all of that tag); the whole mesh if left out").words();
+        p.options("without", without, "regions to leave out, by id or tag").words();
+        p.options("closed", closed, "close the cuts by triangles, annotated as 'cut'");
+        p.options("labels", labels, "write the id of the smallest region of each face into the mesh (PLY)");
+        p.report.values(integer("vertices"), integer("faces"), number("area"), integer("cuts"), integer("closed"));
+    }
+
+    void check() const override {
+        if (names.empty() && without.empty()) fail_usage("no part is named", "give --annotation, --without or both");
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& surface = mesh->mesh;
+        const TagMatcher words = vocabulary.words();
+        std::vector<std::size_t> regions, left_out;
+        const auto add_regions = [&](const std::string& name, std::vector<std::size_t>& target) {
+            const auto matching = words.require(set(), name, annotations.file());
+            // A tag may be shared by regions and points; points have no surface.
+            for (const std::size_t i : matching)
+                if (set().annotations[i].type == AnnotationType::region || matching.size() == 1) target.push_back(i);
+            if (target.empty())
+                fail_input(annotations.file(), fmt::format("no annotation '{}' is a region", printable(name, 60)),
+                           "name a region");
+        };
+        for (const std::string& name : names) add_regions(name, regions);
+        for (const std::string& name : without) add_regions(name, left_out);
+        CutPart part = in_file(annotations.file(), [&] { return cut_out_part(surface, set(), regions, left_out, closed); });
+        const double area = surface_area(part.mesh);
+        report.set_unit(part.annotations.unit);
+        report("vertices", part.mesh.number_of_vertices())("faces", part.mesh.number_of_faces())("area", area)("cuts", part.cuts);
+        if (closed) report("closed", part.closed);
+        report.line(fmt::format("{}: {} vertices, {} faces, area {}; {}{}",
+                                output.file().empty() ? "part" : printable(output.file()), part.mesh.number_of_vertices(),
+                                part.mesh.number_of_faces(), number(area, 6), counted(part.cuts, "cut"),
+                                closed ? fmt::format(", {} closed", part.closed) : ""));
+        if (closed && part.closed < part.cuts)
+            report.note(fmt::format(
+                "{} cuts could not be closed by triangles between their vertices; try 'ostraka mesh repair --fill-holes'",
+                part.cuts - part.closed));
+        MeshExtras extras = extras_of(part, report);
+        if (labels) extras.face_labels = face_labels(part.mesh, part.annotations).of_face;
+        if (annotations_out) annotations_out.write(std::move(part.annotations), part.mesh, output.file_name());
+        output.write(std::move(part.mesh), std::move(extras));
+    }
+
+    /// Transfers colours and labels of the whole to the part. Vertex colours on the cuts are interpolated; faces that close
+    /// cuts have no label and a neutral colour.
+    [[nodiscard]] MeshExtras extras_of(const CutPart& part, Report& report) const {
+        const MeshExtras& source = mesh->extras;
+        MeshExtras extras;
+        const auto face_of_whole = [&](Index face) {
+            return face == no_index ? no_index : part.whole ? part.whole->face_origin[face] : face;
+        };
+        for (const Index face : part.faces) {
+            const Index f = face_of_whole(face);
+            if (!source.face_labels.empty()) extras.face_labels.push_back(f == no_index ? no_label : source.face_labels[f]);
+            if (!source.face_colours.empty())
+                extras.face_colours.push_back(f == no_index ? Colour{190, 190, 190, 255} : source.face_colours[f]);
+        }
+        if (!source.vertex_colours.empty()) {
+            extras.vertex_colours.resize(part.vertices.size());
+            for (std::size_t channel = 0; channel < 4; ++channel) {
+                std::vector<double> values;
+                for (const Colour& colour : source.vertex_colours) values.push_back(colour[channel]);
+                if (part.whole) values = part.whole->vertex_values(mesh->mesh, values);
+                for (std::size_t v = 0; v < part.vertices.size(); ++v)
+                    extras.vertex_colours[v][channel] = static_cast<std::uint8_t>(std::lround(values[part.vertices[v]]));
+            }
+        }
+        const auto copy_values = [&](const auto& values, auto& target) {
+            if (!values.empty() && !part.whole)
+                for (const Index v : part.vertices) target.push_back(values[v]);
+        };
+        copy_values(source.vertex_labels, extras.vertex_labels);
+        copy_values(source.vertex_texture, extras.vertex_texture);
+        if (!source.corner_texture.empty() || (part.whole && !(source.vertex_labels.empty() && source.vertex_texture.empty())))
+            report.note("texture coordinates and labels of vertices are not carried to the part");
+        return extras;
+    }
+
+    MeshOutput output;
+    AnnotationsOutput annotations_out;
+    VocabularyOption vocabulary;
+    std::vector<std::string> names, without;
+    bool closed = false, labels = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_mesh_extract() { return make<MeshExtract>(); }
+
+}  // namespace ostraka
