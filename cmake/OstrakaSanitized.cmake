@@ -1,5 +1,5 @@
 # Tests of some modules with the address and undefined behaviour sanitizers, beside a build without them: the sources of these modules
-# and their tests are compiled once more; the other modules come from the library. scripts/test --all selects a tenth of the modules
+# and their tests are compiled once more; the other modules come from the library. scripts/test --deep selects a tenth of the modules
 # for each commit; the preset "asan" (scripts/test --sanitize) covers all of them.
 set(OSTRAKA_SANITIZED_MODULES "" CACHE STRING "Modules whose tests are also run with sanitizers")
 foreach(module IN LISTS OSTRAKA_SANITIZED_MODULES)
