@@ -23,7 +23,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct FragmentOptions {
+struct ExperimentOptions {
     std::string output = "experiments-output/fragments", space = "mesh";
     std::vector<double> shares{0.1, 0.25, 0.5};
     int seeds = 4;
@@ -305,7 +305,7 @@ void verdicts(const VerdictOptions& options) {
 }
 
 /// Fits fragments of deformed copies of a synthetic template: errors of pose, observed and missing part, constraints.
-void fragments(const FragmentOptions& options) {
+void fragments(const ExperimentOptions& options) {
     const Canon canon = make_canon(options.vertices);
     ReconstructOptions how;
     set_option(how.fit, "space", options.space);
