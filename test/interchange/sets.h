@@ -104,8 +104,13 @@ inline AnnotationSet wild_set(const Mesh& mesh) {
     measure.id = 4;
     measure.name = "height, \"max\"";
     measure.type = AttributeType::measure;
-    measure.measure = {"bounding", {4, 5}, {{0, {0.25, 0.5, 0.25}}, {1, {1, 0, 0}}}, std::array<double, 3>{0, -0.6, 0.8}, 1.0 / 3,
-                       "mm",       true};
+    measure.measure = {"bounding",
+                       {4, 5},
+                       {face_point(0, {0.25, 0.5, 0.25}), face_point(1, {1, 0, 0})},
+                       std::array<double, 3>{0, -0.6, 0.8},
+                       1.0 / 3,
+                       "mm",
+                       true};
     upper.attributes.push_back(measure);
     measure.id = 5;
     measure.name = "=way";
