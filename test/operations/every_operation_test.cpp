@@ -385,7 +385,7 @@ TEST(Calls, RefuseWhatMakesNoSense) {
     EXPECT_NE(with("annotation transfer", R"({"source": 3})").find("source"), std::string::npos);
     EXPECT_NE(with("mesh info", "{}").find("input is missing"), std::string::npos);
     EXPECT_NE(with("mesh info", R"({"input": "/nowhere.ply"})").find("cannot be opened"), std::string::npos);
-    EXPECT_NE(with("mesh info", R"([])").find("no object"), std::string::npos);
+    EXPECT_NE(with("mesh info", R"([])").find("not an object"), std::string::npos);
     EXPECT_NE(message([] {
                   Call call(find_operation("mesh info"));
                   call.set_object("input", Object::of(std::string("no mesh"), "x.ply"));
