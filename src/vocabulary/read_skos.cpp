@@ -311,7 +311,7 @@ private:
             vocabulary_.notes.push_back(counted(labels, "label") + " of SKOS-XL not used (give skos:prefLabel as well)");
         if (others > 0)
             vocabulary_.notes.push_back(
-                fmt::format("statements about {} that are not concepts are not kept", counted(others, "resource")));
+                fmt::format("statements about resources other than concepts are not kept: {}", counted(others, "resource")));
     }
 
     /// The nodes sorted by their positions, if they have any.

@@ -125,7 +125,7 @@ ex:somebody <http://xmlns.com/foaf/0.1/name> "somebody" .
     EXPECT_TRUE(holds(vocabulary.notes[0], "2 collections with 5 members not kept: 'by shape', an unnamed collection"))
         << vocabulary.notes[0];
     EXPECT_TRUE(holds(vocabulary.notes[1], "1 label of SKOS-XL")) << vocabulary.notes[1];
-    EXPECT_TRUE(holds(vocabulary.notes[2], "1 thing")) << vocabulary.notes[2];
+    EXPECT_TRUE(holds(vocabulary.notes[2], "1 resource")) << vocabulary.notes[2];
 }
 
 TEST(Skos, ParseErrorsNameTheLine) {

@@ -175,8 +175,8 @@ TEST(Session, UndoRestoresEveryStateToTheBit) {
 
 TEST(Session, RefusesInWordsAndChangesNothing) {
     Bench bench;
-    EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"../../etc/passwd"})").find("is no mesh"), std::string::npos);
-    EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"session/session.json"})").find("is no mesh"), std::string::npos);
+    EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"../../etc/passwd"})").find("is not a mesh"), std::string::npos);
+    EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"session/session.json"})").find("is not a mesh"), std::string::npos);
     EXPECT_NE(bench.refused(R"({"id":1,"do":"run","operation":"mesh info","with":{"input":{"part":"mesh"}}})").find("no object"),
               std::string::npos);
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
@@ -207,7 +207,7 @@ TEST(Session, RefusesInWordsAndChangesNothing) {
             {R"({"id":1,"do":"select","expression":{"halfspace":7}})", "does not match"},
             {R"({"id":1,"do":"dance"})", "is not a change"},
             {R"({"id":1})", "is not a change"},
-            {R"([1,2])", "no object"},
+            {R"([1,2])", "not an object"},
             {R"({"id":1,"do":)", ""},
             {"", ""}})
         EXPECT_NE(bench.refused(message).find(words), std::string::npos) << message << ": " << bench.refused(message);
