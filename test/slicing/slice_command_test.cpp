@@ -248,7 +248,7 @@ TEST(SliceCommand, RejectsInvalidOutputs) {
     const Scratch scratch;
     write_file(scratch / "taken", "text");
     expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken").string(), 2, "is a file");
-    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken" / "within").string(), 1, "cannot be made");
+    expect_fails("slice " + vase + "--count 3 --output " + (scratch / "taken" / "within").string(), 1, "cannot be created");
     std::filesystem::create_symlink("/dev/full", scratch / "full.csv");
     expect_fails("slice " + vase + "--count 3 --output " + (scratch / "full.csv").string(), 1, "cannot be written");
     EXPECT_EQ(read_file(scratch / "taken"), "text");
