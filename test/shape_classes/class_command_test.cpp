@@ -210,7 +210,7 @@ TEST_F(ClassCommand, WrongArgumentsAndFilesAreReported) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "evil"));
     write_file(scratch / "file", "no folder");
     const auto unmade = run_command(learn + " --output " + quoted(scratch / "file" / "class"));
-    EXPECT_NE(unmade.err.find("folder cannot be made"), std::string::npos) << unmade.err;
+    EXPECT_NE(unmade.err.find("folder cannot be created"), std::string::npos) << unmade.err;
     const auto empty = run_command("template learn " + known() + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(empty.code, 2);
     EXPECT_NE(empty.err.find("empty"), std::string::npos) << empty.err;
