@@ -467,10 +467,10 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     };
     refuse((scratch / "none.ply").string(), 1, "none.ply");
     refuse(data + "vase.ant.json", 1, "comes before any mesh");
-    refuse(data + "vase.recipe.json", 1, "nothing that a page can show");
+    refuse(data + "vase.recipe.json", 1, "cannot be shown on a page");
     refuse(data + "vase.ply " + data + "teapot.ant.json", 1, "teapot.ant.json");
     std::filesystem::create_directory(scratch / "empty");
-    refuse((scratch / "empty").string(), 1, "nothing that a page can show");
+    refuse((scratch / "empty").string(), 1, "cannot be shown on a page");
     EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
     // A folder: its cage is no object of its own, and a file that cannot be read is none of its results.
     write_file(scratch / "empty/broken.json", "[1,");
