@@ -470,7 +470,7 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     refuse(data + "vase.recipe.json", 1, "cannot be shown on a page");
     refuse(data + "vase.ply " + data + "teapot.ant.json", 1, "teapot.ant.json");
     std::filesystem::create_directory(scratch / "empty");
-    refuse((scratch / "empty").string(), 1, "cannot be shown on a page");
+    refuse((scratch / "empty").string(), 1, "nothing that a page can show");
     EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
     // A folder: its cage is no object of its own, and a file that cannot be read is none of its results.
     write_file(scratch / "empty/broken.json", "[1,");
