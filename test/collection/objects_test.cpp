@@ -142,7 +142,8 @@ TEST(Collection, LabelsNeedTheirColumnsAndAnObject) {
     };
     const Path unnamed = scratch.file("unnamed.csv", "object,label\na,wheel\n"),
                other = scratch.file("o.csv", "name,mould\na,1\n");
-    EXPECT_NE(problem([&] { read_labels(unnamed); }).find("no column 'name'; the columns are 'object', 'label'"), std::string::npos);
+    EXPECT_NE(problem([&] { read_labels(unnamed); }).find("no column 'name'; the columns are 'object', 'label'"),
+              std::string::npos);
     EXPECT_NE(problem([&] { read_labels(other); }).find("no column 'label'; the columns are 'name', 'mould'"), std::string::npos);
     EXPECT_EQ(read_labels(other, "mould").at("a"), "1");
     Collection collection = read_collection(scratch.path());
