@@ -187,7 +187,7 @@ TEST(PoseSearch, ReportsWhenItCannotDecide) {
     EXPECT_FALSE(twice.decided);
     ASSERT_GE(twice.candidates.size(), 2u);
     EXPECT_NEAR(twice.candidates[0].score, twice.candidates[1].score, 0.02);
-    EXPECT_NE(twice.reason.find("as well"), std::string::npos) << twice.reason;
+    EXPECT_NE(twice.reason.find("equally well"), std::string::npos) << twice.reason;
 }
 
 TEST(PoseSearch, SameForAnyNumberOfThreads) {
