@@ -1,4 +1,4 @@
-// annotation diff, merge
+// annotation merge
 #include "operations/annotation/differences.h"
 #include "operations/operations.h"
 
@@ -8,62 +8,7 @@
 
 namespace ostraka {
 
-void declare_differences(ReportLayout& layout, const std::string& table) {
-    layout.table(table, integer("id", "id"), text("tag", "tag"), text("kind", "what"), text("field", "field"),
-                 text("before", "before"), text("after", "after"), integer("onlyBefore"), integer("onlyAfter"));
-}
-
 namespace {
-
-/// Adds a row for a difference or conflict of an annotation, or of the set as a whole.
-template <class Change>
-Report::Row named_row(Report& report, const std::string& table, const Change& change) {
-    Report::Row row = report.row(table);
-    if (change.id) row("id", *change.id)("tag", change.tag);
-    else row.shown("id", "set").shown("tag", change.tag);
-    return row("field", change.field);
-}
-
-}  // namespace
-
-void add_differences(Report& report, const std::string& table, const std::vector<Difference>& changes, const std::string& none) {
-    report.empty_table(table, false);
-    if (changes.empty()) report.line(none);
-    for (const Difference& change : changes) {
-        Report::Row row = named_row(report, table, change);
-        row("kind", change.kind == Difference::Kind::added     ? "added"
-                    : change.kind == Difference::Kind::removed ? "removed"
-                                                               : "changed");
-        std::string counts;
-        if (change.field == "geometry") {
-            row("onlyBefore", change.only_before)("onlyAfter", change.only_after);
-            counts = fmt::format(" (-{} +{})", change.only_before, change.only_after);
-        }
-        row("before", change.before)("after", change.after, change.after + counts);
-    }
-}
-
-namespace {
-
-struct AnnotationDiff final : Operation {
-    void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh of both sets");
-        p.input("before", Kind::annotations, before, "annotations (.ant.json)");
-        p.input("after", Kind::annotations, after, "annotations to compare with them");
-        p.report.values(boolean("same"));
-        declare_differences(p.report, "differences");
-    }
-
-    void run(Context&, Report& report) override {
-        const auto changes = differences(before.on(mesh->mesh), after.on(mesh->mesh));
-        report("same", changes.empty());
-        add_differences(report, "differences", changes, "no difference");
-        if (!changes.empty()) report.answer_no();
-    }
-
-    MeshInput mesh;
-    AnnotationsInput before, after;
-};
 
 struct AnnotationMerge final : Operation {
     void describe(Parameters& p) override {
@@ -113,7 +58,6 @@ struct AnnotationMerge final : Operation {
 
 }  // namespace
 
-std::unique_ptr<Operation> make_annotation_diff() { return make<AnnotationDiff>(); }
 std::unique_ptr<Operation> make_annotation_merge() { return make<AnnotationMerge>(); }
 
 }  // namespace ostraka

@@ -1,36 +1,14 @@
-// template pack, check, show
-#include "operations/operations.h"
-
-#include "ostraka/template_package/template.h"
+// template pack
+#include "operations/template/inspection.h"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <map>
 
 namespace ostraka {
 
 namespace {
-
-/// Declares the contents and defects of a template; `contents`: show the contents to people too.
-void declare_template(ReportLayout& layout, bool contents) {
-    const auto title = [&](const char* text) { return contents ? text : ""; };
-    layout.values(text("class"), text("unit"));
-    layout.table("parts", text("role", title("part")), text("file", title("file")), integer("bytes", title("bytes")),
-                 text("text", title("what")));
-    layout.checks = true;
-}
-
-void add_template(Report& report, const Template& package, bool contents) {
-    const std::string &object_class = package.file.object_class, &unit = package.file.unit;
-    report("class", object_class)("unit", unit);
-    if (contents && (!object_class.empty() || !unit.empty()))
-        report.line(printable(object_class + (unit.empty() ? "" : ", in " + unit)));
-    report.empty_table("parts");
-    for (const TemplateEntry& entry : package.entries)
-        report.row("parts")("role", entry.role)("file", entry.name)("bytes", entry.bytes)("text", entry.text);
-    if (contents) report.line("");
-    report.findings(package.findings, "part");
-}
 
 struct TemplatePack final : Operation {
     void describe(Parameters& p) override {
@@ -115,24 +93,8 @@ struct TemplatePack final : Operation {
     TemplateOptions options;
 };
 
-struct TemplateShow final : Operation {
-    explicit TemplateShow(bool shows_contents) : contents(shows_contents) {}
-
-    void describe(Parameters& p) override {
-        p.input("template", Kind::template_package, input, "template (.template.json)");
-        declare_template(p.report, contents);
-    }
-
-    void run(Context&, Report& report) override { add_template(report, *input, contents); }
-
-    bool contents;
-    TemplateInput input;
-};
-
 }  // namespace
 
 std::unique_ptr<Operation> make_template_pack() { return make<TemplatePack>(); }
-std::unique_ptr<Operation> make_template_check() { return std::make_unique<TemplateShow>(false); }
-std::unique_ptr<Operation> make_template_show() { return std::make_unique<TemplateShow>(true); }
 
 }  // namespace ostraka

@@ -1,7 +1,8 @@
-// vocabulary check, show, convert
+// vocabulary show
 #include "operations/operations.h"
+#include "operations/vocabulary/help_texts.h"
 
-#include "ostraka/vocabulary/skos.h"
+#include "ostraka/vocabulary/vocabulary.h"
 
 #include <fmt/core.h>
 
@@ -11,40 +12,6 @@
 namespace ostraka {
 
 namespace {
-
-constexpr const char* vocabulary_file = "vocabulary (.vocabulary.json, .ttl, .rdf)";
-constexpr const char* scheme_help = "URI of the concept scheme, if a SKOS file has several";
-
-struct VocabularyCheck final : Operation {
-    void describe(Parameters& p) override {
-        p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
-        p.options("scheme", scheme, scheme_help);
-        p.report.checks = true;
-    }
-
-    void run(Context& context, Report& report) override {
-        const Path path = file.path();
-        // A file that is neither JSON nor RDF is a failure, not a "no".
-        const bool skos = is_skos(path);
-        const Json* document = skos ? nullptr : &file.load<Json>(read_json);
-        std::vector<Finding> findings;
-        try {
-            Vocabulary vocabulary;
-            if (skos) context.record([&] { vocabulary = read_skos(path, scheme); });
-            else vocabulary = vocabulary_from_json(*document, file.file());
-            for (const auto& note : vocabulary.notes) findings.push_back({false, "", note});
-            for (auto& finding : examine(vocabulary)) findings.push_back(std::move(finding));
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::input || error.problem().starts_with("not valid")) throw;
-            findings.push_back(
-                {true, "", error.remedy().empty() ? error.problem() : fmt::format("{} ({})", error.problem(), error.remedy())});
-        }
-        report.findings(findings);
-    }
-
-    FileInput file;
-    std::string scheme;
-};
 
 struct VocabularyShow final : Operation {
     void describe(Parameters& p) override {
@@ -149,52 +116,8 @@ struct VocabularyShow final : Operation {
     std::string language = "en", under;
 };
 
-struct VocabularyConvert final : Operation {
-    void describe(Parameters& p) override {
-        p.input("input", Kind::vocabulary, input, vocabulary_file);
-        p.output("output", Kind::vocabulary, output, "vocabulary to write (.vocabulary.json, .ttl, .rdf)");
-        p.options("scheme", scheme, scheme_help);
-        p.report.values(integer("concepts"), integer("rules"));
-    }
-
-    void check() const override {
-        for (const std::string& file : {input.file(), output.file()})
-            if (!file.empty() && !is_skos(file) && extension(file) != ".json")
-                fail_usage(fmt::format("the extension of {} is not that of a format of vocabularies", file),
-                           "use .vocabulary.json, .ttl (Turtle) or .rdf (RDF/XML)");
-        if (!scheme.empty() && !is_skos(input.file())) fail_usage("--scheme goes with SKOS files", "leave it out");
-    }
-
-    void run(Context& context, Report& report) override {
-        Vocabulary vocabulary;
-        context.record([&] {
-            const Path path = input.path();
-            vocabulary = is_skos(path) ? read_skos(path, scheme) : read_vocabulary(path);
-        });
-        const std::string output_path = output.path().string();
-        try {
-            write_vocabulary(output_path, vocabulary);
-        } catch (const Error& error) {
-            // A part that cannot be written is a problem of the input.
-            if (error.kind() != ErrorKind::input) throw;
-            const bool names_output = error.where().starts_with(output_path);
-            fail_input(names_output ? input.file() + error.where().substr(output_path.size()) : error.where(), error.problem(),
-                       error.remedy());
-        }
-        report.notes(vocabulary.notes);
-        report("concepts", vocabulary.concepts.size())("rules", vocabulary.rules.size());
-        report.line(fmt::format("{} concepts, {} rules", vocabulary.concepts.size(), vocabulary.rules.size()));
-    }
-
-    FileInput input;
-    FileOutput output{".vocabulary.json"};
-    std::string scheme;
-};
-
 }  // namespace
 
-std::unique_ptr<Operation> make_vocabulary_check() { return make<VocabularyCheck>(); }
 std::unique_ptr<Operation> make_vocabulary_show() { return make<VocabularyShow>(); }
-std::unique_ptr<Operation> make_vocabulary_convert() { return make<VocabularyConvert>(); }
 
 }  // namespace ostraka

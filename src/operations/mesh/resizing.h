@@ -1,17 +1,19 @@
-// mesh simplify, refine, remesh: the same object at another resolution.
+// The same object at another resolution: bases of the operations that simplify, refine and remesh meshes.
+#pragma once
+
 #include "operations/operations.h"
 
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/remesh/remesh.h"
 #include "ostraka/transfer/bound_mesh.h"
 
 #include <fmt/core.h>
 
+#include <tuple>
+#include <utility>
+
 namespace ostraka {
 
-namespace {
-
-/// Declarations and reports shared by the three operations.
+/// Declarations and reports of meshes before and after the change.
 struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
@@ -101,106 +103,5 @@ struct MeshResizeBound : MeshResize {
     AnnotationsOutput annotations_out;
     FileOutput labels_out{".txt"};
 };
-
-struct MeshSimplify final : MeshResizeBound {
-    void describe(Parameters& p) override {
-        describe_bound(p);
-        p.output_option("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one");
-        p.output_option("face-map", Kind::index_map, face_map,
-                        "JSON file to write: the new face of each old one, -1 where it vanished");
-        options.describe(p.options);
-        p.options.find("vertices")->required();
-        outlines = p.options.find("outlines");
-        p.options("protect-outlines", protect, "the same as --outlines protect; pins of measures stay too").unrecorded();
-        p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
-                        integer("isolated_dropped"));
-    }
-
-    void check() const override {
-        MeshResizeBound::check();
-        if (protect && outlines->given) fail_usage("--protect-outlines and --outlines", "give one of them");
-    }
-
-    void run(Context& context, Report& report) override {
-        if (protect) options.outlines = SimplifyOptions::Outlines::protect;
-        std::size_t vertices = 0, faces = 0;
-        SimplifyResult result = resize(context, report, [&](BoundMesh& bound) {
-            SimplifyResult simplified = bound.simplify(options);
-            vertices = bound.mesh.number_of_vertices(), faces = bound.mesh.number_of_faces();
-            return simplified;
-        });
-        report("reached", result.reached)("stop_reason", result.stop_reason)("collapses", result.collapses)(
-            "outlines_broken", result.outlines_broken)("isolated_dropped", result.isolated_dropped);
-        if (!result.reached) {
-            report.note("the requested number of vertices could not be reached: " + result.stop_reason);
-            report.answer_no();
-        }
-        if (result.outlines_broken) report.note("outlines or lines had to be merged to reach the number");
-        if (result.isolated_dropped > 0) report.note(std::to_string(result.isolated_dropped) + " isolated vertices were dropped");
-        if (vertex_map) vertex_map.write({"vertex", std::move(result.vertex_map), vertices});
-        if (face_map) face_map.write({"face", std::move(result.face_map), faces});
-    }
-
-    IndexMapOutput vertex_map, face_map;
-    SimplifyOptions options;
-    bool protect = false;
-    const Option* outlines = nullptr;
-};
-
-struct MeshRefine final : MeshResizeBound {
-    void describe(Parameters& p) override {
-        describe_bound(p);
-        options.describe(p.options);
-        p.report.values(integer("levels"), integer("bisections"));
-    }
-
-    void run(Context& context, Report& report) override {
-        const RefineResult result = resize(context, report, [&](BoundMesh& bound) { return bound.refine(options); });
-        report("levels", result.levels)("bisections", result.bisections);
-    }
-
-    RefineOptions options;
-};
-
-struct MeshRemesh final : MeshResize {
-    void describe(Parameters& p) override {
-        describe_meshes(p);
-        options.describe(p.options);
-        p.options.find("vertices")->required();
-        p.report.values(boolean("reached"), number("target_edge_length", "", "length"), integer("vertices_before_adjustment"),
-                        number("deviation", "", "length"));
-    }
-
-    void run(Context&, Report& report) override {
-        const Mesh& mesh = input->mesh;
-        const MeshExtras& extras = input->extras;
-        if (!extras.vertex_colours.empty() || !extras.face_colours.empty() || !extras.vertex_labels.empty() ||
-            !extras.face_labels.empty() || !extras.vertex_texture.empty() || !extras.corner_texture.empty())
-            report.note("colours, labels and texture coordinates belong to the old mesh and are left out");
-        const Stopwatch stopwatch;
-        RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });
-        report.run("seconds", stopwatch.seconds());
-        report_totals(report, {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)},
-                      {result.mesh.number_of_vertices(), result.mesh.number_of_faces(), surface_area(result.mesh)});
-        report("reached", result.reached)("target_edge_length", result.target_edge_length)(
-            "vertices_before_adjustment", result.remeshed)("deviation", result.deviation);
-        if (!result.reached) {
-            report.note(
-                fmt::format("the requested number of vertices could not be reached: stopped at {} vertices, fewer would change "
-                            "the topology or flip faces",
-                            result.mesh.number_of_vertices()));
-            report.answer_no();
-        }
-        output.write(std::move(result.mesh));
-    }
-
-    RemeshOptions options;
-};
-
-}  // namespace
-
-std::unique_ptr<Operation> make_mesh_simplify() { return make<MeshSimplify>(); }
-std::unique_ptr<Operation> make_mesh_refine() { return make<MeshRefine>(); }
-std::unique_ptr<Operation> make_mesh_remesh() { return make<MeshRemesh>(); }
 
 }  // namespace ostraka

@@ -1,0 +1,61 @@
+#include "operations/annotation/annotation_report.h"
+
+#include "ostraka/measure/examine.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+std::string attribute_text(const Attribute& attribute) {
+    std::string text = attribute.name;
+    if (attribute.type == AttributeType::semantic) return text + ": " + attribute.note;
+    const bool measured = attribute.type == AttributeType::measure;
+    const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
+    if (measured && attribute.measure.value) text += " " + number(*attribute.measure.value);
+    if (!measured)
+        for (std::size_t i = 0; i < std::min<std::size_t>(attribute.descriptor.values.size(), 4); ++i)
+            text += " " + number(attribute.descriptor.values[i]);
+    if (!measured && attribute.descriptor.values.size() > 4) text += " ...";
+    if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
+    if (!unit.empty()) text += " " + unit;
+    return text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : "");
+}
+
+}  // namespace
+
+void declare_annotations(ReportLayout& layout) {
+    layout.values(text("class"), text("unit"));
+    layout.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"), integer("elements", "elements"),
+                 integer("patches", "patches"), integer("outlines", "outlines"), number("area", "area", "length^2"),
+                 number("perimeter", "", "length"), number("length", "", "length"),
+                 people("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
+}
+
+void report_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
+    context.notes("", set.notes);
+    report.set_unit(set.unit);
+    report("class", set.object_class)("unit", set.unit);
+    report.empty_table("annotations");
+    for (const Annotation& annotation : set.annotations) {
+        const AnnotationSummary summary = summarise(mesh, annotation);
+        Report::Row row = report.row("annotations");
+        row("id", annotation.id)("tag", annotation.tag)("type", to_string(annotation.type))("elements", summary.elements)(
+            "patches", summary.patches);
+        if (annotation.type == AnnotationType::region)
+            row("outlines", summary.outlines)("area", summary.area)("perimeter", summary.length);
+        else row.shown("outlines", "-");
+        if (annotation.type == AnnotationType::line) row("length", summary.length);
+        if (annotation.type != AnnotationType::point) row.shown("perimeter / length", number(summary.length));
+        std::vector<std::string> attributes;
+        for (const Attribute& attribute : annotation.attributes) attributes.push_back(attribute_text(attribute));
+        row("attributes", attributes,
+            joined(attributes, "; ") + (annotation.note.empty() ? "" : fmt::format(" [{}]", annotation.note)));
+        if (!annotation.note.empty()) row("note", annotation.note);
+    }
+}
+
+}  // namespace ostraka

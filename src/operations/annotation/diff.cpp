@@ -1,0 +1,33 @@
+// annotation diff
+#include "operations/annotation/differences.h"
+#include "operations/operations.h"
+
+namespace ostraka {
+
+namespace {
+
+struct AnnotationDiff final : Operation {
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh of both sets");
+        p.input("before", Kind::annotations, before, "annotations (.ant.json)");
+        p.input("after", Kind::annotations, after, "annotations to compare with them");
+        p.report.values(boolean("same"));
+        declare_differences(p.report, "differences");
+    }
+
+    void run(Context&, Report& report) override {
+        const auto changes = differences(before.on(mesh->mesh), after.on(mesh->mesh));
+        report("same", changes.empty());
+        add_differences(report, "differences", changes, "no difference");
+        if (!changes.empty()) report.answer_no();
+    }
+
+    MeshInput mesh;
+    AnnotationsInput before, after;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_diff() { return make<AnnotationDiff>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,15 @@
+// The format of a file of annotations that other programs use.
+#pragma once
+
+#include "operations/operations.h"
+
+#include "ostraka/interchange/interchange.h"
+
+namespace ostraka {
+
+/// Declares --format.
+inline void describe_format(Parameters& p, std::optional<std::string>& format) {
+    p.options("format", format, "format of the file, if its extension does not determine it", Choices(interchange_formats()));
+}
+
+}  // namespace ostraka

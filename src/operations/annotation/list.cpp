@@ -1,0 +1,22 @@
+// annotation list
+#include "operations/annotation/annotation_report.h"
+#include "operations/operations.h"
+
+namespace ostraka {
+
+namespace {
+
+struct AnnotationList final : AnnotatedMeshOperation {
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        declare_annotations(p.report);
+    }
+
+    void run(Context& context, Report& report) override { report_annotations(context, report, mesh->mesh, set()); }
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_list() { return make<AnnotationList>(); }
+
+}  // namespace ostraka

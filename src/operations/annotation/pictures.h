@@ -1,0 +1,33 @@
+// Further outputs of annotations: a coloured mesh and face labels.
+#pragma once
+
+#include "operations/operations.h"
+
+#include "ostraka/annotation/colouring.h"
+#include "ostraka/annotation/label_file.h"
+
+namespace ostraka {
+
+/// Further outputs of annotations: a coloured mesh and face labels.
+struct AnnotationPictures {
+    MeshOutput coloured;
+    FileOutput labels;
+
+    void describe(Parameters& p) {
+        p.output_option("ply", Kind::mesh, coloured,
+                        "write the mesh in the colours of its annotations (PLY or another format with colours)");
+        p.output_option("labels-out", Kind::labels, labels,
+                        "label file to write: for each face the id of the smallest region on it, -1 for none");
+    }
+    void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
+        if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
+        if (!labels) return;
+        const FaceLabels face_ids = face_labels(mesh, set);
+        write_labels(labels.path(), face_ids.of_face);
+        if (face_ids.lost > 0)
+            report.note(number(100 * face_ids.lost, 3) +
+                        " % of the area has another label than its face: free outlines cut faces");
+    }
+};
+
+}  // namespace ostraka
