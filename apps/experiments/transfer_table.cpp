@@ -169,7 +169,7 @@ private:
             }
         };
         const Truth home_truth = truth_of(source, object);
-        judge(home_truth, set, home + " as annotated", "-");
+        judge(home_truth, set, home + " as annotated", "none");
         for (const auto& [name, target] : ladder.rungs) {
             if (name == home || target.number_of_vertices() > 300000) continue;
             const Truth truth = truth_of(target, object);
