@@ -8,7 +8,9 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/operations/table.h"
+#include "ostraka/template_package/template.h"
 
 #include <fmt/core.h>
 

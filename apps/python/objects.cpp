@@ -3,11 +3,15 @@
 
 #include "saved.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/label_file.h"
+#include "ostraka/coords/coordinates.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/io/mesh_of_polygons.h"
+#include "ostraka/relation/graph.h"
 #include "ostraka/render/values.h"
 
 #include <fmt/core.h>

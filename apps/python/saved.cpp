@@ -2,12 +2,16 @@
 
 #include "archive.h"
 
+#include "ostraka/coords/coordinates.h"
 #include "ostraka/core/memory.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/files/npy.h"
 #include "ostraka/files/safe_path.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/render/values.h"
+#include "ostraka/template_package/template.h"
 
 #include <fmt/core.h>
 

@@ -223,6 +223,97 @@ MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& note
     return table;
 }
 
+/// Appends the statistics of each measure, and notes on those without values.
+void describe_measures(ProportionStudy& study, const UnifiedMeasures& unified, double confidence) {
+    const MeasureTable& table = unified.table;
+    for (std::size_t j = 0; j < table.measures.size(); ++j) {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < table.objects.size(); ++i)
+            if (const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+                !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
+                values.push_back(value);
+        const bool absent = table.values.col(static_cast<Eigen::Index>(j)).array().isNaN().all();
+        // The unit of a measure that was never taken is unknown.
+        study.measures.push_back(row_of(table.measures[j].name, absent ? "" : table.measures[j].unit, values, confidence));
+        if (absent)
+            study.notes.push_back(
+                fmt::format("measure '{}' has no value in any object and is not used in ratios", table.measures[j].name));
+        else if (values.empty())
+            study.notes.push_back(fmt::format("measure '{}' has no value that can be compared", table.measures[j].name));
+    }
+}
+
+/// The standard deviation of the size shared by two lengths: from their covariance over the comparable objects.
+std::optional<double> size_deviation(const Eigen::MatrixXd& centred, const std::vector<double>& deviations,
+                                     const std::vector<bool>& comparable) {
+    double sum = 0, count = 0;
+    for (Eigen::Index c = 0; c < centred.cols(); ++c) {
+        double mean = 0, square = 0, n = 0;
+        for (Eigen::Index i = 0; i < centred.rows(); ++i)
+            if (comparable[static_cast<std::size_t>(i)] && !std::isnan(centred(i, c)))
+                mean += centred(i, c), square += centred(i, c) * centred(i, c), n += 1;
+        if (n < 2) continue;
+        const double deviation = deviations[static_cast<std::size_t>(c)];
+        sum += (square - mean * mean / n) / (n - 1) - deviation * deviation;
+        count += 1;
+    }
+    if (count == 0) return {};
+    return std::sqrt(std::max(0.0, sum / count));
+}
+
+/// Tests the ratios within each kind of measure, and enters the deviations of the measures.
+std::vector<Candidate> tested_candidates(ProportionStudy& study, const UnifiedMeasures& unified, const std::vector<Kind>& kinds,
+                                         bool identical, const ProportionOptions& options) {
+    std::vector<Candidate> all_candidates;
+    std::size_t ratios = 0;
+    for (const Kind& kind : kinds) ratios += kind.measures.size() * (kind.measures.size() - 1) / 2;
+    // Enough permutations that a single fixed ratio can fall below its corrected limit.
+    const int permutations =
+        std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const Kind& kind = kinds[k];
+        std::vector<Candidate> candidates = ratios_of(unified.table, kind, identical, options);
+        test(candidates, kind, options, permutations, options.seed + 1000003 * (k + 1));
+        const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
+        if (const auto deviations = proportions::own_deviations(centred)) {
+            for (std::size_t c = 0; c < deviations->size(); ++c)
+                study.measures[kind.measures[c]].own_deviation = (*deviations)[c];
+            if (unified.table.measures[kind.measures.front()].power == 1)
+                if (const auto shared = size_deviation(centred, *deviations, unified.comparable)) study.size_deviation = *shared;
+        }
+        all_candidates.insert(all_candidates.end(), std::make_move_iterator(candidates.begin()),
+                              std::make_move_iterator(candidates.end()));
+    }
+    return all_candidates;
+}
+
+/// Corrects the p-values for the number of tests, classifies the ratios and appends them.
+void classify_ratios(ProportionStudy& study, std::vector<Candidate> candidates, bool identical,
+                     const ProportionOptions& options) {
+    std::vector<double> joint, others, pairing;
+    for (const Candidate& candidate : candidates) {
+        joint.push_back(std::max(candidate.ratio.p_others, candidate.ratio.p_size.value_or(0)));
+        others.push_back(candidate.ratio.p_others);
+        pairing.push_back(candidate.ratio.p_pairing);
+    }
+    const std::vector<double> q = corrected(joint, options.correction), q_others = corrected(others, options.correction),
+                              q_pairing = corrected(pairing, options.correction);
+    std::size_t too_few = 0, constant = 0;
+    for (std::size_t r = 0; r < candidates.size(); ++r) {
+        Candidate& candidate = candidates[r];
+        candidate.ratio.q = q[r];
+        candidate.ratio.q_pairing = q_pairing[r];
+        candidate.ratio.q_others = q_others[r];
+        candidate.ratio.fixedness = verdict(candidate, identical, options.false_discoveries, q_others[r]);
+        too_few += candidate.count < 4 ? 1 : 0;
+        constant += candidate.constant ? 1 : 0;
+        study.ratios.push_back(std::move(candidate.ratio));
+    }
+    if (too_few > 0)
+        study.notes.push_back("ratios known for fewer than four objects, which are not classified: " + std::to_string(too_few));
+    if (constant > 0) study.notes.push_back("ratios that are exactly equal in all objects: " + std::to_string(constant));
+}
+
 }  // namespace
 
 std::string to_string(Fixedness fixedness) {
@@ -257,24 +348,7 @@ ProportionStudy study_proportions(const MeasureTable& measured, const Proportion
     if (identical)
         study.notes.emplace_back("the objects are identical in all measures: without variation, ratios cannot be classified");
     study.notes.insert(study.notes.end(), unified.notes.begin(), unified.notes.end());
-
-    for (std::size_t j = 0; j < table.measures.size(); ++j) {
-        std::vector<double> values;
-        for (std::size_t i = 0; i < table.objects.size(); ++i)
-            if (const double value = table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-                !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
-                values.push_back(value);
-        const bool absent = table.values.col(static_cast<Eigen::Index>(j)).array().isNaN().all();
-        // The unit of a measure that was never taken is unknown.
-        study.measures.push_back(
-            row_of(table.measures[j].name, absent ? "" : table.measures[j].unit, values, options.confidence));
-        if (absent)
-            study.notes.push_back(
-                fmt::format("measure '{}' has no value in any object and is not used in ratios", table.measures[j].name));
-        else if (values.empty())
-            study.notes.push_back(fmt::format("measure '{}' has no value that can be compared", table.measures[j].name));
-    }
-
+    describe_measures(study, unified, options.confidence);
     if (table.objects.size() < enough_objects)
         study.notes.push_back(fmt::format("{}{}: too few to establish fixed ratios; at least ten are recommended",
                                           table.objects.size(), table.objects.size() == 1 ? " object" : " objects"));
@@ -282,61 +356,7 @@ ProportionStudy study_proportions(const MeasureTable& measured, const Proportion
     if (kinds.size() > 1)
         study.notes.push_back(
             "measures of different kinds (lengths, areas, volumes, others): ratios are formed within each kind");
-    std::vector<Candidate> all_candidates;
-    std::size_t ratios = 0;
-    for (const Kind& kind : kinds) ratios += kind.measures.size() * (kind.measures.size() - 1) / 2;
-    // Enough permutations that a single fixed ratio can fall below its corrected limit.
-    const int permutations =
-        std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-        const Kind& kind = kinds[k];
-        std::vector<Candidate> candidates = ratios_of(table, kind, identical, options);
-        test(candidates, kind, options, permutations, options.seed + 1000003 * (k + 1));
-        const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
-        if (const auto deviations = proportions::own_deviations(centred)) {
-            for (std::size_t c = 0; c < deviations->size(); ++c)
-                study.measures[kind.measures[c]].own_deviation = (*deviations)[c];
-            if (table.measures[kind.measures.front()].power == 1) {
-                // The size shared by two lengths: their covariance over the comparable objects.
-                double sum = 0, count = 0;
-                for (Eigen::Index c = 0; c < centred.cols(); ++c) {
-                    double mean = 0, square = 0, n = 0;
-                    for (Eigen::Index i = 0; i < centred.rows(); ++i)
-                        if (unified.comparable[static_cast<std::size_t>(i)] && !std::isnan(centred(i, c)))
-                            mean += centred(i, c), square += centred(i, c) * centred(i, c), n += 1;
-                    if (n < 2) continue;
-                    sum += (square - mean * mean / n) / (n - 1) -
-                           (*deviations)[static_cast<std::size_t>(c)] * (*deviations)[static_cast<std::size_t>(c)];
-                    count += 1;
-                }
-                if (count > 0) study.size_deviation = std::sqrt(std::max(0.0, sum / count));
-            }
-        }
-        all_candidates.insert(all_candidates.end(), std::make_move_iterator(candidates.begin()),
-                              std::make_move_iterator(candidates.end()));
-    }
-
-    std::vector<double> joint, others, pairing;
-    for (const Candidate& candidate : all_candidates) {
-        joint.push_back(std::max(candidate.ratio.p_others, candidate.ratio.p_size.value_or(0)));
-        others.push_back(candidate.ratio.p_others);
-        pairing.push_back(candidate.ratio.p_pairing);
-    }
-    const std::vector<double> q = corrected(joint, options.correction), q_others = corrected(others, options.correction),
-                              q_pairing = corrected(pairing, options.correction);
-    std::size_t too_few = 0, constant = 0;
-    for (std::size_t r = 0; r < all_candidates.size(); ++r) {
-        all_candidates[r].ratio.q = q[r];
-        all_candidates[r].ratio.q_pairing = q_pairing[r];
-        all_candidates[r].ratio.q_others = q_others[r];
-        all_candidates[r].ratio.fixedness = verdict(all_candidates[r], identical, options.false_discoveries, q_others[r]);
-        too_few += all_candidates[r].count < 4 ? 1 : 0;
-        constant += all_candidates[r].constant ? 1 : 0;
-        study.ratios.push_back(std::move(all_candidates[r].ratio));
-    }
-    if (too_few > 0)
-        study.notes.push_back("ratios known for fewer than four objects, which are not classified: " + std::to_string(too_few));
-    if (constant > 0) study.notes.push_back("ratios that are exactly equal in all objects: " + std::to_string(constant));
+    classify_ratios(study, tested_candidates(study, unified, kinds, identical, options), identical, options);
     if (study.ratios.empty()) study.notes.push_back("no two measures are of the same kind, so that there are no ratios");
     for (const Kind& kind : kinds)
         if (kind.measures.size() == 2)

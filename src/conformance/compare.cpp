@@ -4,6 +4,7 @@
 #include "ostraka/files/npy.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/io/mesh_file.h"
 
 #include <fmt/core.h>
 

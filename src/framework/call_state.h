@@ -1,7 +1,9 @@
 // The state of a call while it runs, shared by Context and Call.
 #pragma once
 
+#include "ostraka/framework/inputs.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 
 #include <tuple>
 

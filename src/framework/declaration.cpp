@@ -1,6 +1,8 @@
 // The declaration of a call as JSON.
 #include "ostraka/files/json_build.h"
+#include "ostraka/framework/inputs.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 
 #include <fmt/core.h>
 

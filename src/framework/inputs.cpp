@@ -1,8 +1,10 @@
 #include "framework/polygons.h"
 
 #include "ostraka/files/json_build.h"
+#include "ostraka/framework/inputs.h"
 #include "ostraka/framework/object_files.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/render/values.h"
 

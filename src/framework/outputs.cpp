@@ -2,7 +2,9 @@
 
 #include "ostraka/files/json_build.h"
 #include "ostraka/files/safe_path.h"
+#include "ostraka/framework/inputs.h"
 #include "ostraka/framework/operation.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/render/values.h"
 
 #include <fmt/core.h>

@@ -125,6 +125,132 @@ std::vector<Index> FaceCutter::border(Index face) const {
     return vertex_path;
 }
 
+/// The constrained triangulation of one face in its plane.
+class FaceCutter::FaceTriangulation {
+public:
+    FaceTriangulation(FaceCutter& cutter, Index face)
+        : cutter_(cutter), face_(face), corners_(corners(cutter.mesh_, Face(face))), origin_(cutter.mesh_.point(corners_[0])) {
+        const Vector edge = cutter.mesh_.point(corners_[1]) - origin_;
+        scale_ = std::sqrt(edge.squared_length());
+        x_ = edge / scale_;
+        y_ = CGAL::cross_product(area_vector(cutter.mesh_, Face(face)), x_);
+        y_ = y_ / std::sqrt(y_.squared_length());
+    }
+
+    /// Triangulates the face with this boundary and, if `with_curves`, the segments of the curves. Returns false if rounding
+    /// makes the boundary invalid.
+    bool run(const Cut& cut, const std::vector<Index>& boundary, bool with_curves, std::vector<std::array<Index, 3>>& triangles) {
+        for (const std::vector<Index>* vertices : {&boundary, &cut.inner})
+            for (const Index v : *vertices)
+                if (!insert(v)) return false;
+        const std::size_t inserted = handles_.size();
+        for (std::size_t i = 0; i < boundary.size(); ++i) {
+            const Index v = boundary[i], w = boundary[(i + 1) % boundary.size()];
+            rim_.emplace(std::min(v, w), std::max(v, w));
+            triangulation_.insert_constraint(handles_[v], handles_[w]);
+        }
+        if (triangulation_.number_of_vertices() != inserted) return false;
+        if (with_curves) {
+            for (const auto& [v, w] : cut.segments)
+                if (handles_.count(v) > 0 && handles_.count(w) > 0 && rim_.count({v, w}) == 0)
+                    triangulation_.insert_constraint(handles_[v], handles_[w]);
+            if (triangulation_.number_of_vertices() != inserted) add_crossings();
+            for (const auto& [v, w] : cut.segments) note_crossings(v, w);
+        }
+        return collect(triangles);
+    }
+
+private:
+    /// False if another vertex has the same position in the plane.
+    bool insert(Index v) {
+        const Vector d = cutter_.point(v) - origin_;
+        const auto inserted = triangulation_.insert(Kernel::Point_2((d * x_) / scale_, (d * y_) / scale_));
+        for (const auto& [other, other_handle] : handles_)
+            if (other_handle == inserted) return false;
+        inserted->info() = v;
+        handles_[v] = inserted;
+        return true;
+    }
+
+    /// Adds the vertices that crossings of curves have created.
+    void add_crossings() {
+        std::set<Triangulation::Vertex_handle> inserted;
+        for (const auto& [v, handle] : handles_) inserted.insert(handle);
+        std::vector<Triangulation::Vertex_handle> crossings;
+        for (auto v = triangulation_.finite_vertices_begin(); v != triangulation_.finite_vertices_end(); ++v)
+            if (inserted.count(v) == 0) crossings.push_back(v);
+        std::sort(crossings.begin(), crossings.end(), [](auto v, auto w) { return v->point() < w->point(); });
+        const Mesh& mesh = cutter_.mesh_;
+        const auto& [a, b, c] = corners_;
+        for (const auto v : crossings) {
+            const Point place = origin_ + scale_ * (v->point().x() * x_ + v->point().y() * y_);
+            const auto barycentric = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), place);
+            v->info() = cutter_.add_point(face_point(face_, barycentric));
+            handles_[v->info()] = v;
+        }
+    }
+
+    /// Records the vertices along a piece from v to w that is not an edge of the triangulation.
+    void note_crossings(Index v, Index w) {
+        const auto from = handles_.find(v), to = handles_.find(w);
+        if (from == handles_.end() || to == handles_.end() || rim_.count({v, w}) > 0 ||
+            triangulation_.is_edge(from->second, to->second))
+            return;
+        const Kernel::Point_2 p = from->second->point(), q = to->second->point();
+        const Kernel::Vector_2 along = q - p;
+        std::vector<std::pair<double, Index>> between;
+        for (const auto& [other, other_handle] : handles_) {
+            const Kernel::Vector_2 d = other_handle->point() - p;
+            const double share = (d * along) / along.squared_length();
+            if (other != v && other != w && share > 0 && share < 1 && (d - share * along).squared_length() < 1e-18)
+                between.emplace_back(share, other);
+        }
+        std::sort(between.begin(), between.end());
+        std::vector<Index>& crossed = cutter_.crossed_[{v, w}];
+        crossed.clear();
+        for (const auto& [share, other] : between) crossed.push_back(other);
+    }
+
+    [[nodiscard]] bool is_on_rim(Triangulation::Face_handle f, int i) const {
+        const auto v = f->vertex(Triangulation::cw(i)), w = f->vertex(Triangulation::ccw(i));
+        if (triangulation_.is_infinite(v) || triangulation_.is_infinite(w)) return false;
+        return rim_.count(std::minmax(v->info(), w->info())) > 0;
+    }
+
+    /// The triangles inside the boundary: those that cannot be reached from outside without crossing it.
+    bool collect(std::vector<std::array<Index, 3>>& triangles) const {
+        std::set<Triangulation::Face_handle> outside;
+        std::vector<Triangulation::Face_handle> stack{triangulation_.infinite_face()};
+        outside.insert(stack.front());
+        while (!stack.empty()) {
+            const auto f = stack.back();
+            stack.pop_back();
+            for (int i = 0; i < 3; ++i)
+                if (!is_on_rim(f, i) && outside.insert(f->neighbor(i)).second) stack.push_back(f->neighbor(i));
+        }
+        std::size_t rim_edges = 0;
+        for (auto f = triangulation_.finite_faces_begin(); f != triangulation_.finite_faces_end(); ++f) {
+            if (outside.count(f) > 0) continue;
+            for (int i = 0; i < 3; ++i) rim_edges += is_on_rim(f, i) ? 1 : 0;
+            triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+        }
+        if (rim_edges != rim_.size() || triangles.empty()) return false;
+        for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        std::sort(triangles.begin(), triangles.end());
+        return true;
+    }
+
+    FaceCutter& cutter_;
+    Index face_;
+    std::array<Vertex, 3> corners_;
+    Point origin_;
+    double scale_ = 1;  ///< length of the first edge
+    Vector x_, y_;      ///< axes of the plane
+    Triangulation triangulation_;
+    std::map<Index, Triangulation::Vertex_handle> handles_;
+    std::set<std::pair<Index, Index>> rim_;  ///< edges of the boundary
+};
+
 std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     const std::vector<Index> vertex_path = border(face);
     const auto found = cuts_.find(face);
@@ -135,7 +261,7 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
         // First with the curves; if rounding makes the boundary invalid, with the boundary only: the curves then follow edges
         // nearby.
         for (const bool with_curves : {true, false}) {
-            if (triangulate(face, cut, vertex_path, with_curves, triangles)) return triangles;
+            if (FaceTriangulation(*this, face).run(cut, vertex_path, with_curves, triangles)) return triangles;
             points_.resize(points_before);
             positions_.resize(points_before);
             triangles.clear();
@@ -148,104 +274,6 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     for (std::size_t i = 1; i + 1 < vertex_path.size(); ++i)
         triangles.push_back({vertex_path[0], vertex_path[i], vertex_path[i + 1]});
     return triangles;
-}
-
-bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index>& vertex_path, bool with_curves,
-                             std::vector<std::array<Index, 3>>& triangles) {
-    const auto [a, b, c] = corners(mesh_, Face(face));
-    const Point& origin = mesh_.point(a);
-    const double scale = std::sqrt(CGAL::squared_distance(origin, mesh_.point(b)));
-    const Vector x = (mesh_.point(b) - origin) / scale;
-    Vector y = CGAL::cross_product(area_vector(mesh_, Face(face)), x);
-    y = y / std::sqrt(y.squared_length());
-    Triangulation triangulation;
-    std::map<Index, Triangulation::Vertex_handle> handle;
-    const auto insert = [&](Index v) {
-        const Vector d = point(v) - origin;
-        const auto inserted = triangulation.insert(Kernel::Point_2((d * x) / scale, (d * y) / scale));
-        for (const auto& [other, other_handle] : handle)
-            if (other_handle == inserted) return false;  // two vertices at the same position in the plane
-        inserted->info() = v;
-        handle[v] = inserted;
-        return true;
-    };
-    for (const Index v : vertex_path)
-        if (!insert(v)) return false;
-    for (const Index v : cut.inner)
-        if (!insert(v)) return false;
-    const std::size_t known = handle.size();
-    std::set<std::pair<Index, Index>> rim;
-    // The vertices along a piece from v to w that is not an edge of the triangulation.
-    const auto note_crossings = [&](Index v, Index w) {
-        const auto from = handle.find(v), to = handle.find(w);
-        if (from == handle.end() || to == handle.end() || rim.count({v, w}) > 0 ||
-            triangulation.is_edge(from->second, to->second))
-            return;
-        const Kernel::Point_2 p = from->second->point(), q = to->second->point();
-        const Kernel::Vector_2 along = q - p;
-        std::vector<std::pair<double, Index>> between;
-        for (const auto& [other, other_handle] : handle) {
-            const Kernel::Vector_2 d = other_handle->point() - p;
-            const double share = (d * along) / along.squared_length();
-            if (other != v && other != w && share > 0 && share < 1 && (d - share * along).squared_length() < 1e-18)
-                between.emplace_back(share, other);
-        }
-        std::sort(between.begin(), between.end());
-        std::vector<Index>& list = crossed_[{v, w}];
-        list.clear();
-        for (const auto& [share, other] : between) list.push_back(other);
-    };
-    for (std::size_t i = 0; i < vertex_path.size(); ++i) {
-        const Index v = vertex_path[i], w = vertex_path[(i + 1) % vertex_path.size()];
-        rim.emplace(std::min(v, w), std::max(v, w));
-        triangulation.insert_constraint(handle[v], handle[w]);
-    }
-    if (triangulation.number_of_vertices() != known) return false;
-    if (with_curves)
-        for (const auto& [v, w] : cut.segments)
-            if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0)
-                triangulation.insert_constraint(handle[v], handle[w]);
-    if (triangulation.number_of_vertices() != known) {
-        // Crossings of curves have created new vertices.
-        std::set<Triangulation::Vertex_handle> old;
-        for (const auto& [v, h] : handle) old.insert(h);
-        std::vector<Triangulation::Vertex_handle> fresh;
-        for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
-            if (old.count(v) == 0) fresh.push_back(v);
-        std::sort(fresh.begin(), fresh.end(), [](auto v, auto w) { return v->point() < w->point(); });
-        for (const auto v : fresh) {
-            const Point place = origin + scale * (v->point().x() * x + v->point().y() * y);
-            v->info() = add_point(face_point(face, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place)));
-            handle[v->info()] = v;
-        }
-    }
-    if (with_curves)
-        for (const auto& [v, w] : cut.segments) note_crossings(v, w);
-    // Faces of the triangulation inside the boundary: those that cannot be reached from outside without crossing it.
-    const auto on_rim = [&](Triangulation::Face_handle f, int i) {
-        const auto v = f->vertex(Triangulation::cw(i)), w = f->vertex(Triangulation::ccw(i));
-        if (triangulation.is_infinite(v) || triangulation.is_infinite(w)) return false;
-        return rim.count(std::minmax(v->info(), w->info())) > 0;
-    };
-    std::set<Triangulation::Face_handle> outside;
-    std::vector<Triangulation::Face_handle> stack{triangulation.infinite_face()};
-    outside.insert(stack.front());
-    while (!stack.empty()) {
-        const auto f = stack.back();
-        stack.pop_back();
-        for (int i = 0; i < 3; ++i)
-            if (!on_rim(f, i) && outside.insert(f->neighbor(i)).second) stack.push_back(f->neighbor(i));
-    }
-    std::size_t rim_edges = 0;
-    for (auto f = triangulation.finite_faces_begin(); f != triangulation.finite_faces_end(); ++f) {
-        if (outside.count(f) > 0) continue;
-        for (int i = 0; i < 3; ++i) rim_edges += on_rim(f, i) ? 1 : 0;
-        triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
-    }
-    if (rim_edges != rim.size() || triangles.empty()) return false;
-    for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    std::sort(triangles.begin(), triangles.end());
-    return true;
 }
 
 }  // namespace ostraka

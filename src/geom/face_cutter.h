@@ -43,8 +43,7 @@ private:
     Index add_point(const SurfacePoint& p);
     Index vertex_at(const SurfacePoint& p);
     [[nodiscard]] std::vector<Index> border(Index face) const;
-    bool triangulate(Index face, const Cut& cut, const std::vector<Index>& vertex_path, bool with_curves,
-                     std::vector<std::array<Index, 3>>& triangles);
+    class FaceTriangulation;
 
     const Mesh& mesh_;
     const std::vector<SurfaceCurve>& curves_;

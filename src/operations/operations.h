@@ -6,6 +6,8 @@
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/files/json_build.h"
+#include "ostraka/framework/inputs.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/vocabulary/tag_matcher.h"
 
 namespace ostraka {

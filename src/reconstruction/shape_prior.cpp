@@ -170,104 +170,139 @@ private:
         return result;
     }
 
-    /// False if nothing is matched.
-    bool step(const Points& current, PriorFit& fit) {
-        std::vector<Residual> matches = residuals(current);
-        fit.matched = matches.size();
-        if (matches.size() < 3) return false;
-        // Outliers far beyond the typical residual get no weight (Tukey's biweight).
+    /// Matches with robust weights that add up to one, their centre and the root mean square of their distances from it.
+    struct WeightedMatches {
+        std::vector<Residual> residuals;
+        Vector3d centre = Vector3d::Zero();
+        double squares = 0, spread = 0;  ///< squares: weighted mean of the squared residuals
+    };
+
+    /// Outliers far beyond the typical residual get no weight (Tukey's biweight). Empty if nothing is matched.
+    [[nodiscard]] std::optional<WeightedMatches> weighted(std::vector<Residual> residuals) const {
+        if (residuals.size() < 3) return {};
         std::vector<double> sizes;
-        for (const Residual& residual : matches) sizes.push_back(std::abs(residual.distance));
-        const double min_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), min_error);
+        for (const Residual& residual : residuals) sizes.push_back(std::abs(residual.distance));
+        const double limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), min_error_);
         double weight = 0;
-        for (Residual& residual : matches) {
+        for (Residual& residual : residuals) {
             const double t = residual.distance / limit;
             residual.weight = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0;
             weight += residual.weight;
         }
-        if (!(weight > 0)) return false;
-        Vector3d centre = Vector3d::Zero();
-        double squares = 0, spread = 0;
-        for (Residual& residual : matches) {
+        if (!(weight > 0)) return {};
+        WeightedMatches matches;
+        for (Residual& residual : residuals) {
             residual.weight /= weight;
-            centre += residual.weight * residual.place;
-            squares += residual.weight * residual.distance * residual.distance;
+            matches.centre += residual.weight * residual.place;
+            matches.squares += residual.weight * residual.distance * residual.distance;
         }
-        for (const Residual& residual : matches) spread += residual.weight * (residual.place - centre).squaredNorm();
-        spread = std::sqrt(spread);
-        if (!(spread > 0)) return false;
-        // Unknowns: rotation and scale (times the spread), translation, coefficients (in deviations).
-        const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
-        MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
-        VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
+        for (const Residual& residual : residuals)
+            matches.spread += residual.weight * (residual.place - matches.centre).squaredNorm();
+        matches.spread = std::sqrt(matches.spread);
+        if (!(matches.spread > 0)) return {};
+        matches.residuals = std::move(residuals);
+        return matches;
+    }
+
+    /// Normal equations of a step. Unknowns: rotation and scale (times the spread), translation, coefficients (in deviations).
+    struct Equations {
+        MatrixXd normal;  ///< only the lower triangle
+        VectorXd right;
+    };
+
+    void add(Equations& equations, const Residual& residual, const WeightedMatches& matches) const {
+        const Eigen::Index modes = coefficients_.size();
         const Matrix3d linear = registration_.scale * registration_.rotation;
-        const auto add = [&](const Residual& residual) {
-            const Vector3d arm = (residual.place - centre) / spread;
-            row.head<3>() = arm.cross(residual.normal);
-            row[3] = residual.normal.dot(arm);
-            row.segment<3>(4) = residual.normal;
-            const Eigen::RowVector3d rotated = residual.normal.transpose() * linear;
-            row.tail(modes).setZero();
-            for (std::size_t c = 0; c < 3; ++c)
-                for (Eigen::Index k = 0; k < modes && residual.barycentric[c] > 0; ++k)
-                    row[7 + k] += residual.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
-                                  rotated.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(residual.corners[c])));
-            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, residual.weight);
-            right += residual.weight * residual.distance * row;
-        };
-        for (const Residual& residual : matches)
-            if (residual.weight > 0) add(residual);
-        fit.residual = std::sqrt(squares);
-        fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
-        // A landmark counts as one more sample, with less weight if the landmarks have larger residuals than the surface.
-        double landmark_squares = 0;
+        const Vector3d arm = (residual.place - matches.centre) / matches.spread;
+        VectorXd row(7 + modes);
+        row.head<3>() = arm.cross(residual.normal);
+        row[3] = residual.normal.dot(arm);
+        row.segment<3>(4) = residual.normal;
+        const Eigen::RowVector3d rotated = residual.normal.transpose() * linear;
+        row.tail(modes).setZero();
+        for (std::size_t c = 0; c < 3; ++c)
+            for (Eigen::Index k = 0; k < modes && residual.barycentric[c] > 0; ++k)
+                row[7 + k] += residual.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
+                              rotated.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(residual.corners[c])));
+        equations.normal.selfadjointView<Eigen::Lower>().rankUpdate(row, residual.weight);
+        equations.right += residual.weight * residual.distance * row;
+    }
+
+    /// A landmark counts as one more sample, with less weight if the landmarks have larger residuals than the surface.
+    void add_landmarks(Equations& equations, const Points& current, const WeightedMatches& matches, double samples) const {
+        double squares = 0;
         for (const CorrespondenceConstraint& correspondence : correspondences_)
-            landmark_squares +=
-                (correspondence.place - current.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
-                (3 * static_cast<double>(correspondences_.size()));
-        const double landmark_weight = (landmark_squares > squares ? squares / landmark_squares : 1) / fit.samples;
+            squares += (correspondence.place - current.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
+                       (3 * static_cast<double>(correspondences_.size()));
+        const double weight = (squares > matches.squares ? matches.squares / squares : 1) / samples;
         for (const CorrespondenceConstraint& correspondence : correspondences_) {
             const Vector3d p = current.col(static_cast<Eigen::Index>(correspondence.vertex));
             for (int axis = 0; axis < 3; ++axis)
-                add({p,
+                add(equations,
+                    {p,
                      Vector3d::Unit(axis),
                      correspondence.place[axis] - p[axis],
-                     landmark_weight,
+                     weight,
                      {correspondence.vertex, 0, 0},
-                     {1, 0, 0}});
+                     {1, 0, 0}},
+                    matches);
         }
-        normal = normal.selfadjointView<Eigen::Lower>();
-        // The observed surface counts as `samples` measurements with the residual as their error, at least the error of the
-        // registration; each coefficient has a prior of one standard deviation.
-        const double error = std::max(fit.residual, min_error), stiffness = error * error / fit.samples;
-        for (Eigen::Index k = 0; k < modes; ++k) {
+    }
+
+    /// The observed surface counts as `samples` measurements with the residual as their error, at least the error of the
+    /// registration; each coefficient has a prior of one standard deviation.
+    void add_prior(Equations& equations, double residual, double samples) const {
+        const double error = std::max(residual, min_error_), stiffness = error * error / samples;
+        for (Eigen::Index k = 0; k < coefficients_.size(); ++k) {
             const double b = coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)];
-            normal(7 + k, 7 + k) += stiffness;
-            right[7 + k] -= stiffness * b;
+            equations.normal(7 + k, 7 + k) += stiffness;
+            equations.right[7 + k] -= stiffness * b;
         }
-        normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-        const VectorXd x = solve_ldlt<Eigen::Dynamic>(normal, right);
+        equations.normal.diagonal().array() += 1e-12 * equations.normal.diagonal().maxCoeff();
+    }
+
+    /// One step of the fit. Returns false if nothing is matched or the equations have no solution.
+    bool step(const Points& current, PriorFit& fit) {
+        std::vector<Residual> residuals_now = residuals(current);
+        fit.matched = residuals_now.size();
+        const auto matches = weighted(std::move(residuals_now));
+        if (!matches) return false;
+        const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
+        Equations equations{MatrixXd::Zero(unknowns, unknowns), VectorXd::Zero(unknowns)};
+        for (const Residual& residual : matches->residuals)
+            if (residual.weight > 0) add(equations, residual, *matches);
+        fit.residual = std::sqrt(matches->squares);
+        fit.samples = independent_samples(matches->residuals, static_cast<std::size_t>(unknowns), options_.samples);
+        add_landmarks(equations, current, *matches, fit.samples);
+        equations.normal = equations.normal.selfadjointView<Eigen::Lower>();
+        add_prior(equations, fit.residual, fit.samples);
+        const VectorXd x = solve_ldlt<Eigen::Dynamic>(equations.normal, equations.right);
         if (!x.allFinite()) return false;
-        // The same motion applied to the modes: first the coefficients, then the motion about the centre.
-        for (Eigen::Index k = 0; k < modes; ++k) {
+        apply(x, *matches);
+        return true;
+    }
+
+    /// The same motion applied to the modes: first the coefficients, then the motion about the centre.
+    void apply(const VectorXd& x, const WeightedMatches& matches) {
+        for (Eigen::Index k = 0; k < coefficients_.size(); ++k) {
             const double deviation = prior_.deviations[static_cast<std::size_t>(k)];
             coefficients_[k] =
                 std::clamp(coefficients_[k] + deviation * x[7 + k], -options_.maximum * deviation, options_.maximum * deviation);
         }
-        const Vector3d rotation = x.head<3>() / spread;
+        const Vector3d rotation = x.head<3>() / matches.spread;
         const double angle = rotation.norm();
         Motion increment;
         if (angle > 0) increment.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), rotation / angle).toRotationMatrix();
-        increment.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
-        increment.translation = centre + x.segment<3>(4) - increment.scale * (increment.rotation * centre);
+        increment.scale = std::clamp(1 + x[3] / matches.spread, 0.8, 1.25);
+        increment.translation = matches.centre + x.segment<3>(4) - increment.scale * (increment.rotation * matches.centre);
         registration_ = increment.after(registration_);
-        return true;
     }
 
     const Mesh& scaled_;
     const ShapePrior& prior_;
     const PriorOptions& options_;
     double diagonal_;
+    double min_error_ = 1e-4 * diagonal_;
     std::vector<CorrespondenceConstraint> correspondences_;
     std::vector<FragmentSample> samples_;
     std::map<int, SubMesh> parts_;  ///< of the template, by label

@@ -243,6 +243,181 @@ void draw_over(Canvas& canvas, const Scene& scene, const Surface& surface, const
     detail::draw_lines(canvas, detail::lines_of(scene, surface), surface, camera, {drawn_size, 0, 0, fine});
 }
 
+detail::Style style_of(const RenderOptions& options, const Size& size) {
+    const bool dark = options.theme == RenderOptions::Theme::dark;
+    detail::Style style;
+    style.background = options.background != "auto" ? parse_colour(options.background)
+                       : dark                       ? Rgb{23, 25, 28}
+                                                    : Rgb{255, 255, 255};
+    style.size = detail::mark_size(size.width, size.height);
+    const bool on_dark = style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110;
+    if (dark || (!options.transparent && on_dark)) style.ink = {235, 235, 235};
+    return style;
+}
+
+/// A picture of scenes: panes in columns and rows, each with a strip for scale bar and caption; a side column on the right.
+class Sheet {
+public:
+    Sheet(const std::vector<Scene>& scenes, const RenderOptions& options, PictureKind kind)
+        : scenes_(scenes), options_(options), kind_(kind), plans_(plan_panes(scenes, options)) {
+        const bool contours = options.contours || options.drawing == RenderOptions::Drawing::lines;
+        for (const Scene& scene : scenes)
+            surfaces_.push_back(std::make_unique<Surface>(scene, contours || options.shading == RenderOptions::Shading::smooth));
+        for (const Plan& plan : plans_)
+            if (!plan.caption.empty()) caption_height_ = 30 * style_.size;
+        if (deep_)
+            surface_light_.assign(static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height),
+                                  detail::Light::Zero());
+    }
+
+    Rendering draw() {
+        if (!options_.transparent && !deep_) canvas_.fill(style_.background);
+        const detail::SideColumn side = side_column();
+        const double side_left = size_.width - side.width() - (side.width() > 0 ? edge_ / 2 : 0);
+        place_panes(side_left);
+        for (std::size_t i = 0; i < plans_.size(); ++i) draw_pane(i);
+        side.draw(side_left, edge_);
+        Rendering rendering;
+        rendering.width = size_.width;
+        rendering.height = size_.height;
+        if (kind_ == PictureKind::pixels) rendering.picture = canvas_.picture();
+        else rendering.document = canvas_.document();
+        if (deep_) {
+            rendering.deep = composed(surface_light_, rendering.picture,
+                                      options_.transparent ? std::nullopt : std::optional(style_.background));
+            rendering.picture = {};
+        }
+        for (const Plan& plan : plans_) rendering.panes.push_back(plan.pane);
+        return rendering;
+    }
+
+private:
+    [[nodiscard]] detail::SideColumn side_column() {
+        bool any_values = false;
+        for (const Scene& scene : scenes_) any_values = any_values || !scene.vertex_values.empty() || !scene.face_values.empty();
+        const bool show = !options_.no_legend;
+        return {canvas_,
+                show && !options_.labels ? merged_legend(scenes_) : std::vector<LegendEntry>{},
+                show && any_values ? options_.scale : std::nullopt,
+                0.3 * size_.width,
+                size_.height - 2 * edge_,
+                style_};
+    }
+
+    /// Positions and cameras of the panes, left of `side_left`.
+    void place_panes(double side_left) {
+        std::vector<std::array<double, 2>> extents;
+        for (const Plan& plan : plans_)
+            extents.push_back(extent_of(scenes_[plan.pane.scene], *surfaces_[plan.pane.scene], plan.view, up_));
+        const bool one_scale = options_.fit == RenderOptions::Fit::all;
+        const std::size_t columns = column_count(extents, options_.views == "six", scenes_.size(), one_scale,
+                                                 {side_left, static_cast<double>(size_.height), bar_height_ + caption_height_});
+        const std::size_t rows = (plans_.size() + columns - 1) / columns;
+        const double cell_width = side_left / static_cast<double>(columns),
+                     cell_height = size_.height / static_cast<double>(rows);
+        for (std::size_t i = 0; i < plans_.size(); ++i) {
+            Plan& plan = plans_[i];
+            Pane& pane = plan.pane;
+            pane.left = static_cast<int>(cell_width * static_cast<double>(i % columns));
+            pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
+            pane.width = std::max(1, static_cast<int>(cell_width));
+            pane.height = std::max(1, static_cast<int>(cell_height - bar_height_ - caption_height_));
+            const Scene& scene = scenes_[pane.scene];
+            plan.label_column = options_.labels ? detail::label_column(canvas_, scene, pane.width, style_) : 0;
+            pane.left += static_cast<int>(plan.label_column);
+            pane.width = std::max(1, pane.width - 2 * static_cast<int>(plan.label_column));
+            const Framed framed(scene, *surfaces_[pane.scene]);
+            plan.camera = detail::fit_camera(framed.count(), framed, plan.view, up_, pane.width, pane.height,
+                                             options_.projection == RenderOptions::Projection::perspective);
+        }
+        equalise_scales(plans_, surfaces_, one_scale);
+        for (Plan& plan : plans_) plan.camera.scale *= options_.zoom;
+    }
+
+    void draw_pane(std::size_t index) {
+        Plan& plan = plans_[index];
+        Pane& pane = plan.pane;
+        const Scene& scene = scenes_[pane.scene];
+        const Surface& surface = *surfaces_[pane.scene];
+        pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
+        if (options_.drawing == RenderOptions::Drawing::surface) draw_surface(plan);
+        Camera sheet_camera = plan.camera;
+        sheet_camera.middle_x += pane.left;
+        sheet_camera.middle_y += pane.top;
+        pane.camera = detail::in_mesh_coordinates(sheet_camera, surface.middle(), surface.unit_length());
+        canvas_.clip(pane.left, pane.top, pane.width, pane.height);
+        draw_over(canvas_, scene, surface, sheet_camera, options_, style_, overlay_style_.size, kind_);
+        pane.markers_shown = detail::draw_markers(canvas_, scene, surface, sheet_camera, overlay_style_);
+        const PixelBox box{double(pane.left), double(pane.top), double(pane.width), double(pane.height)};
+        if (options_.axes) detail::draw_axes(canvas_, box, plan.camera, overlay_style_);
+        canvas_.unclip();
+        if (plan.label_column > 0) {
+            pane.labels = detail::place_labels(canvas_, scene, surface, sheet_camera, box, plan.label_column, style_);
+            detail::draw_labels(canvas_, pane.labels, style_);
+        }
+        const bool first_of_scene = index == 0 || plans_[index - 1].pane.scene != pane.scene;
+        const bool every_bar = options_.fit == RenderOptions::Fit::each && scenes_.size() > 1;
+        if (!options_.no_scale_bar && (index == 0 || (every_bar && first_of_scene)))
+            add_scale_bar(canvas_, plan, scene, surface.unit_length(), bar_height_, style_);
+        if (!plan.caption.empty())
+            canvas_.text(canvas_.elide(plan.caption, 17 * style_.size, 0.94 * pane.width), pane.left + pane.width / 2.0,
+                         pane.top + pane.height + bar_height_ + 19 * style_.size, 17 * style_.size, style_.ink,
+                         Canvas::Align::centre);
+    }
+
+    /// The shaded surface of a pane, supersampled: averaged for pixel output, kept for documents.
+    void draw_surface(const Plan& plan) {
+        const Pane& pane = plan.pane;
+        const bool pixels = kind_ == PictureKind::pixels;
+        const int requested_factor = options_.supersample > 0 ? options_.supersample : pixels ? 1 : 2;
+        const int factor = std::clamp(16384 / std::max(pane.width, pane.height), 1, requested_factor);
+        Camera camera = plan.camera;
+        for (double* value : {&camera.scale, &camera.middle_x, &camera.middle_y}) *value *= factor;
+        auto light = detail::shade(scenes_[pane.scene], *surfaces_[pane.scene], camera, pane.width * factor, pane.height * factor,
+                                   shading(factor));
+        const bool average = pixels && factor > 1;
+        if (average) light = detail::averaged(light, pane.width, pane.height, factor);
+        const int samples_wide = average ? pane.width : pane.width * factor,
+                  samples_high = average ? pane.height : pane.height * factor;
+        if (deep_) return copy_into(surface_light_, size_.width, light, pane);
+        canvas_.paint(detail::to_pixels(light), samples_wide, samples_high, pane.left, pane.top, pane.width, pane.height);
+    }
+
+    [[nodiscard]] detail::Shading shading(int factor) const {
+        detail::Shading shading;
+        shading.smooth = options_.shading == RenderOptions::Shading::smooth;
+        shading.crease_cosine = std::cos(options_.crease * pi / 180);
+        shading.ambient_occlusion = options_.ambient_occlusion;
+        shading.samples = options_.samples;
+        shading.edges = options_.edges;
+        shading.edge_width = std::max(0.6, 0.9 * style_.size) * factor;
+        if (options_.scale) shading.scale = *options_.scale;
+        return shading;
+    }
+
+    const std::vector<Scene>& scenes_;
+    const RenderOptions& options_;
+    PictureKind kind_;
+    Size size_ = parse_size(options_.size);
+    std::array<double, 3> up_ = parse_up(options_.up);
+    bool deep_ = options_.deep && kind_ == PictureKind::pixels;
+    std::vector<Plan> plans_;
+    std::vector<std::unique_ptr<Surface>> surfaces_;
+    detail::Style style_ = style_of(options_, size_);
+    detail::Style overlay_style_ = scaled_style();  ///< of lines, markers and axes: smaller on a sheet of many panes
+    Canvas canvas_{size_.width, size_.height, kind_};
+    std::vector<detail::Light> surface_light_;  ///< of the whole sheet, for 16 bits per channel
+    double edge_ = 18 * style_.size;
+    double bar_height_ = options_.no_scale_bar ? 0 : detail::bar_strip * style_.size;
+    double caption_height_ = 0;
+
+    [[nodiscard]] detail::Style scaled_style() const {
+        detail::Style smaller = style_;
+        if (plans_.size() > 2) smaller.size *= 0.75;
+        return smaller;
+    }
+};
+
 }  // namespace
 
 void check_render_options(const RenderOptions& options) {
@@ -256,136 +431,13 @@ void check_render_options(const RenderOptions& options) {
 
 Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options, PictureKind kind) {
     check_render_options(options);
-    const Size size = parse_size(options.size);
-    const auto up = parse_up(options.up);
-    const bool dark = options.theme == RenderOptions::Theme::dark;
-    detail::Style style;
-    style.background = options.background != "auto" ? parse_colour(options.background)
-                       : dark                       ? Rgb{23, 25, 28}
-                                                    : Rgb{255, 255, 255};
-    std::vector<Plan> plans = plan_panes(scenes, options);
     if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "render several pictures");
-    style.size = detail::mark_size(size.width, size.height);
-    const bool on_dark = style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110;
-    if (dark || (!options.transparent && on_dark)) style.ink = {235, 235, 235};
-    const bool deep = options.deep && kind == PictureKind::pixels;
-
-    Rendering rendering;
-    rendering.width = size.width;
-    rendering.height = size.height;
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::unique_ptr<Surface>> surfaces;
-    const bool contours = options.contours || options.drawing == RenderOptions::Drawing::lines;
-    for (const Scene& scene : scenes)
-        surfaces.push_back(std::make_unique<Surface>(scene, contours || options.shading == RenderOptions::Shading::smooth));
-    rendering.build_seconds = seconds_since(start);
-
-    // The sheet: panes in columns and rows, each with a strip for scale bar and caption; a side column on the right.
+    Sheet sheet(scenes, options, kind);
+    const double build_seconds = seconds_since(start);
     const auto drawing_start = std::chrono::steady_clock::now();
-    Canvas canvas(size.width, size.height, kind);
-    if (!options.transparent && !deep) canvas.fill(style.background);
-    std::vector<detail::Light> surface_light(
-        deep ? static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) : 0, detail::Light::Zero());
-    const double edge = 18 * style.size;
-    bool any_values = false, any_caption = false;
-    for (const Scene& scene : scenes) any_values = any_values || !scene.vertex_values.empty() || !scene.face_values.empty();
-    for (const Plan& plan : plans) any_caption = any_caption || !plan.caption.empty();
-    const bool show = !options.no_legend;
-    const detail::SideColumn side(canvas, show && !options.labels ? merged_legend(scenes) : std::vector<LegendEntry>{},
-                                  show && any_values ? options.scale : std::nullopt, 0.3 * size.width, size.height - 2 * edge,
-                                  style);
-    const double side_left = size.width - side.width() - (side.width() > 0 ? edge / 2 : 0);
-    const bool six = options.views == "six";
-    const double strip = options.no_scale_bar ? 0 : detail::bar_strip * style.size, caption = any_caption ? 30 * style.size : 0;
-    std::vector<std::array<double, 2>> extents;
-    for (const Plan& plan : plans)
-        extents.push_back(extent_of(scenes[plan.pane.scene], *surfaces[plan.pane.scene], plan.view, up));
-    const std::size_t columns = column_count(extents, six, scenes.size(), options.fit == RenderOptions::Fit::all,
-                                             {side_left, static_cast<double>(size.height), strip + caption});
-    const std::size_t rows = (plans.size() + columns - 1) / columns;
-    const double cell_width = side_left / static_cast<double>(columns), cell_height = size.height / static_cast<double>(rows);
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-        Pane& pane = plans[i].pane;
-        pane.left = static_cast<int>(cell_width * static_cast<double>(i % columns));
-        pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
-        pane.width = std::max(1, static_cast<int>(cell_width));
-        pane.height = std::max(1, static_cast<int>(cell_height - strip - caption));
-        const Scene& scene = scenes[pane.scene];
-        plans[i].label_column = options.labels ? detail::label_column(canvas, scene, pane.width, style) : 0;
-        pane.left += static_cast<int>(plans[i].label_column);
-        pane.width = std::max(1, pane.width - 2 * static_cast<int>(plans[i].label_column));
-        const Framed framed(scene, *surfaces[pane.scene]);
-        plans[i].camera = detail::fit_camera(framed.count(), framed, plans[i].view, up, pane.width, pane.height,
-                                             options.projection == RenderOptions::Projection::perspective);
-    }
-    equalise_scales(plans, surfaces, options.fit == RenderOptions::Fit::all);
-
-    detail::Shading shading;
-    shading.smooth = options.shading == RenderOptions::Shading::smooth;
-    shading.crease_cosine = std::cos(options.crease * pi / 180);
-    shading.ambient_occlusion = options.ambient_occlusion;
-    shading.samples = options.samples;
-    shading.edges = options.edges;
-    shading.edge_width = std::max(0.6, 0.9 * style.size);
-    if (options.scale) shading.scale = *options.scale;
-    const double drawn_size = plans.size() > 2 ? 0.75 * style.size : style.size;
-    detail::Style overlay_style = style;
-    overlay_style.size = drawn_size;
-    const bool every_bar = options.fit == RenderOptions::Fit::each && scenes.size() > 1;
-    for (Plan& plan : plans) {
-        Pane& pane = plan.pane;
-        const Scene& scene = scenes[pane.scene];
-        const Surface& surface = *surfaces[pane.scene];
-        plan.camera.scale *= options.zoom;
-        pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
-        if (options.drawing == RenderOptions::Drawing::surface) {
-            // Supersampling: averaged for pixel output, kept for documents.
-            const int requested_factor = options.supersample > 0 ? options.supersample : kind == PictureKind::pixels ? 1 : 2;
-            const int factor = std::clamp(16384 / std::max(pane.width, pane.height), 1, requested_factor);
-            detail::Shading finer = shading;
-            finer.edge_width *= factor;
-            Camera fine_camera = plan.camera;
-            for (double* value : {&fine_camera.scale, &fine_camera.middle_x, &fine_camera.middle_y}) *value *= factor;
-            auto light = detail::shade(scene, surface, fine_camera, pane.width * factor, pane.height * factor, finer);
-            const bool average = kind == PictureKind::pixels && factor > 1;
-            if (average) light = detail::averaged(light, pane.width, pane.height, factor);
-            const int samples_wide = average ? pane.width : pane.width * factor,
-                      samples_high = average ? pane.height : pane.height * factor;
-            if (!deep)
-                canvas.paint(detail::to_pixels(light), samples_wide, samples_high, pane.left, pane.top, pane.width, pane.height);
-            else copy_into(surface_light, size.width, light, pane);
-        }
-        Camera sheet_camera = plan.camera;
-        sheet_camera.middle_x += pane.left;
-        sheet_camera.middle_y += pane.top;
-        pane.camera = detail::in_mesh_coordinates(sheet_camera, surface.middle(), surface.unit_length());
-        canvas.clip(pane.left, pane.top, pane.width, pane.height);
-        draw_over(canvas, scene, surface, sheet_camera, options, style, drawn_size, kind);
-        pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, overlay_style);
-        const PixelBox box{double(pane.left), double(pane.top), double(pane.width), double(pane.height)};
-        if (options.axes) detail::draw_axes(canvas, box, plan.camera, overlay_style);
-        canvas.unclip();
-        if (plan.label_column > 0) {
-            pane.labels = detail::place_labels(canvas, scene, surface, sheet_camera, box, plan.label_column, style);
-            detail::draw_labels(canvas, pane.labels, style);
-        }
-        const bool first = &plan == &plans.front();
-        const bool first_of_scene = first || (&plan)[-1].pane.scene != pane.scene;
-        if (!options.no_scale_bar && (first || (every_bar && first_of_scene)))
-            add_scale_bar(canvas, plan, scene, surface.unit_length(), strip, style);
-        if (!plan.caption.empty())
-            canvas.text(canvas.elide(plan.caption, 17 * style.size, 0.94 * pane.width), pane.left + pane.width / 2.0,
-                        pane.top + pane.height + strip + 19 * style.size, 17 * style.size, style.ink, Canvas::Align::centre);
-    }
-    side.draw(side_left, edge);
-    if (kind == PictureKind::pixels) rendering.picture = canvas.picture();
-    else rendering.document = canvas.document();
-    if (deep) {
-        rendering.deep =
-            composed(surface_light, rendering.picture, options.transparent ? std::nullopt : std::optional(style.background));
-        rendering.picture = {};
-    }
-    for (const Plan& plan : plans) rendering.panes.push_back(plan.pane);
+    Rendering rendering = sheet.draw();
+    rendering.build_seconds = build_seconds;
     rendering.draw_seconds = seconds_since(drawing_start);
     return rendering;
 }

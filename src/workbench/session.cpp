@@ -1,4 +1,5 @@
 #include "ostraka/workbench/session.h"
+#include "ostraka/coords/coordinate_file.h"
 
 #include "workbench/session_names.h"
 

@@ -1,4 +1,5 @@
 #include "ostraka/workbench/workbench.h"
+#include "ostraka/coords/coordinate_file.h"
 
 #include "workbench/request.h"
 #include "workbench/scene.h"

@@ -37,107 +37,134 @@ std::vector<std::pair<std::string, std::string>> row_texts(const JsonValue& rows
     return texts;
 }
 
-void check_table(const StudyPlan& plan, const std::string& name, const JsonValue& table) {
-    const Study& study = plan.study;
-    const std::string place = "/tables/" + name;
-    const auto sources = row_sources(study, table, place);
-    for (const RowSource& source : sources) {
-        const StudyStep& step = study.steps[source.step];
+std::vector<std::string> parameter_names(const Study& study) {
+    std::vector<std::string> names;
+    for (const auto& parameter : study.parameters) names.push_back(parameter.name);
+    return names;
+}
+
+/// Checks one table of a study against the reports of the steps that give its rows.
+class TableCheck {
+public:
+    TableCheck(const Study& study, const std::string& name, const JsonValue& table)
+        : study_(study),
+          table_(table),
+          columns_(*find_member(table, "columns")),
+          place_("/tables/" + name),
+          sources_(row_sources(study, table, place_)) {}
+
+    void run() {
+        for (const RowSource& source : sources_) check_source(source);
+        if (columns_.IsString() && sources_.size() > 1)
+            fail_input(study_.at(place_ + "/rows"), "'all' selects the columns of one file, but 'rows' names several",
+                       "list the columns, or name one file");
+        for (rapidjson::SizeType k = 0; columns_.IsArray() && k < columns_.Size(); ++k)
+            check_column(columns_[k], fmt::format("{}/columns/{}", place_, k));
+        if (const JsonValue* beside = find_member(table_, "beside"))
+            for (rapidjson::SizeType k = 0; k < beside->Size(); ++k)
+                check_beside((*beside)[k], fmt::format("{}/beside/{}", place_, k));
+    }
+
+private:
+    void check_source(const RowSource& source) const {
+        const StudyStep& step = study_.steps[source.step];
         if (step.operation == nullptr) {
             if (!source.table.ends_with(".csv"))
-                fail_input(study.at(place + "/rows"), fmt::format("'{}' runs a program, which has no report", step.name),
+                fail_input(study_.at(place_ + "/rows"), fmt::format("'{}' runs a program, which has no report", step.name),
                            fmt::format("name a CSV file that it writes: {}.FILE.csv", step.name));
-            continue;
+            return;
         }
-        if (find_member(table, "columns")->IsString())
-            fail_input(study.at(place + "/columns"),
+        if (columns_.IsString())
+            fail_input(study_.at(place_ + "/columns"),
                        fmt::format("'all' applies only to CSV files of programs, and '{}' is an operation", step.name),
                        "name the columns: its page in doc/commands lists what it reports");
         const Call call(*step.operation);
         const ReportLayout& layout = call.parameters().report;
         std::vector<std::string> tables, values, columns;
-        for (const auto& reported_table : layout.tables)
-            if (!reported_table.key.empty()) tables.push_back(reported_table.key);
-        for (const auto& reported_value : layout.value_fields) values.push_back(reported_value.key);
-        if (!source.table.empty() && layout.schema.empty() &&
-            std::find(tables.begin(), tables.end(), source.table) == tables.end())
-            refuse(study, place + "/rows",
+        for (const auto& field : layout.value_fields) values.push_back(field.key);
+        for (const auto& reported : layout.tables) {
+            if (!reported.key.empty()) tables.push_back(reported.key);
+            if (reported.key != source.table) continue;
+            for (const auto& column : reported.columns)
+                if (!column.key.empty()) columns.push_back(column.key);
+        }
+        const bool is_listed = !layout.schema.empty();  // the report has further keys, which only its schema lists
+        if (!source.table.empty() && !is_listed && std::find(tables.begin(), tables.end(), source.table) == tables.end())
+            refuse(study_, place_ + "/rows",
                    fmt::format("'{}' reports no table '{}'", step.operation->name, printable(source.table, 60)), source.table,
                    tables);
-        for (const auto& reported_table : layout.tables)
-            if (reported_table.key == source.table)
-                for (const auto& column : reported_table.columns)
-                    if (!column.key.empty()) columns.push_back(column.key);
-        const JsonValue& table_columns = *find_member(table, "columns");
-        for (rapidjson::SizeType k = 0; k < table_columns.Size(); ++k) {
-            const std::string value = text_in(table_columns[k], "value"), at = fmt::format("{}/columns/{}/value", place, k);
-            const auto check = [&](std::string_view prefix, const std::vector<std::string>& known_keys, const std::string& kind) {
-                if (!value.starts_with(prefix)) return;
-                const std::string key = value.substr(prefix.size());
-                const bool is_known = std::any_of(known_keys.begin(), known_keys.end(), [&](const std::string& known_key) {
-                    return known_key == key || key.starts_with(known_key + ".") || known_key.starts_with(key + ".");
-                });
-                if (!is_known && layout.schema.empty())
-                    refuse(study, at, fmt::format("'{}' reports no {} '{}'", step.operation->name, kind, printable(key, 60)), key,
-                           known_keys);
-            };
+        for (rapidjson::SizeType k = 0; k < columns_.Size(); ++k) {
+            const std::string value = text_in(columns_[k], "value"), at = fmt::format("{}/columns/{}/value", place_, k);
             if (source.table.empty() && value.starts_with("row."))
-                fail_input(study.at(at),
+                fail_input(study_.at(at),
                            fmt::format("refers to a row of a table, but the rows here are the instances of '{}'", step.name),
                            fmt::format("name a table of its report in 'rows', such as {}.{}", step.name,
                                        tables.empty() ? "TABLE" : tables.front()));
-            check("row.", columns, "column");
-            check("result.", values, "value");
+            if (is_listed) continue;
+            check_key(value, "row.", columns, fmt::format("'{}' reports no column", step.operation->name), at);
+            check_key(value, "result.", values, fmt::format("'{}' reports no value", step.operation->name), at);
         }
     }
-    std::vector<std::string> titles;
-    const JsonValue& table_columns = *find_member(table, "columns");
-    if (table_columns.IsString() && sources.size() > 1)
-        fail_input(study.at(place + "/rows"), "'all' selects the columns of one file, but 'rows' names several",
-                   "list the columns, or name one file");
-    for (rapidjson::SizeType k = 0; table_columns.IsArray() && k < table_columns.Size(); ++k) {
-        const std::string value = text_in(table_columns[k], "value"), title = text_in(table_columns[k], "title"),
-                          at = fmt::format("{}/columns/{}", place, k);
-        if (std::find(titles.begin(), titles.end(), title) != titles.end())
-            fail_input(study.at(at + "/title"), fmt::format("'{}' is the title of two columns", printable(title, 60)),
+
+    /// Throws Error if a value with this prefix has a key that is none of `known_keys`, part of one or a member of one.
+    void check_key(const std::string& value, std::string_view prefix, const std::vector<std::string>& known_keys,
+                   const std::string& problem, const std::string& at) const {
+        if (!value.starts_with(prefix)) return;
+        const std::string key = value.substr(prefix.size());
+        const bool is_known = std::any_of(known_keys.begin(), known_keys.end(), [&](const std::string& known_key) {
+            return known_key == key || key.starts_with(known_key + ".") || known_key.starts_with(key + ".");
+        });
+        if (!is_known) refuse(study_, at, fmt::format("{} '{}'", problem, printable(key, 60)), key, known_keys);
+    }
+
+    void check_column(const JsonValue& column, const std::string& at) {
+        const std::string value = text_in(column, "value"), title = text_in(column, "title");
+        if (std::find(titles_.begin(), titles_.end(), title) != titles_.end())
+            fail_input(study_.at(at + "/title"), fmt::format("'{}' is the title of two columns", printable(title, 60)),
                        "give each column its own title");
-        titles.push_back(title);
-        const StudyText text = study_text(value, study.at(at + "/value"));
+        titles_.push_back(title);
+        const StudyText text = study_text(value, study_.at(at + "/value"));
         const bool is_special = value.starts_with("row.") || value.starts_with("result.") || value.starts_with("run.") ||
                                 value == "step" || value == "holds" || value == "seconds";
         if (!is_special && text.references().empty())
-            fail_input(study.at(at + "/value"), fmt::format("'{}' does not name a value", printable(value, 60)),
+            fail_input(study_.at(at + "/value"), fmt::format("'{}' does not name a value", printable(value, 60)),
                        "write result.KEY, row.KEY, run.KEY, ${PARAMETER}, step, holds or seconds");
-        for (const StudyReference& reference : text.references()) {
-            std::vector<std::string> names;
-            for (const auto& known_parameter : study.parameters) names.push_back(known_parameter.name);
-            const StudyParameter* parameter = study.parameter(reference.name);
-            if (parameter == nullptr)
-                refuse(study, at + "/value", fmt::format("there is no parameter '{}'", printable(reference.name, 60)),
-                       reference.name, names);
-            if (parameter->values.front().find(reference.member) == nullptr)
-                fail_input(study.at(at + "/value"),
-                           fmt::format("'{}' has no member '{}'", reference.name, printable(reference.member, 60)),
-                           "name a member that its values have");
-            for (const RowSource& source : sources)
-                if (parameter->varies && !study.steps[source.step].parameters[study.parameter_index(reference.name)])
-                    fail_input(study.at(at + "/value"),
-                               fmt::format("step '{}' does not vary with '{}'", study.steps[source.step].name, reference.name),
-                               "leave the column out, or use the parameter in the step");
-        }
+        for (const StudyReference& reference : text.references()) check_reference(reference, at + "/value");
     }
-    if (const JsonValue* beside = find_member(table, "beside"))
-        for (rapidjson::SizeType k = 0; k < beside->Size(); ++k) {
-            std::size_t known_columns = 0;
-            for (const auto& member : (*beside)[k].GetObject())
-                known_columns += std::find(titles.begin(), titles.end(), text_of(member.name)) != titles.end() ? 1 : 0;
-            if (known_columns == 0 || known_columns == (*beside)[k].MemberCount())
-                fail_input(study.at(fmt::format("{}/beside/{}", place, k)),
-                           known_columns == 0 ? "names no column of the table, so that its row cannot be found"
-                                              : "adds nothing to the columns of the table",
-                           "give values of existing columns, which select the rows, and of further columns to add");
-        }
-}
+
+    void check_reference(const StudyReference& reference, const std::string& at) const {
+        const StudyParameter* parameter = study_.parameter(reference.name);
+        if (parameter == nullptr)
+            refuse(study_, at, fmt::format("there is no parameter '{}'", printable(reference.name, 60)), reference.name,
+                   parameter_names(study_));
+        if (parameter->values.front().find(reference.member) == nullptr)
+            fail_input(study_.at(at), fmt::format("'{}' has no member '{}'", reference.name, printable(reference.member, 60)),
+                       "name a member that its values have");
+        for (const RowSource& source : sources_)
+            if (parameter->varies && !study_.steps[source.step].parameters[study_.parameter_index(reference.name)])
+                fail_input(study_.at(at),
+                           fmt::format("step '{}' does not vary with '{}'", study_.steps[source.step].name, reference.name),
+                           "leave the column out, or use the parameter in the step");
+    }
+
+    void check_beside(const JsonValue& row, const std::string& at) const {
+        std::size_t known_columns = 0;
+        for (const auto& member : row.GetObject())
+            known_columns += std::find(titles_.begin(), titles_.end(), text_of(member.name)) != titles_.end() ? 1 : 0;
+        if (known_columns == 0 || known_columns == row.MemberCount())
+            fail_input(study_.at(at),
+                       known_columns == 0 ? "names no column of the table, so that its row cannot be found"
+                                          : "adds nothing to the columns of the table",
+                       "give values of existing columns, which select the rows, and of further columns to add");
+    }
+
+    const Study& study_;
+    const JsonValue& table_;
+    const JsonValue& columns_;
+    std::string place_;
+    std::vector<RowSource> sources_;
+    std::vector<std::string> titles_;
+};
 
 }  // namespace
 
@@ -181,7 +208,7 @@ void check_collected(const StudyPlan& plan) {
         for (const auto& member : tables->GetObject()) {
             const std::string name = text_of(member.name);
             check_name("/tables/" + name, name);
-            check_table(plan, name, member.value);
+            TableCheck(study, name, member.value).run();
             for (const auto& column : list_in(member.value, "columns")) titles[name].push_back(text_in(column, "title"));
             for (const auto& row : list_in(member.value, "beside"))
                 for (const auto& cell : row.GetObject()) titles[name].push_back(text_of(cell.name));

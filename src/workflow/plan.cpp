@@ -241,71 +241,16 @@ std::string StudyPlan::filled(const StudyText& text, const StudyInstance& instan
 
 void StudyPlan::set_value(StudyInstance& instance, const StudySetting& setting, const JsonValue& setting_value,
                           const std::string& place, const Call& call, JsonValue& options, JsonAllocator& allocator) {
-    const Slot* slot = call.parameters().slot(setting.name);
-    if (slot == nullptr && call.parameters().options.find(setting.name) == nullptr) {
+    if (const Slot* slot = call.parameters().slot(setting.name)) return set_slot(instance, setting, setting_value, place, *slot);
+    const auto* option = call.parameters().options.find(setting.name);
+    if (option == nullptr) {
         try {
             call.no_such_name(setting.name);
         } catch (const Error& error) {
             fail_input(study.at(place), fmt::format("'{}' {}", call.entry().name, error.problem()), error.remedy());
         }
     }
-    if (slot != nullptr && slot->role == Role::output) {
-        if (!setting_value.IsTrue() && !setting_value.IsString())
-            fail_input(study.at(place), fmt::format("'{}' is an output", setting.name), "list it in 'keep'");
-        fail_input(study.at(place), fmt::format("'{}' is an output and cannot be set in 'with'", setting.name),
-                   fmt::format("list it in 'keep': {{\"{}\": \"FILE\"}}", setting.name));
-    }
-    if (slot != nullptr) {
-        if (setting_value.IsArray()) {
-            if (!slot->repeated && setting_value.Size() != 1)
-                fail_input(study.at(place), fmt::format("'{}' takes one file", setting.name), "give one file");
-            for (rapidjson::SizeType k = 0; k < setting_value.Size(); ++k)
-                set_value(instance, setting, setting_value[k], fmt::format("{}/{}", place, k), call, options, allocator);
-            return;
-        }
-        if (!setting_value.IsString())
-            fail_input(study.at(place), fmt::format("the value of '{}' is not a file name", setting.name),
-                       "give the name of a file, or an output: ${STEP.output}");
-        StudyText text = study_text(text_of(setting_value), study.at(place));
-        std::string label;
-        if (slot->is_named && !text.parts.empty()) {
-            auto* literal = std::get_if<std::string>(&text.parts.front());
-            const std::size_t equals = literal == nullptr ? std::string::npos : literal->find('=');
-            if (literal == nullptr || equals == 0 || equals == std::string::npos)
-                fail_input(study.at(place), fmt::format("'{}' needs a name for the file", setting.name), "give NAME=FILE");
-            label = literal->substr(0, equals);
-            if (*literal = literal->substr(equals + 1); literal->empty()) text.parts.erase(text.parts.begin());
-        }
-        for (const StudyReference& reference : text.references())
-            if (study.parameter(reference.name) == nullptr) {
-                if (text.single() == nullptr)
-                    fail_input(study.at(place), "a reference to an output of a step cannot be part of a longer text",
-                               "give ${STEP.output} as the complete value");
-                add_output(instance, setting, reference, place, label);
-                return;
-            }
-        const std::string name = filled(text, instance);
-        if (name.empty()) fail_input(study.at(place), fmt::format("'{}' is empty", setting.name), "name a file");
-        StudyInput input{setting.name, label, {}, no_instance, {}, false};
-        if (!(slot->takes_none && name == "none")) {
-            input.file = (study.folder / name).lexically_normal();
-            if (is_memory(input.file)) input.file = "./" + name;
-            study.require_readable(input.file, place);
-        }
-        if (!input.file.empty() && !file_exists(input.file) && !is_folder(input.file))
-            fail_input(study.at(place), fmt::format("'{}' does not exist", input.file.string()),
-                       "names are relative to the study file");
-        const auto endings = endings_of(slot->kind);
-        const bool by_ending = slot->kind == Kind::mesh || slot->kind == Kind::cage || slot->kind == Kind::coordinates;
-        if (by_ending && !input.file.empty() && std::find(endings.begin(), endings.end(), extension(input.file)) == endings.end())
-            fail_input(study.at(place),
-                       fmt::format("the ending of '{}' is not that of a file of type {}", input.file.filename().string(),
-                                   to_string(slot->kind)),
-                       "use one of the endings " + joined(endings));
-        instance.inputs.push_back(std::move(input));
-        return;
-    }
-    if (!call.parameters().options.find(setting.name)->from_files)
+    if (!option->from_files)
         fail_input(study.at(place), fmt::format("'{}' can be set only by the caller, not by a file", setting.name), "remove it");
     const auto resolved = [&](const JsonValue& option_value, const std::string& at) {
         if (!option_value.IsString()) return JsonValue(option_value, allocator);
@@ -327,6 +272,66 @@ void StudyPlan::set_value(StudyInstance& instance, const StudySetting& setting, 
         resolved_value = resolved(setting_value, place);
     }
     add_member(options, setting.name, std::move(resolved_value), allocator);
+}
+
+void StudyPlan::set_slot(StudyInstance& instance, const StudySetting& setting, const JsonValue& setting_value,
+                         const std::string& place, const Slot& slot) {
+    if (slot.role == Role::output) {
+        if (!setting_value.IsTrue() && !setting_value.IsString())
+            fail_input(study.at(place), fmt::format("'{}' is an output", setting.name), "list it in 'keep'");
+        fail_input(study.at(place), fmt::format("'{}' is an output and cannot be set in 'with'", setting.name),
+                   fmt::format("list it in 'keep': {{\"{}\": \"FILE\"}}", setting.name));
+    }
+    if (setting_value.IsArray()) {
+        if (!slot.repeated && setting_value.Size() != 1)
+            fail_input(study.at(place), fmt::format("'{}' takes one file", setting.name), "give one file");
+        for (rapidjson::SizeType k = 0; k < setting_value.Size(); ++k)
+            set_slot(instance, setting, setting_value[k], fmt::format("{}/{}", place, k), slot);
+        return;
+    }
+    if (!setting_value.IsString())
+        fail_input(study.at(place), fmt::format("the value of '{}' is not a file name", setting.name),
+                   "give the name of a file, or an output: ${STEP.output}");
+    StudyText text = study_text(text_of(setting_value), study.at(place));
+    std::string label;
+    if (slot.is_named && !text.parts.empty()) {
+        auto* literal = std::get_if<std::string>(&text.parts.front());
+        const std::size_t equals = literal == nullptr ? std::string::npos : literal->find('=');
+        if (literal == nullptr || equals == 0 || equals == std::string::npos)
+            fail_input(study.at(place), fmt::format("'{}' needs a name for the file", setting.name), "give NAME=FILE");
+        label = literal->substr(0, equals);
+        if (*literal = literal->substr(equals + 1); literal->empty()) text.parts.erase(text.parts.begin());
+    }
+    for (const StudyReference& reference : text.references())
+        if (study.parameter(reference.name) == nullptr) {
+            if (text.single() == nullptr)
+                fail_input(study.at(place), "a reference to an output of a step cannot be part of a longer text",
+                           "give ${STEP.output} as the complete value");
+            return add_output(instance, setting, reference, place, label);
+        }
+    const std::string name = filled(text, instance);
+    if (name.empty()) fail_input(study.at(place), fmt::format("'{}' is empty", setting.name), "name a file");
+    instance.inputs.push_back({setting.name,
+                               label,
+                               slot.takes_none && name == "none" ? Path() : input_file(name, place, slot.kind),
+                               no_instance,
+                               {},
+                               false});
+}
+
+Path StudyPlan::input_file(const std::string& name, const std::string& place, Kind kind) const {
+    Path file = (study.folder / name).lexically_normal();
+    if (is_memory(file)) file = "./" + name;
+    study.require_readable(file, place);
+    if (!file_exists(file) && !is_folder(file))
+        fail_input(study.at(place), fmt::format("'{}' does not exist", file.string()), "names are relative to the study file");
+    const auto endings = endings_of(kind);
+    const bool by_ending = kind == Kind::mesh || kind == Kind::cage || kind == Kind::coordinates;
+    if (by_ending && std::find(endings.begin(), endings.end(), extension(file)) == endings.end())
+        fail_input(study.at(place),
+                   fmt::format("the ending of '{}' is not that of a file of type {}", file.filename().string(), to_string(kind)),
+                   "use one of the endings " + joined(endings));
+    return file;
 }
 
 void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,

@@ -3,7 +3,9 @@
 // schema and the Python function follow from the declaration.
 #include <ostraka/core/error.h>
 #include <ostraka/execution/parallel.h>
+#include <ostraka/framework/inputs.h>
 #include <ostraka/framework/operation.h>
+#include <ostraka/framework/outputs.h>
 #include <ostraka/synthetic/make_mesh.h>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/io/wrap.h"
 #include "ostraka/measure/solid.h"
 #include "ostraka/operations/table.h"

@@ -2,6 +2,8 @@
 // the same bytes as from files.
 #include "calls.h"
 #include "ostraka/files/json.h"
+#include "ostraka/framework/inputs.h"
+#include "ostraka/framework/outputs.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/vocabulary/vocabulary.h"
 #include "scratch.h"

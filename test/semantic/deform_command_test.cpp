@@ -1,4 +1,5 @@
 // 'ostraka cage make', 'cage check' and 'deform', as people run them.
+#include "ostraka/annotation/annotation.h"
 #include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"

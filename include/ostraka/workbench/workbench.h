@@ -1,6 +1,7 @@
 // Answers requests of the workbench's page, independently of the network (doc/workbench.md, "Messages").
 #pragma once
 
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/semantic/live.h"
 #include "ostraka/workbench/session.h"
 

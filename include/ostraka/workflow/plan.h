@@ -66,6 +66,10 @@ private:
     std::string filled(const StudyText& text, const StudyInstance& instance) const;
     void set_value(StudyInstance& instance, const StudySetting& setting, const JsonValue& value, const std::string& place,
                    const Call& call, JsonValue& options, JsonAllocator& allocator);
+    void set_slot(StudyInstance& instance, const StudySetting& setting, const JsonValue& setting_value, const std::string& place,
+                  const Slot& slot);
+    /// The file relative to the study's folder. Throws Error (input) unless it can be read and its ending fits the kind.
+    [[nodiscard]] Path input_file(const std::string& name, const std::string& place, Kind kind) const;
     void add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,
                     const std::string& place, const std::string& label);
     void check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const;
