@@ -33,12 +33,22 @@ set_target_properties(ostraka_python PROPERTIES OUTPUT_NAME _ostraka CXX_VISIBIL
   LIBRARY_OUTPUT_DIRECTORY ${OSTRAKA_PYTHON_BUILT}/ostraka)
 target_link_options(ostraka_python PRIVATE LINKER:--exclude-libs,ALL)
 file(GLOB_RECURSE package_files RELATIVE ${CMAKE_SOURCE_DIR}/apps/python CONFIGURE_DEPENDS
-  apps/python/ostraka/*.py apps/python/ostraka/*.pyi apps/python/ostraka/py.typed)
+  apps/python/ostraka/*.py apps/python/ostraka/py.typed)
 foreach(file IN LISTS package_files)
   get_filename_component(folder ${file} DIRECTORY)
   file(MAKE_DIRECTORY ${OSTRAKA_PYTHON_BUILT}/${folder})
   file(CREATE_LINK ${CMAKE_SOURCE_DIR}/apps/python/${file} ${OSTRAKA_PYTHON_BUILT}/${file} SYMBOLIC)
 endforeach()
+# The type stubs, generated from the table of operations.
+list(TRANSFORM package_files PREPEND ${CMAKE_SOURCE_DIR}/apps/python/ OUTPUT_VARIABLE package_sources)
+set(stubs ${CMAKE_BINARY_DIR}/generated/python_stubs)
+add_custom_command(OUTPUT ${stubs}/made
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${stubs}
+  COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${OSTRAKA_PYTHON_BUILT} PYTHONDONTWRITEBYTECODE=1 ${Python3_EXECUTABLE} -m ostraka stubs ${stubs}
+  COMMAND ${CMAKE_COMMAND} -E copy_directory ${stubs} ${OSTRAKA_PYTHON_BUILT}/ostraka
+  COMMAND ${CMAKE_COMMAND} -E touch ${stubs}/made
+  DEPENDS ostraka_python ${package_sources} COMMENT "Type stubs of the Python module" VERBATIM)
+add_custom_target(ostraka_python_stubs ALL DEPENDS ${stubs}/made)
 
 # Debian's Python searches this folder below /usr and /usr/local, so that a package and `cmake --install` can both use it. It is
 # specific to one version, like the native part. CMAKE_INSTALL_LIBDIR would be a different folder below /usr.
@@ -46,5 +56,6 @@ set(OSTRAKA_PYTHON_DIR lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINO
   "Where the Python module is installed, below the prefix")
 install(TARGETS ostraka_python LIBRARY DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka COMPONENT python)
 install(DIRECTORY apps/python/ostraka DESTINATION ${OSTRAKA_PYTHON_DIR} COMPONENT python
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY ${stubs}/ DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka COMPONENT python FILES_MATCHING PATTERN "*.pyi")
 message(STATUS "The Python module is for ${Python3_EXECUTABLE} (${Python3_VERSION}), below the prefix in ${OSTRAKA_PYTHON_DIR}")

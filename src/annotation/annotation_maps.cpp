@@ -16,9 +16,9 @@ namespace {
 
 /// Collects the ids per element in the order of the annotations, then interns them: equal sets are looked up once per run of
 /// elements.
-template <class Index_type>
+template <class ElementIndex>
 void store(Mesh& mesh, const char* name, std::vector<std::pair<Index, int>>& entries, AnnotationTable& table) {
-    auto map = mesh.add_property_map<Index_type, std::uint32_t>(name, 0).first;
+    auto map = mesh.add_property_map<ElementIndex, std::uint32_t>(name, 0).first;
     std::fill(map.begin(), map.end(), 0U);
     std::sort(entries.begin(), entries.end());
     entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
@@ -32,13 +32,13 @@ void store(Mesh& mesh, const char* name, std::vector<std::pair<Index, int>>& ent
             last = table.intern(ids);
             last_ids = ids;
         }
-        map[Index_type(element)] = last;
+        map[ElementIndex(element)] = last;
     }
 }
 
-template <class Index_type>
+template <class ElementIndex>
 auto stored(const Mesh& mesh, const char* name) {
-    const auto [map, found] = mesh.property_map<Index_type, std::uint32_t>(name);
+    const auto [map, found] = mesh.property_map<ElementIndex, std::uint32_t>(name);
     if (!found) fail_work("mesh", std::string("has no property map ") + name, "attach the annotations first");
     return map;
 }

@@ -237,7 +237,7 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
     return true;
 }
 
-std::vector<Information> information_of(JsonValue::ConstArray list, const std::string& where, const std::string& at,
+std::vector<Information> information_of(const JsonValue::ConstArray& list, const std::string& where, const std::string& at,
                                         std::vector<std::string>& notes) {
     std::vector<Information> result;
     for (const JsonValue& object : list) {
@@ -391,7 +391,7 @@ AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnn
     return annotations_from_json(read_json(file), mesh, file.string(), options);
 }
 
-std::vector<Information> information_from_json(JsonValue::ConstArray list, const std::string& where, const std::string& pointer) {
+std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where, const std::string& pointer) {
     std::vector<std::string> notes;
     return information_of(list, where, pointer, notes);
 }

@@ -14,8 +14,6 @@
 #include <set>
 #include <thread>
 
-extern char** environ;
-
 namespace ostraka {
 
 namespace {

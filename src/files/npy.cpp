@@ -68,7 +68,7 @@ private:
         if (text_.empty() || (text_.front() != '\'' && text_.front() != '"')) damaged();
         const std::size_t end = text_.find(text_.front(), 1);
         if (end == std::string_view::npos || end > 40) damaged();
-        const std::string word(text_.substr(1, end - 1));
+        std::string word(text_.substr(1, end - 1));
         text_.remove_prefix(end + 1);
         return word;
     }

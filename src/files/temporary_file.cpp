@@ -112,7 +112,7 @@ TemporaryFile open_temporary(const Path& folder) {
     if (registry().is_first_use(folder.empty() ? Path(".") : folder))
         remove_stale_temporaries(folder.empty() ? Path(".") : folder);
     for (int attempt = 0; attempt < 100; ++attempt) {
-        const TemporaryFile created = make_in(folder, locked_prefix);
+        TemporaryFile created = make_in(folder, locked_prefix);
         if (created.descriptor < 0) return created;
         const bool locked = ::flock(created.descriptor, LOCK_EX | LOCK_NB) == 0;
         if (locked && still_exists(created.descriptor)) return created;

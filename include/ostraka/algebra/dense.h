@@ -49,9 +49,11 @@ Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric);
 class Svd3 {
 public:
     explicit Svd3(const Eigen::Matrix3d& matrix);
+    // NOLINTBEGIN(readability-identifier-naming): named as in Eigen's decompositions, so that templates take either.
     [[nodiscard]] const Eigen::Matrix3d& matrixU() const { return u_; }
     [[nodiscard]] const Eigen::Matrix3d& matrixV() const { return v_; }
     [[nodiscard]] const Eigen::Vector3d& singularValues() const { return values_; }
+    // NOLINTEND(readability-identifier-naming)
     /// False if an entry is not finite.
     [[nodiscard]] bool found() const { return found_; }
 
@@ -68,9 +70,11 @@ Eigen::Vector2d singular_values(const Eigen::Matrix2d& matrix);
 class SvdX {
 public:
     explicit SvdX(const Eigen::MatrixXd& matrix, bool full_v = false);
+    // NOLINTBEGIN(readability-identifier-naming): named as in Eigen's decompositions, so that templates take either.
     [[nodiscard]] const Eigen::MatrixXd& matrixU() const { return u_; }
     [[nodiscard]] const Eigen::MatrixXd& matrixV() const { return v_; }
     [[nodiscard]] const Eigen::VectorXd& singularValues() const { return values_; }
+    // NOLINTEND(readability-identifier-naming)
 
 private:
     Eigen::MatrixXd u_, v_;
