@@ -91,7 +91,7 @@ def slice(
     tube_seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SliceResult:
-    """Cut an object into slices, describe and draw them; exit code 3 if no plane meets it."""
+    """Slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects it."""
 
 class _DeformResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -138,7 +138,7 @@ def deform(
     ratio: float | None = 10.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _DeformResult:
-    """Edit a shape so that its meaning survives (exit code 3: a constraint does not hold)."""
+    """Edit a shape and preserve its semantics (exit code 3: a constraint does not hold)."""
 
 class _FitResult(Result):
     output: Folder | Path | None

@@ -26,7 +26,7 @@ def apply(
     strict: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ApplyResult:
-    """Annotate a mesh by a recipe or from labels."""
+    """Annotate a mesh from a recipe or from labels."""
 
 def list(
     mesh: MeshLike,
@@ -67,7 +67,7 @@ def remap(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RemapResult:
-    """Transfer annotations or labels by the index maps of 'mesh repair'."""
+    """Transfer annotations or labels with the index maps of 'mesh repair'."""
 
 class _SelectResult(Result):
     output: Annotations | Path | None
@@ -147,7 +147,7 @@ def creases(
     shortest: float | None = 0.05,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _CreasesResult:
-    """Find ridges and hollows of the surface, such as clay leaves at joints; exit code 3 if there is none."""
+    """Find ridges and hollows of the surface, such as those that clay leaves at joints; exit code 3 if there is none."""
 
 class _FacetsResult(Result):
     output: Annotations | Path | None
@@ -230,7 +230,7 @@ def transfer(
     register: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TransferResult:
-    """Transfer annotations to another resolution of the same object, and report how faithful they are."""
+    """Transfer annotations to another resolution of the same object, and report the fidelity."""
 
 def survival(
     mesh: MeshLike,

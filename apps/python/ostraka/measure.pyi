@@ -26,7 +26,7 @@ def take(
     name: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TakeResult:
-    """Take a measure by ruler, tape or bounding planes."""
+    """Take a measure with a ruler, a tape or bounding planes."""
 
 class _DescribeResult(Result):
     output: Annotations | Path | None
@@ -98,4 +98,4 @@ def clay(
     wall: float | None = 0.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Bound the volume of clay: with the unseen inside solid, and hollow."""
+    """Compute bounds of the volume of clay: with the unseen interior solid, and hollow."""

@@ -28,7 +28,7 @@ def convert(
     binary: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ConvertResult:
-    """Write a mesh in another format, polygons cut into triangles, vertex order kept."""
+    """Write a mesh in another format, with polygons triangulated and the vertex order kept."""
 
 class _RepairResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -176,7 +176,7 @@ def break_(
     at: Text,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _BreakResult:
-    """Break a piece off an object: a fragment whose pose on the whole is known."""
+    """Break a piece off an object: a fragment with known pose."""
 
 class _MakeResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None

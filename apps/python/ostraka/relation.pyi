@@ -47,7 +47,7 @@ def add(
     attribute: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _AddResult:
-    """State a relationship."""
+    """Add a user-specified relationship."""
 
 class _RemoveResult(Result):
     output: Document | Path | None
@@ -61,7 +61,7 @@ def remove(
     id: int | Sequence[int],
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RemoveResult:
-    """Take relationships out of a graph."""
+    """Remove relationships from a graph."""
 
 class _EditResult(Result):
     output: Document | Path | None

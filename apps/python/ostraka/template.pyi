@@ -29,7 +29,7 @@ def pack(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _PackResult:
-    """Write one file that names the parts of a template, checked as a whole; exit code 3, and nothing written, if they do not fit."""
+    """Write one file that lists the files of a template, checked as a whole; exit code 3, and nothing written, if they are inconsistent."""
 
 def check(
     template: Input,
@@ -38,7 +38,7 @@ def check(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Check a template as a whole; exit code 3 if something is wrong."""
+    """Check a template as a whole; exit code 3 if there are defects."""
 
 def show(
     template: Input,
@@ -47,7 +47,7 @@ def show(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Show what a template contains, and what is wrong with it."""
+    """Show the contents of a template and its defects."""
 
 class _LearnResult(Result):
     output: Folder | Path | None
@@ -161,7 +161,7 @@ def sample(
     attempts: int | None = 20,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SampleResult:
-    """Draw new members of a class that satisfy its constraints (exit code 3: fewer than requested)."""
+    """Sample new members of a class that satisfy its constraints (exit code 3: fewer than requested)."""
 
 class _PropagateResult(Result):
     output: Folder | Path | None

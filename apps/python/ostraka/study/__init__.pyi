@@ -99,7 +99,7 @@ def moulds(
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MouldsResult:
-    """Group heads by the mould that they were cast from."""
+    """Group heads by the mould from which they were cast."""
 
 class _TechniqueResult(Result):
     output: Folder | Path | None
@@ -132,7 +132,7 @@ def technique(
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TechniqueResult:
-    """Classify bodies as wheel-made or hand-made by their lower slices."""
+    """Classify bodies as wheel-made or hand-made from their lower slices."""
 
 class _SegmentsResult(Result):
     output: Annotations | Path | None

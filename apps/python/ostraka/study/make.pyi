@@ -48,7 +48,7 @@ def moulds(
     cast_seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MouldsResult:
-    """Make synthetic heads of figurines cast from a few moulds, each worn, deformed and scanned on its own."""
+    """Make synthetic heads of figurines cast from a few moulds, each worn, deformed and scanned separately."""
 
 class _TechniqueResult(Result):
     folder: Folder | Path | None
