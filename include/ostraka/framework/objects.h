@@ -133,7 +133,7 @@ public:
     Slot& flag() { return is_positional = false, *this; }  ///< --name FILE
     Slot& many() { return repeated = true, *this; }
     Slot& words() { return takes_words = repeated = true, *this; }
-    /// Declares an output as the updated version of an input. Without a file of its own it is written in place of the input,
+    /// Declares an output as the updated version of an input. Without its own file it is written in place of the input,
     /// and it is produced whenever the input is required or given. The input file need not exist yet (`exists`); a program may
     /// omit it.
     Slot& updates(Slot& input) { return updated = &input, input.may_be_new = true, *this; }
@@ -342,7 +342,7 @@ public:
     void write(IndexMap map) const;
 };
 
-/// Any other kind of file, written by a function of its own. In memory it holds the bytes (std::string).
+/// Any other kind of file, written by its own function. In memory it holds the bytes (std::string).
 class FileOutput : public Slot {
 public:
     explicit FileOutput(std::string memory_extension = {}) : extension_(std::move(memory_extension)) {}

@@ -47,7 +47,7 @@ struct MergedAnnotations {
     }
 };
 
-/// Three-way merge by id, field by field: a change of only one side is taken, equal changes of both sides as well; different
+/// Three-way merge by id, field by field: a change of only one side is accepted, as are equal changes of both sides; different
 /// changes are conflicts. Each attribute is a separate field, identified by id. Removing an annotation that the other side
 /// changed is a conflict. merge(base, a, base) = a and merge(base, base, b) = b, including the order.
 MergedAnnotations merge_annotations(const AnnotationSet& base, const AnnotationSet& ours, const AnnotationSet& theirs,

@@ -20,7 +20,7 @@ struct MeshRegistrationOptions {
 };
 
 enum class RegistrationVerdict {
-    aligned,     ///< one surface, up to what the resolutions explain
+    aligned,     ///< one surface, up to differences explained by the resolutions
     mirrored,    ///< not by any motion, but by a reflection
     inside_out,  ///< the faces of one mesh are flipped
     different    ///< not the same object

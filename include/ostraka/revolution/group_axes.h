@@ -12,8 +12,8 @@ namespace ostraka {
 /// Agreement of two joined fragments on one axis.
 enum class AxesAgree {
     yes,
-    no,       ///< their axes are farther apart than their errors and a join's error allow
-    unknown,  ///< at least one of them has no axis of its own
+    no,       ///< the deviation of their axes exceeds their errors and that of a join
+    unknown,  ///< at least one of them does not have its own axis
 };
 std::string to_string(AxesAgree agree);
 

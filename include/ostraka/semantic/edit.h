@@ -55,7 +55,7 @@ struct EditStep {
         double factor;
         struct Base {};                                         ///< the lowest handle along the direction
         struct Middle {};                                       ///< the mean of the handles
-        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< what stays in place
+        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< position that stays in place
     };
     struct MoveTo {
         std::vector<Eigen::Vector3d> places;  ///< one for each handle, in the order of the vertices

@@ -100,7 +100,7 @@ struct Proportion {
     Interval range;         ///< of measure / second or, without a second measure, of the measure in the points' unit
     PinnedMeasure measure;  ///< pins within the part
     std::optional<PinnedMeasure> second = {};
-    int part = 0;                      ///< the part is the first so many ids; 0: all
+    int part = 0;                      ///< number of leading ids that form the part; 0: all
     std::vector<int> anchors = {};     ///< positions in ids, within the part
     std::optional<Points> shape = {};  ///< of the part
     bool uniform = false;              ///< the shape is scaled instead of stretched

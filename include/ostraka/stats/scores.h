@@ -9,7 +9,7 @@
 namespace ostraka {
 
 /// Adjusted Rand index (Hubert and Arabie 1985) of two groupings: 1 for equal groupings, 0 on average for random ones. Labels
-/// are arbitrary integers; samples with labels below 0 (noise) count as groups of their own. 1 if both groupings have a single
+/// are arbitrary integers; samples with labels below 0 (noise) count as separate groups. 1 if both groupings have a single
 /// group, or both have one group per sample. Throws Error (input) for no sample, Error (usage) for lists of different lengths.
 double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int>& truth);
 
