@@ -215,7 +215,7 @@ TEST(AnnotationFile, AnEmptySetAndAnEmptyRegion) {
     EXPECT_TRUE(parse(written(set, mesh), mesh).annotations[0].faces.empty());
 }
 
-TEST(AnnotationFile, FacesMayStandInsteadOfBoundaries) {
+TEST(AnnotationFile, FacesMayReplaceBoundaries) {
     const Mesh mesh = grid(3);
     EXPECT_EQ(parse(with(R"({"id": 0, "tag": "", "type": "region", "faces": [7, 2, 7]})"), mesh).annotations[0].faces,
               (std::vector<Index>{2, 7}));

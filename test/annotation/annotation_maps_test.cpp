@@ -61,7 +61,7 @@ TEST(AnnotationMaps, AttachAndCollectIsTheIdentity) {
     EXPECT_FALSE(table.contains(map[Face(0)], 2));
 }
 
-TEST(AnnotationMaps, WithoutAVertexMapElementsTellWhereTheyAre) {
+TEST(AnnotationMaps, WithoutAVertexMapElementsAreReadFromTheMaps) {
     Mesh mesh = grid(4);
     const AnnotationSet set = overlapping();
     const AnnotationTable table = attach_annotations(mesh, set);
@@ -70,7 +70,7 @@ TEST(AnnotationMaps, WithoutAVertexMapElementsTellWhereTheyAre) {
     EXPECT_EQ(back.annotations[2].polylines, set.annotations[2].polylines);
 }
 
-TEST(AnnotationMaps, ACollapseCarriesThemThrough) {
+TEST(AnnotationMaps, ACollapsePreservesAnnotations) {
     Mesh mesh = spheres(2);
     AnnotationSet set;
     set.annotations.resize(2);
@@ -118,7 +118,7 @@ TEST(AnnotationMaps, ASplitEdgeIsFollowed) {
     EXPECT_EQ(collect_annotations(mesh, table, set).annotations[0].polylines, expected);
 }
 
-TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointAndSaysSo) {
+TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointWithANote) {
     Mesh mesh = grid(4);
     AnnotationSet set;
     set.annotations.emplace_back().faces = {0};

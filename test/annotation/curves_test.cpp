@@ -78,7 +78,7 @@ TEST(FreeOutline, CircleOnASphereIsOfSecondOrder) {
     EXPECT_LT(off_perimeter.back(), 1e-3);
 }
 
-TEST(FreeOutline, InsideAndOutsideAreAllThereIs) {
+TEST(FreeOutline, InsideAndOutsidePartitionTheMesh) {
     for (const Vector& shift : {Vector(0, 0, 0), Vector(1e6, -2e6, 3e6)})
         for (const double size : {1.0, 1e-6, 1e6}) {
             const Mesh unit = build_mesh(octahedron_sphere(4));
@@ -101,7 +101,7 @@ TEST(FreeOutline, InsideAndOutsideAreAllThereIs) {
         }
 }
 
-TEST(FreeOutline, AlongEdgesItIsTheRegionOfTheEdges) {
+TEST(FreeOutline, AlongEdgesTheRegionEqualsThatOfTheEdges) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     std::vector<Index> faces;
     for (const Face f : mesh.faces())
@@ -119,7 +119,7 @@ TEST(FreeOutline, AlongEdgesItIsTheRegionOfTheEdges) {
     EXPECT_NEAR(measure_region(mesh, annotation).perimeter, expected.perimeter, 1e-12);
 }
 
-TEST(FreeOutline, CutAndBroughtBackItIsTheSame) {
+TEST(FreeOutline, CutAndBroughtBackIsTheIdentity) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const SurfaceSearch search(mesh);
     AnnotationSet set;
@@ -162,7 +162,7 @@ TEST(FreeOutline, CutAndBroughtBackItIsTheSame) {
     }
 }
 
-TEST(FreeOutline, FileGivesTheSameAgain) {
+TEST(FreeOutline, FileRoundTripIsExact) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const SurfaceSearch search(mesh);
     AnnotationSet set;
@@ -196,7 +196,7 @@ TEST(FreeOutline, FileGivesTheSameAgain) {
     EXPECT_EQ(to_text(annotations_to_json(read, mesh, "sphere.ply", {})), to_text(document));
 }
 
-TEST(FreeOutline, WhatCannotBeIsRefused) {
+TEST(FreeOutline, InvalidCurvesAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const SurfaceSearch search(mesh);
     const std::vector<SurfacePoint> good = drawn(mesh, search, circle(0.9, 100));

@@ -33,7 +33,7 @@ AnnotationSet parted(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(FairOutlines, PartsOfASphereGetTheirCircles) {
+TEST(FairOutlines, PartsOfASphereBecomeCircles) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
     AnnotationSet set = parted(mesh);
     const AnnotationSet before = set;
@@ -70,7 +70,7 @@ TEST(FairOutlines, StaysWithinTheDistance) {
     }
 }
 
-TEST(FairOutlines, OnlyThoseAskedFor) {
+TEST(FairOutlines, OnlyRequestedAnnotationsAreFaired) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     AnnotationSet set = parted(mesh);
     const auto faired = fair_outlines(mesh, set, {0});
@@ -85,7 +85,7 @@ TEST(FairOutlines, OnlyThoseAskedFor) {
     EXPECT_TRUE(fair_outlines(mesh, none, {}).empty());
 }
 
-TEST(FairOutlines, WhatIsTooSmallStaysAsItIs) {
+TEST(FairOutlines, SmallRegionsAreUnchanged) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     AnnotationSet set;
     set.annotations.resize(1);

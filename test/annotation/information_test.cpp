@@ -26,7 +26,7 @@ using Kind = Information::Kind;
 
 }  // namespace
 
-TEST(Information, IsReadAsItWasWritten) {
+TEST(Information, RoundTripIsExact) {
     const Mesh mesh = build_mesh(octahedron_sphere(1));
     const AnnotationSet set = with({{Kind::text, "mended in 1931", "", ""},
                                     {Kind::image, "photos/spout.jpg", "the spout", std::string(64, 'a')},
@@ -40,7 +40,7 @@ TEST(Information, IsReadAsItWasWritten) {
     EXPECT_TRUE(back.annotations[0].information[1].is_local());
 }
 
-TEST(Information, OfLocalFilesIsChecked) {
+TEST(Information, LocalFilesAreChecked) {
     const Scratch scratch;
     write_file(scratch / "note.txt", "broken");
     const std::string sum = sha256_of_file(scratch / "note.txt");
@@ -58,7 +58,7 @@ TEST(Information, OfLocalFilesIsChecked) {
     EXPECT_TRUE(said({Kind::file, "note.txt", "", sum})[0].defect);
 }
 
-TEST(Information, OfAnotherKindOrWithAChecksumOfALinkIsRefused) {
+TEST(Information, UnknownKindsAndChecksumsOfLinksAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(1));
     for (const char* entry : {R"({"kind": "song", "value": "la"})", R"({"kind": "text"})",
                               R"({"kind": "link", "value": "https://a.b", "sha256": ")"}) {

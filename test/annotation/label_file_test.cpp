@@ -134,7 +134,7 @@ TEST(Colouring, SmallestRegionOnTop) {
     EXPECT_EQ(extras.vertex_colours[8], (Colour{255, 0, 0, 255}));
 }
 
-TEST(Remap, FollowsMapsAndSaysWhatIsLost) {
+TEST(Remap, FollowsMapsAndReportsLosses) {
     const Mesh before = grid(4);
     AnnotationSet set;
     set.annotations.resize(3);

@@ -66,7 +66,7 @@ TEST(SmoothRegions, TheBorderOfAHalfSphereIsNearlyACircle) {
     }
 }
 
-TEST(SmoothRegions, WhatIsTooSmallKeepsItsFaces) {
+TEST(SmoothRegions, SmallRegionsKeepTheirFaces) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     std::vector<int> labels(mesh.number_of_faces(), 1);
     labels[100] = 2;
@@ -76,7 +76,7 @@ TEST(SmoothRegions, WhatIsTooSmallKeepsItsFaces) {
     EXPECT_EQ(regions.outlines[0].size(), 4U) << "its three edges, closed";
 }
 
-TEST(SmoothRegions, ThreeLabelsMeetInOnePlaceOfEachMeeting) {
+TEST(SmoothRegions, ThreeLabelsMeetInOnePointPerJunction) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     std::vector<int> labels;
     for (const Face face : mesh.faces()) {
@@ -109,7 +109,7 @@ TEST(SmoothRegions, DegenerateMeshes) {
     EXPECT_NO_THROW(smooth_regions(build_mesh(flat), {4, 5}));
 }
 
-TEST(Chains, JoinWhereTwoMeetAndStopAtBranchings) {
+TEST(Chains, JoinAtTwoNeighboursAndStopAtBranchings) {
     using Chain = std::vector<std::size_t>;
     EXPECT_TRUE(chains_of({}).empty());
     EXPECT_EQ(chains_of({{4, 7}, {7, 9}, {2, 4}}), (std::vector<Chain>{{9, 7, 4, 2}}));

@@ -162,7 +162,7 @@ TEST(StudyProportionsCommand, RemovesOnlyItsOwnOutputs) {
     EXPECT_EQ(count_files(boxes.scratch / "out" / "objects"), 24U);
 }
 
-TEST(StudyProportionsCommand, ANameThatCannotBeKeptStopsNothing) {
+TEST(StudyProportionsCommand, AnInvalidNameDoesNotStopTheRun) {
     const Boxes boxes;
     for (const std::string name : {"new\nline", "back\\slash", "no utf-8 \xff"})
         std::filesystem::copy_file(boxes.scratch / "boxes" / "object 1.ply", boxes.scratch / "boxes" / (name + ".ply"));

@@ -141,7 +141,7 @@ TEST(Proportions, FewFalseDiscoveriesWithoutPlantedRatios) {
     EXPECT_LE(over_seeds(unequal, 10).wrong, 3) << "measures that follow the size closely are not bound to each other";
 }
 
-TEST(Proportions, ScaledCopiesGoWithTheSize) {
+TEST(Proportions, ScaledCopiesVaryWithTheSize) {
     SyntheticMeasuresOptions options;
     options.groups = 0;
     options.ratio_deviation = 0.03;

@@ -25,7 +25,7 @@ PlaneSegments arc(double from, double to, double radius, const Vector2d& centre,
 
 }  // namespace
 
-TEST(CircleFit, OfArcsWhateverThePiecesAndThePlace) {
+TEST(CircleFit, OfArcsForAnySubdivisionAndPosition) {
     for (const double scale : {1.0, 1e-6, 1e6})
         for (const double to : {2 * M_PI, 3.0, 0.8}) {
             const Vector2d centre = scale * Vector2d(30, -20);
@@ -52,7 +52,7 @@ TEST(CircleFit, IsTheLeastSquares) {
     for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, minimum);
 }
 
-TEST(ArcFit, TellsTheRadiusAsFarAsTheArcDoes) {
+TEST(ArcFit, RadiusUncertaintyMatchesTheArc) {
     for (const double degrees : {4.6, 30.0, 90.0, 180.0, 330.0}) {
         const ArcFit fit = fit_arc(arc(0.3, 0.3 + degrees * M_PI / 180, 100, {20, -3}, 400));
         EXPECT_NEAR(fit.angle * 180 / M_PI, degrees, 1e-3 * degrees);
@@ -68,7 +68,7 @@ TEST(ArcFit, TellsTheRadiusAsFarAsTheArcDoes) {
     EXPECT_GT(fit_arc(corner).uncertainty(), 0.3);
 }
 
-TEST(ArcFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(ArcFit, IntervalsHaveTheNominalCoverage) {
     // Of 200 points with noise s along an arc of length L the curvature has the standard error s sqrt(720 / n) / L^2 where the
     // arc is short; for any arc the intervals hold the radius in 95 of 100 cases, give or take what 200 draws leave open.
     const int n = 200, draws = 200;

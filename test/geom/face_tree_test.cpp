@@ -110,7 +110,7 @@ std::vector<Named> group_of_all_sizes() {
 
 }  // namespace
 
-TEST(FaceTree, FacesMetAreThoseOfAllFacesOneByOne) {
+TEST(FaceTree, HitFacesEqualBruteForce) {
     for (const auto& [name, soup] : group_of_all_sizes()) {
         const Mesh mesh = build_mesh(soup);
         const FaceTree tree(mesh);

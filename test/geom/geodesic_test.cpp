@@ -33,7 +33,7 @@ Mesh unit_cube() {
     return build_mesh(soup);
 }
 
-TEST(Geodesic, StraightOnAPlaneWhateverItsPlaceAndSize) {
+TEST(Geodesic, StraightOnAPlaneAtAnyPositionAndSize) {
     for (const auto& [scale, shift] : {std::pair{1.0, 0.0}, {1e-9, 0.0}, {1e9, 0.0}, {1.0, 1e6}}) {
         const Mesh mesh = flat(9, scale, shift);
         const std::vector<double> distances = geodesic_distances(mesh, {37});
@@ -150,7 +150,7 @@ TEST(Geodesic, SeparatePartsIsolatedVerticesAndFacesWithoutArea) {
     EXPECT_LE(distances[4], 2 * std::sqrt(2) + 1e-12);
 }
 
-TEST(Geodesic, ErrorsSayWhatIsWrong) {
+TEST(Geodesic, ErrorsNameTheProblem) {
     const Mesh mesh = flat(2);
     EXPECT_THROW((void)geodesic_distances(mesh, {}), Error);
     EXPECT_THROW((void)geodesic_distances(mesh, {9}), Error);
@@ -162,7 +162,7 @@ TEST(Geodesic, ErrorsSayWhatIsWrong) {
     EXPECT_THROW((void)geodesic_distance(mesh, nowhere, vertex_point(0)), Error);
 }
 
-TEST(Geodesic, IsRefusedWhereTheMemoryIsNotThere) {
+TEST(Geodesic, IsRefusedWithoutEnoughMemory) {
     Watch watch;
     watch.memory_limit = resident_memory() + 50e6;
     const WatchScope scope(&watch);

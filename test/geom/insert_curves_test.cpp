@@ -76,7 +76,7 @@ TEST(InsertCurves, NothingToInsertChangesNothing) {
     EXPECT_EQ(mesh_checksum(insert_curves(mesh, {edge}).mesh), mesh_checksum(mesh));
 }
 
-TEST(InsertCurves, RefusesPlacesThatDoNotExist) {
+TEST(InsertCurves, RefusesMissingPoints) {
     const Mesh mesh = build_mesh(torus(12, 8));
     SurfaceCurve curve;
     curve.points.push_back(vertex_point(0));

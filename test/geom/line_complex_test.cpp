@@ -48,7 +48,7 @@ TEST(LineComplex, FindsTheAxisOfAPartOfACone) {
     EXPECT_NEAR(complex.off_axis(), 0, 1e-6);
 }
 
-TEST(LineComplex, MovedIsThatOfWhatIsMoved) {
+TEST(LineComplex, TransformsWithTheNormals) {
     Random random(3);
     std::vector<std::pair<Vector3d, Vector3d>> list;
     for (int k = 0; k < 50; ++k) {
@@ -61,7 +61,7 @@ TEST(LineComplex, MovedIsThatOfWhatIsMoved) {
     EXPECT_NEAR(std::abs(moved.solve().direction.dot(made.solve().direction)), 1, 1e-8);
 }
 
-TEST(LineComplex, TwoPartsShareAnAxisOnlyWhereTheyBelong) {
+TEST(LineComplex, OnlyMatchingPartsShareAnAxis) {
     const LineComplex left = complex_of(cone(0.4, 0, 1)), right = complex_of(cone(0.4, 1, 2));
     LineComplex together = left;
     together.add(right);
@@ -73,7 +73,7 @@ TEST(LineComplex, TwoPartsShareAnAxisOnlyWhereTheyBelong) {
     EXPECT_GT(apart.off_axis(), 0.01);
 }
 
-TEST(LineComplex, OfNothingAndOfAPlaneIsFinite) {
+TEST(LineComplex, IsFiniteForEmptyAndPlanarInput) {
     EXPECT_EQ(LineComplex().off_axis(), 0);
     LineComplex plane;
     for (int k = 0; k < 9; ++k) plane.add(Vector3d(k % 3, k / 3, 0), Vector3d::UnitZ());

@@ -82,9 +82,9 @@ TEST(PointTree, NoPoints) {
     EXPECT_TRUE(found.empty());
 }
 
-TEST(PointTree, NoNeighboursAreAskedFor) { EXPECT_TRUE(PointTree({Point(0, 0, 0)}).neighbours(Point(0, 0, 0), 0).empty()); }
+TEST(PointTree, ZeroNeighboursAreRequested) { EXPECT_TRUE(PointTree({Point(0, 0, 0)}).neighbours(Point(0, 0, 0), 0).empty()); }
 
-TEST(PointTree, TheReachItselfCounts) {
+TEST(PointTree, TheSearchRadiusIsInclusive) {
     const PointTree tree({Point(0, 0, 0), Point(0, 0, 0), Point(3, 0, 0)});
     std::vector<Index> found;
     tree.within(Point(0, 0, 0), 0, found);
@@ -95,7 +95,7 @@ TEST(PointTree, TheReachItselfCounts) {
     EXPECT_EQ(tree.nearest(Point(5, 0, 0), 1.9).index, no_index);
 }
 
-TEST(PointTree, PointsAtOnePlaceComeByIndex) {
+TEST(PointTree, CoincidentPointsAreOrderedByIndex) {
     std::vector<Point> points(500, Point(1, 1, 1));
     points[77] = Point(2, 2, 2);
     compare(points, {Point(1, 1, 1), Point(0, 0, 0), Point(2, 2, 2), Point(1.5, 1.5, 1.5)});
@@ -133,7 +133,7 @@ TEST(PointTree, IsMoved) {
     EXPECT_EQ(tree.nearest(Point(9, 0, 0)).index, 1U);
 }
 
-TEST(PointTree, HeapsAtOnePlaceAreNotLookedThroughForEach) {
+TEST(PointTree, ManyCoincidentPointsAreNotSearchedRepeatedly) {
     const std::vector<Point> heap(200'000, Point(1, 2, 3));
     const PointTree tree(heap);
     for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, not of the heap

@@ -26,7 +26,7 @@ Motion some_motion(double scale) {
     return motion;
 }
 
-TEST(RigidFit, FindsTheMotionAtAnySizeAndPlace) {
+TEST(RigidFit, FindsTheMotionAtAnySizeAndPosition) {
     for (const double size : {1e-6, 1.0, 1e6}) {
         for (const double away : {0.0, 1e4}) {
             for (const bool scaled : {false, true}) {
@@ -89,7 +89,7 @@ TEST(RigidFit, MotionsInvertAndFollowEachOther) {
     EXPECT_LT((a.after(b)(p) - a(b(p))).norm(), 1e-12);
 }
 
-TEST(RigidFit, TakesWhatLeavesTheMotionOpen) {
+TEST(RigidFit, HandlesPointsThatLeaveTheMotionUndetermined) {
     const std::vector<Vector3d> one{{1, 2, 3}}, other{{4, 5, 6}}, same(5, Vector3d(1, 1, 1));
     EXPECT_LT((fit_motion(one, other)(one[0]) - other[0]).norm(), 1e-12);
     FitOptions options;

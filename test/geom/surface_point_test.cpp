@@ -77,7 +77,7 @@ TEST(SurfacePoint, SharesFacesAndEdgesWithItsNeighbours) {
     EXPECT_EQ(shared_face(mesh, face_point(0, {0.2, 0.3, 0.5}), face_point(1, {0.2, 0.3, 0.5})), no_index);
 }
 
-TEST(SurfacePoint, NamesWhatTheMeshDoesNotHave) {
+TEST(SurfacePoint, NamesMissingElements) {
     const Mesh mesh = build_mesh(torus(12, 8));
     const auto refused = [&](const SurfacePoint& p, const std::string& why) {
         try {

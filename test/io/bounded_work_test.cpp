@@ -91,7 +91,7 @@ TEST(BoundedWork, AFanAroundOneVertexIsSearchedInFull) {
     for (const auto& [a, b] : intersections.pairs) EXPECT_EQ(b, 1000U);
 }
 
-TEST(BoundedWork, PairsAroundAVertexAreThoseThatMeetAlone) {
+TEST(BoundedWork, PairsAroundAVertexIntersectOnlyElsewhere) {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     TriangleSoup soup{{{0, 0, 0}}, {}};

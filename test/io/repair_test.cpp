@@ -76,7 +76,7 @@ TEST(Repair, SoundMeshComesOutUnchanged) {
     }
 }
 
-TEST(Repair, FlippedTrianglesAreTurnedBackAtAnyScaleAndPlace) {
+TEST(Repair, FlippedTrianglesAreReversedAtAnyScaleAndPosition) {
     for (const double scale : {1e-12, 1.0, 1e12})
         for (const double far : {0.0, 1e5}) {
             auto s = moved(sphere(), scale, {far * scale, far * scale, 0});
@@ -90,7 +90,7 @@ TEST(Repair, FlippedTrianglesAreTurnedBackAtAnyScaleAndPlace) {
         }
 }
 
-TEST(Repair, InsideOutIsTurnedAndCavitiesStay) {
+TEST(Repair, InsideOutMeshesAreReversedAndCavitiesStay) {
     auto inner = cube({0.25, 0.25, 0.25}, 0.5);
     for (std::size_t t = 0; t < 12; ++t) flip(inner, t);
     EXPECT_DOUBLE_EQ(repair(inner).after.volume, 0.125);
@@ -136,7 +136,7 @@ TEST(Repair, TriangleSoupIsJoined) {
 }
 
 // Points of one place, up to 3.5 times `noise` apart, are told from those of the next where edges are about as short.
-TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
+TEST(Repair, CracksAreClosedWhereEdgesAreEquallyShort) {
     auto intact = sphere(20, 40);
     const double noise = 1e-5 * diagnose(intact).diagonal;
     for (std::size_t t = 100; t < 1400; t += 130) {  // an end of an edge comes close to the other
@@ -169,7 +169,7 @@ TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
     }
 }
 
-TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallComeApart) {
+TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallAreSeparated) {
     for (const auto& s :
          {welded(both(cube(), cube({1, 1, 0}))), welded(both(cube(), cube({1, 1, 1}))), welded(both(cube(), cube({1, 0, 0})))}) {
         const auto r = repair(s);

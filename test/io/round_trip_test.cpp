@@ -111,7 +111,7 @@ TEST(RoundTrip, OffKeepsGeometryColoursAndTexture) {
     }
 }
 
-TEST(RoundTrip, StlKeepsWhatSinglePrecisionHolds) {
+TEST(RoundTrip, StlKeepsSinglePrecision) {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
     for (const Encoding encoding : {Encoding::binary, Encoding::ascii}) {

@@ -91,7 +91,7 @@ TEST(Tetrahedra, AreTheSameThroughBothFormats) {
     EXPECT_NE(notes[0].find("6 tetrahedra"), std::string::npos);
 }
 
-TEST(Tetrahedra, AnnotationsOfTheirSurfaceGoToAndFro) {
+TEST(Tetrahedra, AnnotationsOfTheirSurfaceAreTransferredBothWays) {
     const Scratch scratch;
     const MeshFile file = read_mesh(scratch.file("cube.mesh", cube));
     AnnotationSet set;

@@ -87,7 +87,7 @@ TEST(OrientedBox, IsWithinOnePercentOfTheMinimum) {
     }
 }
 
-TEST(Solid, OnlyClosedMeshesHaveAVolumeOfTheirOwn) {
+TEST(Solid, OnlyClosedMeshesHaveAnExactVolume) {
     TriangleSoup soup = box(2, 1, 2, 3);
     EXPECT_NEAR(closed_volume(build_mesh(soup)), 6, 1e-12);
     for (auto& t : soup.triangles) std::swap(t[1], t[2]);

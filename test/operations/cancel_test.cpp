@@ -123,7 +123,7 @@ std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const
 
 }  // namespace
 
-TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
+TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
     const Scratch scratch;
     furnish(scratch);
     Context kept;
@@ -158,7 +158,7 @@ TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
     }
 }
 
-TEST(Cancelling, IsAskedForByEachAlgorithm) {
+TEST(Cancelling, EachAlgorithmChecksForIt) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
     const Scratch scratch;
     write_mesh(scratch / "sphere.obj", mesh);

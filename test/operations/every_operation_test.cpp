@@ -195,7 +195,7 @@ protected:
 
 }  // namespace
 
-TEST_F(EveryOperation, IsDeclaredOnceAndSoundly) {
+TEST_F(EveryOperation, IsDeclaredOnceAndValidly) {
     std::set<std::string> names;
     const std::regex word("[a-z0-9]+(-[a-z0-9]+)*");
     for (const OperationEntry& entry : operations()) {
@@ -240,7 +240,7 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
     }
 }
 
-TEST_F(EveryOperation, RunsHereOrHasATestOfItsOwn) {
+TEST_F(EveryOperation, RunsHereOrHasItsOwnTest) {
     // What asks for data that takes long to make is run by the tests of its module.
     std::set<std::string> run{"study landmarks", "template turn",   "pair", "assemble", "run", "replay",
                               "conformance run", "conformance self"};
@@ -358,7 +358,7 @@ TEST(Completion, KnowsNamesFlagsChoicesTagsAndFiles) {
         EXPECT_NE(completion_script(shell).find("--complete"), std::string::npos);
 }
 
-TEST(Calls, RefuseWhatMakesNoSense) {
+TEST(Calls, RefuseInvalidArguments) {
     const auto message = [](const auto& work) {
         try {
             work();
@@ -395,7 +395,7 @@ TEST(Calls, RefuseWhatMakesNoSense) {
               std::string::npos);
 }
 
-TEST(Calls, AreCancelledInTheMiddleAndLeaveNothing) {
+TEST(Calls, AreCancelledDuringTheRunAndLeaveNoFiles) {
     const Scratch scratch;
     Context context;
     Call make(find_operation("mesh make"));
@@ -539,7 +539,7 @@ TEST(Calls, AskForTheChecksumOfObjects) {
     EXPECT_EQ(inputs[0].second, "of these words");
 }
 
-TEST(Calls, MakeNoPartOfACollectionThatIsCancelled) {
+TEST(Calls, WriteNoPartOfACancelledCollection) {
     const Scratch scratch;
     Context context;
     context.watch.on_progress = [&](const std::string&, double share) {

@@ -118,7 +118,7 @@ std::string words(const RelationCheck& check) {
 
 }  // namespace
 
-TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
+TEST(GeometricRelations, PlantedRelationsAreFoundAndFalseOnesAreNot) {
     for (const auto& [name, list] : planted())
         for (const auto& [noise, seed] :
              {std::pair{0.0, 0U}, {0.001, 11U}, {0.001, 71U}, {0.005, 11U}, {0.005, 72U}, {0.005, 73U}}) {
@@ -138,7 +138,7 @@ TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
         }
 }
 
-TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
+TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
     const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
     RelationMeter meter(made.mesh, set);
@@ -164,7 +164,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
     for (const auto& relationship : meter.extract({"same level"}, 0)) EXPECT_EQ(relationship.type, "same level");
 }
 
-TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
+TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
     const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
     const ExtractedRelations all = extract_relations(made.mesh, set);
@@ -277,7 +277,7 @@ TEST(GeometricRelations, PointsAndPlanes) {
     EXPECT_THROW(RelationMeter(mesh, set, wrong), Error);
 }
 
-TEST(GeometricRelations, VeryManyAreLeftOutInWords) {
+TEST(GeometricRelations, OmittedRelationsAreReported) {
     const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 4000});
     AnnotationSet set;
     const auto faces = static_cast<Index>(made.mesh.number_of_faces());

@@ -68,7 +68,7 @@ TEST(Graph, ThesisFileIsRead) {
     EXPECT_EQ(parse_json(graph.relationships[1].constraint, "c")["maxValue"].GetDouble(), 0.33);
 }
 
-TEST(Graph, WrittenAndReadAgainTheSame) {
+TEST(Graph, RoundTripIsExact) {
     const Scratch scratch;
     for (const char* text : {thesis_file, own_file}) {
         const RelationGraph graph = read(text);
@@ -87,7 +87,7 @@ TEST(Graph, WrittenAndReadAgainTheSame) {
     EXPECT_EQ(again.relationships[3].parameters.attribute, "area");
 }
 
-TEST(Graph, RefusedWithPlaceAndRemedy) {
+TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     const std::string rest = R"(, "isConstraint": false})", head = R"({"id": 0, "type": )";
     expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0, 9])" + rest,
                    "annotation 9, which does not exist");
@@ -136,7 +136,7 @@ TEST(Graph, NearestTypeIsSuggested) {
     EXPECT_EQ(find_relation_type("same levels"), nullptr);
 }
 
-TEST(Graph, TextStaysTextInDot) {
+TEST(Graph, TextIsEscapedInDot) {
     AnnotationSet set = four();
     set.annotations[0].tag = "a\"]; evil [label=\"<b>x</b>\\N &lt;i&gt;\n\x01 Ä \xC2\x9B \xE2\x80\xAE";
     RelationGraph graph = read(own_file);

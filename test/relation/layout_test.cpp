@@ -59,7 +59,7 @@ TEST(Layout, BracketsThatShareRowsLieInDifferentLanes) {
     }
 }
 
-TEST(BracketGraph, IsWrittenInThreeFormatsAndNoOther) {
+TEST(BracketGraph, IsWrittenInThreeFormatsOnly) {
     const test::Scratch scratch;
     BracketGraph graph;
     graph.title = "a pot";

@@ -61,7 +61,7 @@ TEST(PartOf, PartsLieInTheirWholes) {
     for (const Relationship& one : relations) check_relationship(one, set, "extracted");
 }
 
-TEST(PartOf, OfSeveralWholesTheSmallestThatContains) {
+TEST(PartOf, TheSmallestContainingWholeIsUsed) {
     const Mesh mesh = build_mesh(torus(20, 10));
     AnnotationSet set;
     set.annotations = {region(1, "head", 0, 200), region(2, "head", 0, 100), region(3, "nose", 10, 20),
@@ -71,7 +71,7 @@ TEST(PartOf, OfSeveralWholesTheSmallestThatContains) {
     EXPECT_EQ(relations[0].annotations, (std::vector<int>{2, 3}));
 }
 
-TEST(PartOf, GoesThroughSkosAndBack) {
+TEST(PartOf, SkosRoundTripIsExact) {
     const Vocabulary known = vocabulary();
     for (const bool xml : {false, true}) {
         const Vocabulary back = vocabulary_from_skos(vocabulary_to_skos(known, xml, "face"), xml, "face");
@@ -90,7 +90,7 @@ TEST(PartOf, GoesThroughSkosAndBack) {
     EXPECT_EQ(search.containing_concepts(*nose).size(), 1U);
 }
 
-TEST(PartOf, RefusesWhatIsNotThere) {
+TEST(PartOf, RefusesMissingConcepts) {
     std::string text = face;
     text.replace(text.find("\"partOf\": \"head\""), 16, "\"partOf\": \"haed\"");
     EXPECT_THROW((void)vocabulary_from_json(parse_json(text, "face"), "face"), Error);

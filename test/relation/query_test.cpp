@@ -101,7 +101,7 @@ TEST_F(Query, ComparesQuantitiesInAnyUnit) {
     EXPECT_TRUE(ask("height(leg) > 0").problems.empty());
 }
 
-TEST_F(Query, AWordStandsForOneAnnotationThroughout) {
+TEST_F(Query, AWordDenotesOneAnnotationThroughout) {
     EXPECT_TRUE(holds("related(\"same mould\", leg)"));
     EXPECT_EQ(found("related(\"same mould\", leg, handle)"), (Ids{4, 6}));
     // Both conditions hold, but not of one arm.
@@ -150,7 +150,7 @@ TEST_F(Query, WordsOfAVocabularyInAnyLanguageAndNarrower) {
     EXPECT_FALSE(holds("2 arto"));
 }
 
-TEST_F(Query, UnitsThatDoNotGoTogetherAreAProblemAndNoMatch) {
+TEST_F(Query, IncompatibleUnitsAreAProblemAndNoMatch) {
     for (const char* text : {"area(handle) > 5", "area(handle) > 5 mm", "height(body) + area(body) > 0 mm"}) {
         const QueryAnswer answer = ask(text);
         EXPECT_FALSE(answer.holds) << text;
@@ -161,7 +161,7 @@ TEST_F(Query, UnitsThatDoNotGoTogetherAreAProblemAndNoMatch) {
     EXPECT_TRUE(holds("area(handle) > 0.001"));
 }
 
-TEST(QueryText, WrongQueriesAreRefusedWithPlaceAndRemedy) {
+TEST(QueryText, InvalidQueriesAreRefusedWithLocationAndRemedy) {
     const std::pair<const char*, const char*> wrong[]{
         {"", "column 1"},
         {"2 arm and", "column 10"},

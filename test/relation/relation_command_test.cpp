@@ -71,7 +71,7 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     EXPECT_NE(read_file(scratch / "c.dot").find("label=\"glazed before\""), std::string::npos);
 }
 
-TEST(RelationCommand, SeveralAtOnceOntoTheGraphItself) {
+TEST(RelationCommand, AddsSeveralRelationshipsToTheGraphInPlace) {
     const Scratch scratch;
     const std::string graph = (scratch / "g.graph.json").string();
     const auto added =
@@ -131,7 +131,7 @@ TEST(RelationCommand, BadInput) {
     expect("relation extract " + data + "vase.ply " + data + "teapot.ant.json " + out, 1, "teapot.ant.json");
 }
 
-TEST(RelationCommand, TheLargestIdIsNoDeadEnd) {
+TEST(RelationCommand, IdsContinueAfterTheLargestId) {
     const Scratch scratch;
     const std::string graph = scratch
                                   .file("g.graph.json", R"({"relationships": [{"id": 2147483647, "type": "adjacency",
@@ -158,7 +158,7 @@ TEST(RelationCommand, ExportReports) {
     EXPECT_EQ(report["result"]["relationships"].GetInt(), 1);
 }
 
-TEST(RelationCommand, WhatWasExtractedIsStatedListedAndRemoved) {
+TEST(RelationCommand, ExtractedRelationshipsCanBeSpecifiedListedAndRemoved) {
     const Scratch scratch;
     const auto at = [&](const char* name) { return (scratch / name).string(); };
     (void)scratch.file("old.graph.json", R"({"relationships": [
@@ -223,7 +223,7 @@ TEST(RelationCommand, TolerancesAreInTheUnitOfTheMeshOrInPerCentOfItsDiagonal) {
     EXPECT_NEAR(tolerance("1%"), diagonal / 100, 1e-12 * diagonal);
 }
 
-TEST(RelationCommand, OptionsGivenSeveralTimesMakeAFileThatCanBeRead) {
+TEST(RelationCommand, RepeatedOptionsGiveAReadableFile) {
     const Scratch scratch;
     const std::string graph = (scratch / "g.graph.json").string();
     ASSERT_EQ(run_command("relation extract " + pot + graph + " --type adjacency --type containment").code, 0);
@@ -231,7 +231,7 @@ TEST(RelationCommand, OptionsGivenSeveralTimesMakeAFileThatCanBeRead) {
     EXPECT_EQ(run_command("relation check " + pot + graph).code, 0);
 }
 
-TEST(RelationCommand, WithoutUpItIsSaidWhatWasNotLookedFor) {
+TEST(RelationCommand, WithoutUpSkippedTypesAreReported) {
     const Scratch scratch;
     const auto at = [&](const char* name) { return (scratch / name).string(); };
     ASSERT_EQ(run_command("annotation edit " + pot + at("flat.ant.json") + " --set-up ''").code, 0);

@@ -227,7 +227,7 @@ TEST(Adjacency, NestedIsNotAdjacentAndACornerIsNotEnough) {
     EXPECT_EQ(pairs, (std::vector<std::tuple<std::size_t, std::size_t, double>>{{0, 2, 1.0}, {0, 3, 2.0}, {2, 3, 1.0}}));
 }
 
-TEST(BrokenRules, RelationshipsAreThoseOfTheMeshUnlessAGraphStatesOthers) {
+TEST(BrokenRules, RelationshipsComeFromTheMeshUnlessAGraphIsGiven) {
     const Mesh mesh = build_mesh(grid(4, 4, false, false, [](double u, double v) {
         return std::array<double, 3>{4 * u, 4 * v, 0};
     }));

@@ -34,7 +34,7 @@ CreaseOptions fine() {
     return options;
 }
 
-TEST(Creases, ARingOfClayIsOneClosedRidgeAtItsPlace) {
+TEST(Creases, ARingOfClayIsOneClosedRidge) {
     for (const double scale : {1e-3, 1.0, 1e5}) {
         const Mesh mesh = build_mesh(ringed_tube(1, 0, scale));
         CreaseOptions options = fine();
@@ -62,7 +62,7 @@ TEST(Creases, AFurrowIsAHollow) {
     EXPECT_LT(creases[0].mean_curvature, 0);
 }
 
-TEST(Creases, NoiseHidesNothingAndAddsNothing) {
+TEST(Creases, NoiseHidesAndAddsNoCreases) {
     const Mesh mesh = build_mesh(ringed_tube(1, 0.1));
     CreaseOptions options = fine();
     options.kind = CreaseOptions::Kind::ridge;
@@ -169,7 +169,7 @@ TEST(Creases, OptionsOutOfRangeAreRefused) {
     EXPECT_THROW(set_option(options, "kind", "groove"), Error);
 }
 
-TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
+TEST(CreasesCommand, WritesAnnotationsOrReportsThatThereAreNone) {
     const test::Scratch scratch;
     write_mesh(scratch / "tube.ply", build_mesh(ringed_tube(1)));
     write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(6)));

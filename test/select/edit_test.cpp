@@ -25,7 +25,7 @@ const char* const tile_steps = R"(
 
 }  // namespace
 
-TEST(Lasso, OneThatCrossesItselfIsRefusedWhereItDoes) {
+TEST(Lasso, ASelfIntersectingLassoIsRefusedWithItsLocation) {
     const Mesh mesh = grid(10);
     // A bow tie about the middle (5, 5), which is vertex 60.
     expect_error(
@@ -115,7 +115,7 @@ TEST(Edit, EveryActionOnEveryType) {
     EXPECT_EQ(again.find(3)->points, std::vector<Index>{24});
 }
 
-TEST(Edit, WhatIsSaidOfOtherAnnotationsStays) {
+TEST(Edit, OtherAnnotationsAreUnchanged) {
     // A descriptor that an operation of collections wrote cannot be computed here: other parts are selected all the same.
     const Mesh mesh = grid(4);
     RecipeStart start = start_with(tile_steps, mesh);

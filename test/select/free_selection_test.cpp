@@ -131,7 +131,7 @@ TEST(FreeSelection, PathsAreGeodesics) {
     EXPECT_NEAR(curve->length(mesh), geodesic_distance(mesh, node(10), node(200)), 1e-9);
 }
 
-TEST(FreeSelection, EditsKeepItFree) {
+TEST(FreeSelection, EditsKeepFreeOutlines) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [
         {"id": 1, "tag": "part", "type": "region", "outline": "free",
@@ -152,7 +152,7 @@ TEST(FreeSelection, EditsKeepItFree) {
     EXPECT_NEAR(area_of(mesh, part), both - area("[0.2, 0, 1]", 0.2), 1e-9);
 }
 
-TEST(FreeSelection, WhatMissesTheSurfaceIsRefused) {
+TEST(FreeSelection, SelectionsThatMissTheSurfaceAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(2));
     EXPECT_THROW(selected(mesh, R"({"sphere": {"centre": [9, 9, 9], "radius": 1}})"), Error);
     // The whole is the whole, and has no outline.
@@ -178,7 +178,7 @@ TEST(FreeSelection, GrowthByADistanceIsOfSecondOrder) {
     expect_second_order(length, "perimeter of the grown cap");
 }
 
-TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
+TEST(FreeSelection, SetsOfFacesEndAtIsolines) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
     // Labels by a plane that follows no edges: their border is a saw, the isoline nearly the circle.
     std::vector<std::int32_t> labels;
@@ -233,7 +233,7 @@ std::vector<std::int32_t> labels_by_plane(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(FreeSelection, LevelsAreFreeAndSetsOfFacesKeepTheirEdges) {
+TEST(FreeSelection, LevelSetsAreFreeAndSetsOfFacesKeepTheirEdges) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
@@ -258,7 +258,7 @@ TEST(FreeSelection, LevelsAreFreeAndSetsOfFacesKeepTheirEdges) {
     EXPECT_TRUE(is_free(*by_default(mesh, labels, R"({"labels": [7]}, "outline": "free")").find(2)));
 }
 
-TEST(FreeSelection, WhatIsMixedKeepsTheEdgesOfSetsOfFaces) {
+TEST(FreeSelection, MixedSelectionsKeepTheEdgesOfSetsOfFaces) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})", of_label = R"({"labels": [7]})";
@@ -271,7 +271,7 @@ TEST(FreeSelection, WhatIsMixedKeepsTheEdgesOfSetsOfFaces) {
     EXPECT_NEAR(area("{\"difference\": " + both + "}"), labelled - area("{\"intersection\": " + both + "}"), 1e-12);
 }
 
-TEST(FreeSelection, EditsLeaveAnOutlineWhatItIsAndReplacementsAreNew) {
+TEST(FreeSelection, EditsKeepTheKindOfAnOutlineAndReplacementsAreNew) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
@@ -288,7 +288,7 @@ TEST(FreeSelection, EditsLeaveAnOutlineWhatItIsAndReplacementsAreNew) {
     EXPECT_GT(both.faces.size(), by_default(mesh, labels, ball).find(2)->faces.size());
 }
 
-TEST(FreeSelection, WhereNoFreeOutlineCanBeMadeItRunsAlongTheEdges) {
+TEST(FreeSelection, WithoutAFreeOutlineItRunsAlongTheEdges) {
     // A plate of 8 by 8 squares; some of its triangles have a neighbour without area along one side, which cannot be cut inside.
     constexpr Index n = 8;
     TriangleSoup soup;

@@ -123,7 +123,7 @@ TEST(Brush, IsAGeodesicDisc) {
                 0.02 * pi * 200);
 }
 
-TEST(Brush, OnAScanItIsWhatTheDistanceSays) {
+TEST(Brush, OnAScanItMatchesTheDistance) {
     OSTRAKA_SCAN(mesh, "lion-head.off");
     const double radius = 0.06 * box_diagonal(mesh);
     const Vertex centre(1000);
@@ -169,7 +169,7 @@ TEST(Threshold, OnEveryScalar) {
         small);
 }
 
-TEST(Threshold, OnAMapBesideTheRecipe) {
+TEST(Threshold, OnAMapNextToTheRecipe) {
     const Mesh mesh = grid(2);
     const Scratch scratch;
     (void)scratch.file("v.txt", "0\n1\n2\n0\n1\n2\n0\n1\nnan\n");
@@ -255,7 +255,7 @@ TEST(Segments, OnAScan) {
     EXPECT_LT(share, 1);
 }
 
-TEST(Reckoned, ErrorsNameWhatIsWrong) {
+TEST(Reckoned, ErrorsNameTheProblem) {
     const Mesh mesh = grid(4);
     expect_error(R"({"brush": {"points": [0], "radius": -1}})", mesh, "/brush/radius", "minimum");
     expect_error(R"({"brush": {"points": [99], "radius": 1}})", mesh, "/brush/points/0", "99");

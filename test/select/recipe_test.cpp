@@ -64,7 +64,7 @@ TEST(Recipe, VolumesSelectByCentroidAndByVertex) {
     EXPECT_EQ(points, (std::vector<Index>{1, 5, 6, 7, 11}));
 }
 
-TEST(Recipe, NormalsOfAnyLengthAndPlacesWithinReason) {
+TEST(Recipe, NormalsOfAnyLengthAndFinitePoints) {
     const Mesh ball = spheres(3);
     const std::vector<Index> plain = faces_of(R"({"halfspace": {"point": [0.1, 0, 0], "normal": [1, 1, -1]}})", ball);
     ASSERT_GT(plain.size(), 0U);
@@ -79,7 +79,7 @@ TEST(Recipe, NormalsOfAnyLengthAndPlacesWithinReason) {
         expect_error(recipe(step("region", select)), ball, "/annotations/0/select", "beyond what can be computed with");
 }
 
-TEST(Recipe, TheBoxFrameFitsAnyPlaceAndScale) {
+TEST(Recipe, TheBoxFrameFitsAnyPositionAndScale) {
     const std::string select = R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}})";
     const std::vector<Index> expected = faces_of(select, grid(4));
     EXPECT_EQ(expected.size(), 16U);
@@ -153,7 +153,7 @@ TEST(Recipe, PathsComponentsAndPicks) {
               std::vector<Index>{0});
 }
 
-TEST(Recipe, MeasuresAreTakenAndDescriptorsComputed) {
+TEST(Recipe, MeasuresAndDescriptorsAreComputed) {
     const Mesh mesh = grid(4);
     const AnnotationSet set =
         follow(recipe(step("region", R"({"box": {"min": [0, 0, 0], "max": [2, 3, 0]}})", R"(, "attributes": [
@@ -244,7 +244,7 @@ TEST(Recipe, EmptyAndTinyMeshes) {
     expect_error(recipe(step("region", R"({"lasso": {"points": [0, 1, 2], "seed": 0}})")), triangle, "/lasso", "close off");
 }
 
-TEST(Selections, NearestFaceAndVertexSkipWhatHasNoSurface) {
+TEST(Selections, NearestFaceAndVertexSkipElementsWithoutSurface) {
     TriangleSoup soup;
     soup.points = {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
     soup.triangles = {{1, 2, 3}, {2, 4, 3}};
@@ -255,7 +255,7 @@ TEST(Selections, NearestFaceAndVertexSkipWhatHasNoSurface) {
     EXPECT_THROW((void)component_of(mesh, 9), Error);
 }
 
-TEST(Recipe, TheShippedOnesFitTheSchema) {
+TEST(Recipe, TheShippedRecipesSatisfyTheSchema) {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(Path(OSTRAKA_SOURCE_DIR) / "data")) {
         const std::string name = entry.path().filename().string();

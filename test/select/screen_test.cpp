@@ -83,7 +83,7 @@ void compare_with_brute_force(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(Screen, ARectangleOnATileSeenFromAbove) {
+TEST(Screen, ARectangleOnATileFromAbove) {
     const Mesh mesh = grid(10);
     // 10 x 10 fill 92 % of a pane of 856 pixels' height about its middle (600, 428): 78.752 pixels a unit.
     const PictureCamera camera = camera_of(mesh, "top", false);
@@ -107,7 +107,7 @@ TEST(Screen, ARectangleOnATileSeenFromAbove) {
     EXPECT_EQ(named.faces, select("region", drawn(top, from, to), mesh).faces);
 }
 
-TEST(Screen, OfAConvexShapeWhatFacesTheEyeIsVisible) {
+TEST(Screen, OnAConvexShapeFacesTowardsTheEyeAreVisible) {
     const Mesh mesh = spheres(4);
     const SurfaceSearch search(mesh);
     const auto all = [](const Pixel&) { return true; };
@@ -154,7 +154,7 @@ TEST(Screen, AnIndependentRayTestAgreesOnAScan) {
     compare_with_brute_force(mesh);
 }
 
-TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
+TEST(Screen, APixelOfAPictureSelectsTheVisibleElement) {
     MakeOptions make;
     make.vertices = 4000;
     const Mesh mesh = make_mesh(synthetic_object("teapot"), make).mesh;
@@ -200,7 +200,7 @@ TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
         }
 }
 
-TEST(Screen, AnEyeCanBePlaced) {
+TEST(Screen, TheEyeCanBeSpecified) {
     const Mesh mesh = spheres(4);
     const std::string camera =
         R"({"eye": [0, -10, 0], "target": [0, 0, 0], "projection": "perspective", "angle": 30, "picture": [400, 400],
@@ -223,7 +223,7 @@ TEST(Screen, AnEyeCanBePlaced) {
               select("region", drawn(R"({"projection": "perspective"})", "[400, 300]", "[800, 500]"), mesh).faces);
 }
 
-TEST(Screen, ErrorsNameWhatIsWrong) {
+TEST(Screen, ErrorsNameTheProblem) {
     const Mesh mesh = spheres(3);
     const std::string front = R"({"view": "front"})";
     expect_error(drawn(front, "[1300, 0]", "[1400, 100]"), mesh, "/rectangle", "outside the picture");
@@ -275,7 +275,7 @@ TEST(Screen, ThePlaceAndScaleOfTheObjectDoNotMatter) {
     }
 }
 
-TEST(Screen, MeshesWithoutMuchToSee) {
+TEST(Screen, MeshesWithFewVisibleElements) {
     TriangleSoup soup;
     const std::string everything = drawn(R"({"view": "top"})", "[0, 0]", "[1200, 900]");
     expect_error(everything, build_mesh(soup), "/rectangle/camera", "no vertices");

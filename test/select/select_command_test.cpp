@@ -59,7 +59,7 @@ TEST(SelectCommand, StepsAreRecordedAndReplayedToTheByte) {
     EXPECT_EQ(run_command("annotation check " + folder.at("ball.ply") + " " + folder.at("a.ant.json")).code, 0);
 }
 
-TEST(SelectCommand, ASecondPartOfOneTagIsSaid) {
+TEST(SelectCommand, ASecondPartWithATagIsReported) {
     const Folder folder;
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").err, "");
     const auto second = folder.select("--tag cap --sphere 0,0,-1,0.5");
@@ -72,7 +72,7 @@ TEST(SelectCommand, ASecondPartOfOneTagIsSaid) {
     EXPECT_NE(taken.err.find("'add to'"), std::string::npos) << taken.err;
 }
 
-TEST(SelectCommand, ColoursTellPartsFromTheWhole) {
+TEST(SelectCommand, ColoursDistinguishPartsFromTheWhole) {
     const Folder folder;
     ASSERT_EQ(folder.select("--class ball --tag cap --sphere 0,0,1,0.5").code, 0);
     ASSERT_EQ(folder.select("--tag nearly --halfspace 0,0,-0.99,0,0,1").code, 0);
@@ -125,7 +125,7 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
     EXPECT_FALSE(std::filesystem::exists(folder / "d.ant.json"));
 }
 
-TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
+TEST(SelectCommand, HelpGivesDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
@@ -136,7 +136,7 @@ TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
     EXPECT_EQ(orders.find("files"), std::string::npos) << orders;
 }
 
-TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
+TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnTheExistingAnnotations) {
     const Folder folder;
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").code, 0);
     write_file(folder / "before.ant.json", read_file(folder / "a.ant.json"));
@@ -155,7 +155,7 @@ TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
     EXPECT_EQ(read_annotations(folder / "a.ant.json", mesh).annotations.size(), 1U) << "--output leaves the file as it is";
 }
 
-TEST(SelectCommand, TheRecipeMayGoElsewhere) {
+TEST(SelectCommand, TheRecipeMayBeWrittenElsewhere) {
     const Folder folder;
     const std::string record = " --record " + folder.at("r.recipe.json");
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
@@ -194,7 +194,7 @@ TEST(SelectCommand, StepsOnValuesOfAFileReplayToTheByte) {
     }
 }
 
-TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
+TEST(SelectCommand, UpdatesObjectsInMemory) {
     Context context;
     const auto mesh = std::make_shared<const Mesh>(spheres(4));
     std::optional<Object> set, recipe;
@@ -228,7 +228,7 @@ TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
     EXPECT_TRUE(std::filesystem::exists(scratch / "r.recipe.json"));
 }
 
-TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
+TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
     const Folder folder;
     const std::string record = " --record " + folder.at("r.recipe.json");
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);

@@ -46,7 +46,7 @@ double rectangle(double angle, double a, double b) {
 /// A round foot, a flat board in the middle, a round head.
 double three_parts(double share, double angle) { return share < 0.35 || share > 0.75 ? 10 : rectangle(angle, 20, 5); }
 
-TEST(SliceSegments, ProposesTheKindsThatAreThereAndFindsTheirBands) {
+TEST(SliceSegments, ProposesTheNumberOfKindsAndFindsTheirBands) {
     // Rings so close that no slice lies between two of different kinds.
     const Mesh mesh = lofted(three_parts, 60, 1201, 36);
     for (const char* criterion : {"silhouette", "gap"}) {
@@ -64,7 +64,7 @@ TEST(SliceSegments, ProposesTheKindsThatAreThereAndFindsTheirBands) {
     }
 }
 
-TEST(SliceSegments, RegionsPartTheMesh) {
+TEST(SliceSegments, RegionsPartitionTheMesh) {
     const Mesh mesh = lofted(three_parts, 60);
     const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1));
     const AnnotationSet set = annotate_segments(mesh, found);
@@ -109,7 +109,7 @@ TEST(SliceSegments, ShortRunsJoinTheirLongerNeighbour) {
     EXPECT_EQ(segment_by_slices(mesh, Vector(0, 0, 1), options).segments.size(), 2U);
 }
 
-TEST(SliceSegments, SameAfterScaleAndTurnAndForAnyNumberOfThreads) {
+TEST(SliceSegments, SameAfterScalingAndRotationAndForAnyNumberOfThreads) {
     Mesh mesh = lofted(three_parts, 60);
     const SliceSegments before = segment_by_slices(mesh, Vector(0, 0, 1));
     for (const Vertex v : mesh.vertices()) {
@@ -125,7 +125,7 @@ TEST(SliceSegments, SameAfterScaleAndTurnAndForAnyNumberOfThreads) {
     EXPECT_EQ(one.labels, before.labels);
 }
 
-TEST(SliceSegments, OneKindOnlyGivesOneSegmentWhereAskedFor) {
+TEST(SliceSegments, OneKindGivesOneSegmentIfRequested) {
     SliceSegmentOptions options;
     options.clusters = 1;
     const SliceSegments one = segment_by_slices(lofted(three_parts, 60), Vector(0, 0, 1), options);
@@ -133,7 +133,7 @@ TEST(SliceSegments, OneKindOnlyGivesOneSegmentWhereAskedFor) {
     EXPECT_EQ(one.clusters, 1);
 }
 
-TEST(SliceSegments, NonsenseIsRefused) {
+TEST(SliceSegments, InvalidOptionsAreRefused) {
     const Mesh mesh = lofted(three_parts, 60);
     SliceSegmentOptions options;
     options.slices = 3;

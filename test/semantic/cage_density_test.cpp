@@ -9,7 +9,7 @@
 
 using namespace ostraka;
 
-TEST(CageDensity, MoreVerticesWhereThingsAreAnnotated) {
+TEST(CageDensity, MoreVerticesNearAnnotations) {
     const Mesh mesh = example::spheres(3);
     AnnotationSet set;
     Annotation& mark = set.annotations.emplace_back();

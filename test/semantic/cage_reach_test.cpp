@@ -58,7 +58,7 @@ TEST(AutomaticSpace, SeatsOrnamentsWithAndWithoutACage) {
     }
 }
 
-TEST(AutomaticSpace, SeatsNothingThatSaysHowItIsKept) {
+TEST(AutomaticSpace, SeatsNoPartWithSpecifiedShapes) {
     const Caged& object = teapot();
     for (const char* parameters : {R"({"shapes": "free"})", R"({"follow": true})", R"({"heights": "rest"})"}) {
         const DeformResult result = automatic(object.handles(), one(constraint(0, "same level", flowers, parameters)), stretched);
@@ -80,7 +80,7 @@ TEST(AutomaticSpace, WithoutConstraintsIsTheEdit) {
     EXPECT_EQ(result.points, result.edited);
 }
 
-TEST(AutomaticSpace, ThroughACageThePartThatTheEditNamesIsMovedAsWithoutOne) {
+TEST(AutomaticSpace, ThroughACageTheNamedPartMovesAsWithoutACage) {
     // The constraint must not take half of the edit back, as if nothing held it.
     const Caged& object = teapot();
     const RelationGraph graph = one(constraint(0, "same level", {4, 14}, R"({"reference": "vertex", "hard": true})"));
@@ -110,7 +110,7 @@ TEST(AutomaticSpace, IsNeverWorseThanTheMesh) {
     EXPECT_FALSE(result.conflicts.empty() && result.untried == 0 && failing(result) < 2) << "conflicts are looked for";
 }
 
-TEST(CageReach, APointCanBePutAnywhere) {
+TEST(CageReach, APointCanReachAnyPosition) {
     // One row of which the weights sum to one: every cage can meet it, with rank 1.
     const Caged& object = teapot();
     const auto list = cage_reach(object.handles(), one(constraint(4, "keep position", {14}, "{}")));
@@ -144,7 +144,7 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     EXPECT_TRUE(cage_reach(object.handles(), one(constraint(0, "same level", flowers, R"({"shapes": "seat"})"))).empty());
 }
 
-TEST(CageReach, TellsOfTheEditThatIsGiven) {
+TEST(CageReach, EvaluatesTheGivenEdit) {
     const Caged& object = teapot();
     const RelationGraph graph = one(constraint(0, "same level", flowers, "{}"));
     const Edit strong = edit(stretched), none = edit(R"({"select": {"all": true}, "translate": [1, 2, 3]})");
@@ -155,7 +155,7 @@ TEST(CageReach, TellsOfTheEditThatIsGiven) {
     EXPECT_GT(far[0].left, 2 * cage_reach(object.handles(), graph)[0].left) << "four times as strong an edit";
 }
 
-TEST(CageReach, OfNothing) {
+TEST(CageReach, WithoutConstraintsIsEmpty) {
     const Caged& object = teapot();
     EXPECT_TRUE(cage_reach(object.handles(), {}).empty());
     EXPECT_TRUE(cage_reach(object.handles(), one(constraint(0, "same level", flowers, "{}", 0))).empty());

@@ -380,7 +380,7 @@ std::vector<Point> wrong_by(const Case& one, double wrong) {
 
 }  // namespace
 
-TEST(ConstraintCheck, EveryTypeIsJudgedByWhatPositionsSay) {
+TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
     const Scratch scratch;
     for (const Case& one : cases()) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -424,7 +424,7 @@ TEST(ConstraintCheck, SelectionsAreJudgedByTheirFaces) {
     EXPECT_EQ(judged.at(2).verdict, Verdict::fails);
 }
 
-TEST(ConstraintCheck, WhatIsSolvedIsWhatIsMeasured) {
+TEST(ConstraintCheck, TheSolvedQuantityIsTheMeasuredOne) {
     // From a very wrong shape: the verdict on the result is that of its file, and the same as the check's against the rest.
     const Scratch scratch;
     DeformOptions options;
@@ -457,7 +457,7 @@ TEST(ConstraintCheck, AShapeAtRestHasTheVerticesOfTheMesh) {
     EXPECT_THROW(judge_constraints(bench().mesh, bench().set, graph, &other), Error);
 }
 
-TEST(ConstraintCheck, WhatCannotBeReadIsSaidAndTheOthersAreJudged) {
+TEST(ConstraintCheck, UnreadableConstraintsAreReportedAndOthersJudged) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {a}, R"({"measure": "girth"})"));
     graph.relationships.push_back(constraint(1, "same level", {a, b}, "{}"));
@@ -467,7 +467,7 @@ TEST(ConstraintCheck, WhatCannotBeReadIsSaidAndTheOthersAreJudged) {
     EXPECT_EQ(judged.at(1).verdict, Verdict::holds);
 }
 
-TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsWhole) {
+TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsIntact) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(3, "keep direction", {b}, R"({"angle": 0, "direction": [0, 0, 1], "hard": true})"));
     graph.relationships.push_back(

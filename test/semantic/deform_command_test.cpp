@@ -146,7 +146,7 @@ TEST(CageCommand, BadInput) {
     EXPECT_EQ(count_files(scratch.path()), 0U);
 }
 
-TEST(DeformCommand, KeepsWhatIsAsked) {
+TEST(DeformCommand, SatisfiesTheConstraints) {
     const Caged folder;
     const std::string base = "deform " + pot + parts + folder.at("lift.edit.json") + " ";
     const auto plain = run_command(base + folder.at("plain.ply") + folder.handles());
@@ -194,7 +194,7 @@ TEST(DeformCommand, ADeformedCageIsAnEdit) {
     EXPECT_EQ(run_command("deform " + pot + folder.at("x.ply") + " --deformed-cage " + folder.at("there.obj")).code, 2);
 }
 
-TEST(DeformCommand, AnUnsoundCageIsCalledOne) {
+TEST(DeformCommand, AnInvalidCageIsReported) {
     const Caged folder;
     // One vertex of the cage is drawn through the object: faces cross, and vertices of the mesh are outside.
     Mesh cage = read_mesh(folder.at("cage.ply")).mesh;
@@ -252,7 +252,7 @@ TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     }
 }
 
-TEST(DeformCommand, ATemplateIsAllItNeeds) {
+TEST(DeformCommand, ATemplateIsSufficientInput) {
     const Caged folder;
     const std::string package = folder.at("pot.template.json");
     const auto packed = run_command("template pack " + package + " --mesh " + pot + " --annotations " + parts + " --graph " +

@@ -135,7 +135,7 @@ TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
     }
 }
 
-TEST(Deform, ThroughTheCageItComesAsNearAsTheCageCan) {
+TEST(Deform, ThroughTheCageConstraintsAreMetAsFarAsPossible) {
     const Caged& object = teapot();
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "same level", {7, 8, 9, 10, 11}, R"({"heights": "equal"})", 10));
@@ -234,7 +234,7 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
         << error_of(object.handles(), steps, graph);
 }
 
-TEST(Deform, AScannedBustKeepsWhatSitsOnIt) {
+TEST(Deform, AScannedBustKeepsItsFeatures) {
     const Path file = Path(OSTRAKA_SHARED_DATA) / "heritage-scans" / "Laurana50k.ply";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no " << file;
     const Mesh mesh = read_mesh(file).mesh;

@@ -67,7 +67,7 @@ TEST(Deform, AProportionStretchesThePartFromItsJoint) {
         ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], rest[v])), 1e-3 * diagonal);
 }
 
-TEST(Deform, ContradictionsAreToldAndLeaveNoHoles) {
+TEST(Deform, ContradictionsAreReportedAndLeaveNoHoles) {
     const Caged& object = teapot();
     RelationGraph graph;
     // Upright and level planes at once, through one pair of flowers, both hard.
@@ -136,7 +136,7 @@ TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
     EXPECT_NEAR(area, rest, 0.02 * rest);
 }
 
-TEST(Deform, AReferenceStandsWhileAPartIsBroughtToIt) {
+TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
     // A leg cut in halves, the lower one rotated. Let free, the upper half leans over with it, further pass by pass.
     const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 8000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
@@ -202,7 +202,7 @@ TEST(Deform, ResidualsAreThoseOfTheShapeWithItsFeaturesSeated) {
     EXPECT_NEAR(100 * report.maximum / box.diagonal().norm(), *report.deviations[0].value, 1e-9);
 }
 
-TEST(Deform, TellsWhichConstraintsFight) {
+TEST(Deform, ReportsConflictingConstraints) {
     // The ring finger twice as long as the little finger, and the little finger as long as the ring finger.
     const Hand hand;
     RelationGraph graph;
@@ -274,7 +274,7 @@ TEST(Deform, AxesBecomeParallelAndPerpendicular) {
     }
 }
 
-TEST(Deform, PartsComeToTheAxisOfAnother) {
+TEST(Deform, PartsMoveToTheAxisOfAnother) {
     // The parts as they were made: the body is cut open by spout and handle, so that its centroid is off its axis.
     const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 3000});
     AnnotationSet set;
@@ -292,7 +292,7 @@ TEST(Deform, PartsComeToTheAxisOfAnother) {
     for (const ConstraintReport& report : result.constraints) EXPECT_EQ(report.verdict, Verdict::holds) << report.text;
 }
 
-TEST(Deform, PartsThatAreNotAskedStay) {
+TEST(Deform, PartsThatAreNotNamedStay) {
     // Flowers follow one that is raised; a tenth of the diagonal away from all of them hardly anything moves.
     const Caged pot("teapot", 3000, 100);
     const Mesh& mesh = pot.made.mesh;
@@ -320,7 +320,7 @@ TEST(Deform, PartsThatAreNotAskedStay) {
     EXPECT_LT(farthest, 0.003 * diagonal) << 100 * farthest / diagonal << " %";
 }
 
-TEST(Deform, MeasuresAreKeptAndMadeEqual) {
+TEST(Deform, MeasuresAreKeptAndEqualised) {
     const Hand hand;
     const auto length = [&](int id, const std::vector<Point>& points) {
         double low = 1e300, high = -1e300;
@@ -398,7 +398,7 @@ TEST(Deform, TheOtherSideFollowsAMirror) {
     EXPECT_NE(error_of(object.bare(), arm, graph).find("mirror image"), std::string::npos);
 }
 
-TEST(Deform, ConstraintsMayBeStatedByTheirOwnNames) {
+TEST(Deform, ConstraintsOfTheSolverCanBeUsedByName) {
     const Caged& object = teapot();
     RelationGraph graph;
     const auto solve = [&](const std::string& type, int annotation, const std::string& parameters) {
@@ -428,7 +428,7 @@ TEST(Deform, ConstraintsMayBeStatedByTheirOwnNames) {
     refused("area", R"({"minValue": 2, "maxValue": 1})", "min");
 }
 
-TEST(Deform, PartsThatAreNearStayNear) {
+TEST(Deform, AdjacentPartsStayAdjacent) {
     // Two balls apart by little: pieces of one mesh that no edge joins.
     const double width = 2;
     const Mesh both = spheres(3, {{0, 0, 0}, {1.01 * width, 0, 0}});
@@ -495,7 +495,7 @@ TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
     EXPECT_NEAR(area(whole.points) / area(points_of(hand.made.mesh)), 0.92 * 0.92, 0.02);
 }
 
-TEST(Deform, ThroughACageNothingFliesApart) {
+TEST(Deform, ThroughACagePartsStayConnected) {
     const Caged object("chair", 8000, 150);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {4, 7}, R"({"hard": true})"));

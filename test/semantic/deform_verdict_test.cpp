@@ -88,7 +88,7 @@ TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) 
     for (const Edge e : now.edges()) ASSERT_LT(length(now, now.halfedge(e)), 3 * length(hand.made.mesh, now.halfedge(e)));
 }
 
-TEST(DeformVerdict, OtherCrossingsThanAtRestAreNotAcceptable) {
+TEST(DeformVerdict, NewCrossingsAreNotAcceptable) {
     // Two spheres that cross move apart until they cross in a smaller circle: fewer pairs, and others.
     const Mesh mesh = build_mesh(soups::both(soups::sphere(16, 32), soups::sphere(16, 32, 0.8, {0.9, 0, 0})));
     const auto half = static_cast<Index>(soups::sphere(16, 32).points.size());
@@ -119,7 +119,7 @@ TEST(DeformVerdict, CrossingsAreNotAcceptable) {
     EXPECT_TRUE(objects(result, "cross"));
 }
 
-TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
+TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
     // The finger is rotated, so that other vertices are outermost than at rest.
     Annotated hand("hand");
     hand.take("little finger", "reach", {0, 0, 1});
@@ -147,7 +147,7 @@ TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
         }
 }
 
-TEST(DeformVerdict, LevelsStayAsTheyAreAtRest) {
+TEST(DeformVerdict, LevelsStayAsAtRest) {
     // Feet that stand 0.3 % of the diagonal apart stay so, whatever the back does.
     Annotated chair("chair");
     const double diagonal = box_diagonal(chair.made.mesh);
@@ -172,7 +172,7 @@ TEST(DeformVerdict, LevelsStayAsTheyAreAtRest) {
                 0.01);
 }
 
-TEST(EditWords, PartsByWords) {
+TEST(EditWords, PartsAreFoundByWords) {
     Annotated chair("chair", 2000);
     const auto count = [&](const std::string& words) { return parts_named(chair.set, words).size(); };
     EXPECT_EQ(count("legs"), 4U);

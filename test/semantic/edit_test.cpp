@@ -10,7 +10,7 @@
 using namespace ostraka;
 using namespace ostraka::test;
 
-TEST(Edit, OfAWholeCageIsThatOfTheMesh) {
+TEST(Edit, AnEditOfTheWholeCageMovesTheMeshEqually) {
     const Caged& object = teapot();
     const double diagonal = box_diagonal(object.made.mesh);
     const auto expect = [&](const std::string& operation, auto&& move) {
@@ -62,7 +62,7 @@ TEST(Edit, StepsFollowEachOther) {
     EXPECT_EQ(std::count(states[0].touched.begin(), states[0].touched.end(), true), 2);
 }
 
-TEST(Edit, WhatMakesNoSenseIsRefused) {
+TEST(Edit, InvalidEditsAreRefused) {
     const Caged& object = teapot();
     const auto refused = [&](const std::string& step, const std::string& words) {
         const std::string text = error_of(object.handles(), step);
@@ -132,7 +132,7 @@ TEST(NestedEdit, APartIsMovedByItsOwnCage) {
               follow_edit(edit(R"({"select": {"annotation": "spout"}, "translate": [1, 2, 3]})"), alone, "e")[0].selected);
 }
 
-TEST(NestedEdit, InnerCagesAreCarriedAlong) {
+TEST(NestedEdit, InnerCagesFollowOuterCages) {
     const Nested& n = nested();
     // All of the outer cage: the inner goes with it, and so does the whole object.
     const auto states = n.follow(R"({"select": {"all": true, "level": 0}, "translate": [5, 0, 0]},
@@ -152,7 +152,7 @@ TEST(NestedEdit, InnerCagesAreCarriedAlong) {
     EXPECT_LT(std::sqrt(CGAL::squared_distance(all[0].handles[inner], n.cage.point(Vertex(inner)) + Vector(5, 0, 0))), 1e-12);
 }
 
-TEST(NestedEdit, LevelsThatAreNotThereAreRefused) {
+TEST(NestedEdit, MissingLevelsAreRefused) {
     EXPECT_NE(error_of(nested().handles(), R"({"select": {"annotation": "spout", "level": 2}, "translate": [1, 2, 3]})")
                   .find("the cage has 2 levels"),
               std::string::npos);

@@ -46,7 +46,7 @@ TEST(LiveDeformation, WithoutConstraintsIsTheEdit) {
     EXPECT_LT(farthest(shape, deform(object.handles(), {}, step, "e").points), 1e-9 * box_diagonal(object.made.mesh));
 }
 
-TEST(LiveDeformation, ComesToWhatTheExactSolutionIs) {
+TEST(LiveDeformation, ConvergesToTheExactSolution) {
     // The knob is lifted; a flower and the spout stay on one level.
     const Caged& object = teapot();
     RelationGraph graph;
@@ -76,7 +76,7 @@ TEST(LiveDeformation, ComesToWhatTheExactSolutionIs) {
     EXPECT_GT(farthest(exact.points, exact.edited), 0.01 * diagonal);
 }
 
-TEST(LiveDeformation, RefusesWhatIsNoHandleOrNoPlace) {
+TEST(LiveDeformation, RefusesInvalidHandlesAndPositions) {
     const Caged& object = teapot();
     EXPECT_THROW(LiveDeformation(object.bare(), {}, edit(""), {0}), Error);
     EXPECT_THROW(LiveDeformation(object.handles(), {}, edit(""), {100000}), Error);

@@ -156,7 +156,7 @@ TEST(PartsKept, APositionStays) {
     EXPECT_LT((column.mean(shaft, moved.points) - Eigen::Vector3d(0, 1, 6)).norm(), 0.03);
 }
 
-TEST(PartsKept, LinesOfOneLengthStayAlike) {
+TEST(PartsKept, LinesOfEqualLengthStayEqual) {
     // The column bends: the line inside the bend gets shorter than that outside.
     expect_kept(Column(), constraint(0, "same length", {left_line, right_line}, "{}", 1e4),
                 R"({"select": {"annotation": "top"}, "rotate": {"axis": [0, 1, 0], "angle": 60, "centre": [0, 0, 6]}})");
@@ -180,7 +180,7 @@ TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
     EXPECT_NE(error_of(column.space(), tilt_top, graph).find("has no measure"), std::string::npos);
 }
 
-TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
+TEST(PartsThatFollow, GrowAsMuchAsTheEditedPart) {
     const Column column;
     const std::string grow = R"({"select": {"annotation": "top"}, "scale": {"factor": 1.4, "centre": [0, 0, 8]}})";
     const double foot_area = area_of(column.mesh, column.set.find(foot)->faces);
@@ -203,7 +203,7 @@ TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
     EXPECT_NEAR(area_of(led, column.set.find(top)->faces) / top_area, led_foot, 1e-4);
 }
 
-TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
+TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
     Column column;
     measure_heights(column);
     const std::string stretch = R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})";
@@ -243,7 +243,7 @@ TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
     EXPECT_NEAR(length(result, right_line), 1.1 * length(still, left_line), 0.005);
 }
 
-TEST(PartsThatFollow, StandOnItsLevelAndMirrorIt) {
+TEST(PartsThatFollow, ReachTheLevelOfTheLeaderAndMirrorIt) {
     Column column;
     const DeformResult level = solved(column, constraint(0, "same level", {left_line, right_line}, follows("true")),
                                       R"({"select": {"annotation": 5}, "translate": [0, 0, 0.5]})");
@@ -267,14 +267,14 @@ TEST(PartsThatFollow, StandOnItsLevelAndMirrorIt) {
               1e-3);
 }
 
-TEST(PartsThatFollow, ALeaderThatIsNoMemberIsRefused) {
+TEST(PartsThatFollow, ALeaderThatIsNotAMemberIsRefused) {
     const Column column;
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("\"spout\"")));
     EXPECT_NE(error_of(column.space(), tilt_top, graph).find("follow names none of its annotations"), std::string::npos);
 }
 
-TEST(PartsKept, WhatMakesNoSenseIsRefused) {
+TEST(PartsKept, InvalidConstraintsAreRefused) {
     const Column column;
     const auto said = [&](const Relationship& one) {
         RelationGraph graph;
@@ -288,7 +288,7 @@ TEST(PartsKept, WhatMakesNoSenseIsRefused) {
     EXPECT_NE(said(constraint(0, "keep position", {top}, R"({"point": [1, 2]})")).find("three numbers"), std::string::npos);
 }
 
-TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
+TEST(PartsKept, PositionAndShapeOrDirectionTogether) {
     // Each holds with the part as it was; neither must pull the other half of the way.
     const Column column;
     const std::string bend = R"({"select": {"annotation": "shaft"}, "rotate": {"axis": [0, 1, 0], "angle": 8}})";
@@ -306,7 +306,7 @@ TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
     }
 }
 
-TEST(PartsKept, ABaseIsWhatIsLowestThen) {
+TEST(PartsKept, TheBaseConsistsOfTheCurrentlyLowestVertices) {
     // The parts are tilted, so that other vertices are lowest than at rest: the level is that of these.
     Column column;
     for (const bool hard : {true, false}) {
@@ -333,7 +333,7 @@ TEST(PartsKept, ABaseIsWhatIsLowestThen) {
     }
 }
 
-TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
+TEST(PartsKept, OnOneLevelFollowersGrowWithTheirLeader) {
     const Column column;
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("true")));
@@ -347,7 +347,7 @@ TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
             << id;
 }
 
-TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
+TEST(PartsKept, AreasOfFreePartsAreMeasuredByTheirCurves) {
     // Caps of the same size on a coarse sphere: the triangles nearest to them differ by far more than they do.
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const auto deviation = [&](const std::string& outline) {

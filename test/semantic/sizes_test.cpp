@@ -67,7 +67,7 @@ struct Object {
 
 }  // namespace
 
-TEST(Sizes, PartsWithinPartsComeToTheirMeasures) {
+TEST(Sizes, NestedPartsReachTheirMeasures) {
     const std::vector<std::pair<std::string, std::vector<Asked>>> cases{
         {"statuette", {{"cap", z, 0.85}, {"statuette", z, 0.73}, {"base", x, 0.71}}},
         {"statuette", {{"head", z, 0.9}, {"statuette", z, 1.2}, {"drum", z, 1.1}}},
@@ -103,7 +103,7 @@ TEST(Sizes, TwoMeasuresOfOnePart) {
     EXPECT_TRUE(result.conflicts.empty());
 }
 
-TEST(Sizes, APartCannotBeLongerThanWhatHoldsIt) {
+TEST(Sizes, APartCannotBeLongerThanItsContainer) {
     Object object("statuette");
     const std::vector<Point> rest = points_of(object.made.mesh);
     const double all = object.extent("statuette", z, rest), body = object.extent("body", z, rest);
@@ -122,7 +122,7 @@ TEST(Sizes, APartCannotBeLongerThanWhatHoldsIt) {
     for (const Point& p : result.points) ASSERT_LT(std::sqrt((p - CGAL::ORIGIN).squared_length()), 10 * all);
 }
 
-TEST(Sizes, AMeasureThatHoldsIsLeftAlone) {
+TEST(Sizes, ASatisfiedMeasureIsNotSolvedFor) {
     Object object("statuette");
     const DeformResult result =
         deform({object.made.mesh, object.set}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
@@ -159,7 +159,7 @@ TEST(Sizes, PartsThatMovedAreListedForAnEditWithoutSteps) {
     EXPECT_GT(listed, 1U);
 }
 
-TEST(Sizes, AMeasureComesToTheNearerEndOfItsRangeAndNoFarther) {
+TEST(Sizes, AMeasureIsMovedToTheNearerEndOfItsRange) {
     for (const double share : {0.7, 1.4}) {
         Object object("vase");
         RelationGraph graph = object.ask({{"lip", z, share}});

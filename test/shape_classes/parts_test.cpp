@@ -131,7 +131,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
     EXPECT_NE(fit.points, with_tags("top", "base").points);
 }
 
-TEST(Parts, ThePartThatIsFarthestOffIsNamed) {
+TEST(Parts, ThePartWithTheLargestDeviationIsNamed) {
     const std::vector<std::optional<double>> values{1.0, 4.0, std::nullopt, 0.5, 3.0}, expected{1.0, 2.0, 1.0, 1.0, std::nullopt};
     const PartsDeviation deviation = parts_deviation(values, expected);
     EXPECT_EQ(deviation.count, 3U);

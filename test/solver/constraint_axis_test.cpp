@@ -35,7 +35,7 @@ TEST(Constraint, LevelsWeighTheirPoints) {
     EXPECT_THROW(make_constraint(kind, {0, 1, 2, 3}, 1, points), Error);
 }
 
-TEST(Constraint, APointIsNoWayOutForAnAxis) {
+TEST(Constraint, AxesDoNotCollapseToAPoint) {
     Points rest = random_points(20, 6);
     kinds::AxisDirection kind{{0, 0, 1}, {0, 0}, Vector3d(0, 0, 1)};
     const std::vector<int> ids = first_ids(20);
@@ -49,7 +49,7 @@ TEST(Constraint, APointIsNoWayOutForAnAxis) {
     EXPECT_NEAR(std::sqrt(bounded->squared_distance(small)), 0.4 * size, 1e-9);
 }
 
-TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
+TEST(Constraint, AxesRotateByTheMinimumAngle) {
     // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
     const Vector3d d = Vector3d(1, -2, 3).normalized();
     for (const Vector3d& size :
@@ -83,7 +83,7 @@ TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
     }
 }
 
-TEST(Constraint, AxesThatAreInRangeStay) {
+TEST(Constraint, AxesInRangeAreUnchanged) {
     const Points rest = random_points(9, 12);
     const auto residual = [&](const kinds::Interval& range) {  // of an axis at pi / 4
         const kinds::AxisDirection kind{{0, 0, 1}, range, Vector3d(1, 0, 1)};

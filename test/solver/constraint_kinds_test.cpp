@@ -252,13 +252,13 @@ struct Admits {
     }
 };
 
-TEST(Constraint, AdmitsWhatItsNameSays) {
+TEST(Constraint, AdmitsTheNamedShapes) {
     int checked = 0;
     for (const Example& e : examples()) checked += std::visit(Admits{e}, e.kind) ? 1 : 0;
     EXPECT_GT(checked, 40);
 }
 
-TEST(Constraint, ConstantsAreWhatTheyWereAtRest) {
+TEST(Constraint, ConstantsEqualTheirRestValues) {
     for (const Example& e : examples()) {
         const auto c = make(e);
         const std::string_view kind = name_of(e.kind);
@@ -288,7 +288,7 @@ TEST(Constraint, AnglesThatAreTooFarOffCollapseTheShorterSide) {
     EXPECT_EQ(o.projected.col(1).norm(), 0);
 }
 
-TEST(Constraint, FlatBendIsNone) {
+TEST(Constraint, AFlatBendIsZero) {
     Points rest(3, 4);
     rest.col(0) << 0, 0, 0;
     rest.col(1) << 1, 0.2, 0;
@@ -309,7 +309,7 @@ TEST(Constraint, CotangentLaplacianOfAFlatRingIsZero) {
     EXPECT_GT(make_constraint(kinds::Laplacian{}, first_ids(6), 1, rest)->residual(rest), 1e-2);
 }
 
-TEST(Constraint, SolidsOfRevolutionHaveTheAxisThatIsCarried) {
+TEST(Constraint, SolidsOfRevolutionKeepTheTransformedAxis) {
     // A tilted cylinder: its axis is brought onto the line, whatever spin is left, and its shape is untouched.
     Points rest(3, 40);
     for (int i = 0; i < 40; ++i) rest.col(i) << std::cos(i), std::sin(i), 0.25 * i;

@@ -20,7 +20,7 @@ TEST(Constraint, ProjectingTwiceIsProjectingOnce) {
     }
 }
 
-TEST(Constraint, ExamplesBreakWhatTheyAskFor) {
+TEST(Constraint, ExamplesViolateTheirConstraint) {
     for (const Example& e : examples()) EXPECT_GT(make(e)->residual(e.points), 1e-3) << e.name;
 }
 
@@ -65,7 +65,7 @@ TEST(Constraint, ResidualIsTheSameFarFromTheOrigin) {
     }
 }
 
-TEST(Constraint, RowsAreWhatTheMapSays) {
+TEST(Constraint, RowsMatchTheMap) {
     for (const Example& e : examples()) {
         const auto c = make(e);
         Points own(3, static_cast<Eigen::Index>(e.ids.size()));
@@ -83,7 +83,7 @@ TEST(Constraint, CentredRowsStayCentred) {
     }
 }
 
-TEST(Constraint, MomentsSayWhatTheProjectionSays) {
+TEST(Constraint, MomentsAgreeWithTheProjection) {
     int count = 0;
     for (const Example& e : examples()) {
         const auto c = make(e);
@@ -124,7 +124,7 @@ TEST(Constraint, DegeneratePointsGiveNumbers) {
     }
 }
 
-TEST(Constraint, RefusesWhatMakesNoSense) {
+TEST(Constraint, RefusesInvalidArguments) {
     const Points rest = random_points(8, 5);
     const auto refused = [&](const ConstraintKind& kind, const std::vector<int>& ids, double weight = 1) {
         const std::string name(name_of(kind));

@@ -107,7 +107,7 @@ TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
     EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(x.data(), 3 * n) - wanted).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(Hard, LinesThatContradictEachOtherAreSaid) {
+TEST(Hard, ContradictoryLinesAreReported) {
     Chain chain;
     chain.pin(false, 0, {0, 0, 0});
     for (const double height : {-1.0, 1.0}) {
@@ -139,7 +139,7 @@ TEST(Hard, ShapesHold) {
     EXPECT_LT(solver.constraint(solver.size() - 3).normalised_residual(x), 1e-5);
 }
 
-TEST(Hard, ContradictionsAreSaid) {
+TEST(Hard, ContradictionsAreReported) {
     Chain chain;
     chain.pin(true, 0, {0, 0, 1});
     chain.pin(true, 0, {0, 0, -1});
@@ -154,7 +154,7 @@ TEST(Hard, ContradictionsAreSaid) {
     EXPECT_EQ(summary.of_constraint[0], 0);
 }
 
-TEST(Hard, RefusesWhatMakesNoSense) {
+TEST(Hard, RefusesInvalidArguments) {
     Chain chain;
     EXPECT_THROW(HardSolver(std::move(chain.list), {true}, chain.rest), Error);
     Chain other;

@@ -121,7 +121,7 @@ SolveOptions steps(int iterations, int window = 5) {
 /// As an identity: the cage is the shape.
 CageWeights identity(Eigen::Index n) { return CageWeights::Identity(n, n); }
 
-TEST(CageSpace, EqualsMeshSpaceWhereTheCageIsTheShape) {
+TEST(CageSpace, EqualsMeshSpaceIfTheCageIsTheShape) {
     const int n = 7;
     const Points rest = grid(n).colwise() + Eigen::Vector3d(1000, -500, 200);
     MeshSpaceSolver mesh(mixed(n, rest), rest);
@@ -205,7 +205,7 @@ TEST(CageSpace, WeightsAndTargetsCanChange) {
     EXPECT_EQ(y.times.symbolic, 0);
 }
 
-TEST(CageSpace, GroupsAloneAreDrawnToRest) {
+TEST(CageSpace, GroupsAloneAreRegularisedTowardsRest) {
     const int n = 9, cage = 6;
     const CageWeights w = random_weights(n * n, cage);
     Points rest_cage(3, cage);
@@ -280,7 +280,7 @@ TEST(MeshSpace, SolversOfSeveralThreadsDoNotDisturbEachOther) {
     EXPECT_EQ(wrong, 0);
 }
 
-TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {
+TEST(MeshSpace, UnconstrainedPartsKeepTheirMean) {
     const int n = 6;
     Points rest(3, 2 * n * n + 1);
     rest << grid(n), grid(n).colwise() + Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(9, 9, 9);
@@ -303,7 +303,7 @@ TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {
     EXPECT_EQ(x.col(2 * n * n), alone);  // in no constraint
 }
 
-TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
+TEST(MeshSpace, SingularSystemsAreRegularisedTowardsRest) {
     // Two Laplacians over six points leave much open.
     const Points rest = grid(4);
     List list;
@@ -320,7 +320,7 @@ TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
     EXPECT_LT((x - rest).cwiseAbs().maxCoeff(), 3);
 }
 
-TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
+TEST(MeshSpace, StationsWithSharedPointsLeaveNoWaves) {
     // A tube of 41 rings whose points want to stay, its axis on a line that leaves it: what holds it there must grow along the
     // tube.
     constexpr int rings = 41, sides = 8, step = 10;
@@ -378,7 +378,7 @@ TEST(MeshSpace, ContradictoryPositionsMeetInTheMiddle) {
     EXPECT_NEAR(solver.constraint(1).residual(x), 1, 1e-12);
 }
 
-TEST(MeshSpace, WeightsAllZeroLeavePointsWhereTheyAre) {
+TEST(MeshSpace, ZeroWeightsLeavePointsUnchanged) {
     const Points rest = grid(5);
     List list;
     add_laplacians(list, 5, rest, 0);
@@ -391,7 +391,7 @@ TEST(MeshSpace, WeightsAllZeroLeavePointsWhereTheyAre) {
     EXPECT_EQ(summary.objective.back(), 0);
 }
 
-TEST(MeshSpace, NoConstraintsNoPoints) {
+TEST(MeshSpace, WithoutConstraintsThereAreNoUnknowns) {
     Points nothing(3, 0);
     MeshSpaceSolver empty({}, nothing);
     EXPECT_TRUE(empty.solve(nothing).usable);
@@ -440,7 +440,7 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
     expect_same("many", 0);
 }
 
-TEST(Solver, RefusesWhatMakesNoSense) {
+TEST(Solver, RefusesInvalidArguments) {
     const Points rest = grid(3);
     List beyond;
     beyond.push_back(make_constraint(kinds::Closeness{}, {8}, 1, rest));

@@ -33,7 +33,7 @@ TEST(Pages, LinksResolve) {
     EXPECT_GT(count, 50U);
 }
 
-TEST(Pages, FilesTheyNameExist) {
+TEST(Pages, NamedFilesExist) {
     const Path source(OSTRAKA_SOURCE_DIR);
     std::size_t count = 0;
     for (const Path& page : pages()) {

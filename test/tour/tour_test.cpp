@@ -72,7 +72,7 @@ std::vector<Step> steps_of(const std::string& page) {
     return steps;
 }
 
-TEST(Tour, ComparisonFindsWhatDrifted) {
+TEST(Tour, ComparisonDetectsDeviations) {
     const auto shows = [](const std::string& shown, const std::string& printed) {
         return page_shows(lines_of(shown), lines_of(printed));
     };
@@ -88,7 +88,7 @@ TEST(Tour, ComparisonFindsWhatDrifted) {
     EXPECT_FALSE(shows("a  c...\n", "a  b  1\n"));
 }
 
-TEST(Tour, PrintsWhatThePageSays) {
+TEST(Tour, PrintsTheOutputOfThePage) {
     const Path source(OSTRAKA_SOURCE_DIR);
     const std::vector<Step> steps = steps_of(read_file(source / "doc" / "tour.md"));
     ASSERT_GE(steps.size(), 10U);

@@ -56,7 +56,7 @@ TEST(CurveLoops, ASmallLoopIsDissolvedAtItsCrossing) {
     EXPECT_EQ(without_small_loops(mesh, looped, side / 3, false), looped);
 }
 
-TEST(CurveLoops, ThereAndBackAgainIsLeftOut) {
+TEST(CurveLoops, BacktrackingIsRemoved) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     const auto at = [&](double x, double y) { return Point(x * side, y * side, 0); };
@@ -91,7 +91,7 @@ TEST(CurveLoops, AClosedCurveStaysClosedWhereverTheLoopIs) {
     EXPECT_NEAR(length(mesh, kept), length(mesh, small), 1e-12);
 }
 
-TEST(CurveLoops, SmallPartsAndHolesGoUntilTheOutlinesAreAsMany) {
+TEST(CurveLoops, SmallPartsAndHolesAreRemovedUntilTheNumberOfOutlinesMatches) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     std::vector<bool> disc(mesh.number_of_faces(), false);

@@ -35,7 +35,7 @@ std::size_t claimed(const Mesh& mesh, const AnnotationSet& set, std::size_t time
 
 }  // namespace
 
-TEST(DisjointRegions, AFaceThatTwoTookGoesToTheOneThatHoldsMostOfIt) {
+TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     // Eight by eight cells over two by two: the target's face 0 lies in the source's cells (0..3, 0..3) below the diagonal.
     const Mesh source = grid(8, 0.25), target = grid(2, 1);
     AnnotationSet set;

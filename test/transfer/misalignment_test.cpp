@@ -40,7 +40,7 @@ Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const V
 
 }  // namespace
 
-TEST(Misalignment, ResolutionsOfOneSurfaceDoNotStandOut) {
+TEST(Misalignment, ResolutionsOfOneSurfaceAreNotReported) {
     for (const char* name : {"teapot", "vase", "chair", "hand", "statuette"}) {
         const Mesh coarse = made(name, 2500), fine = made(name, 8000);
         EXPECT_FALSE(between(coarse, fine).stands_out) << name;

@@ -97,7 +97,7 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
         }
 }
 
-TEST(ProjectCurves, APartitionStaysOne) {
+TEST(ProjectCurves, APartitionStaysAPartition) {
     const Mesh coarse = made("statuette", 3000, 1), fine = made("statuette", 12000, 5);
     const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
     ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
@@ -115,7 +115,7 @@ TEST(ProjectCurves, APartitionStaysOne) {
     EXPECT_LT(wrong / surface_area(coarse), 1e-6);
 }
 
-TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
+TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfRequested) {
     const Mesh coarse = made("teapot", 1500, 1), fine = made("teapot", 6000, 2);
     AnnotationSet set;
     set.annotations.resize(1);
@@ -283,7 +283,7 @@ TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     EXPECT_NEAR(after.area / before.area, 1, 2e-4);
 }
 
-TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
+TEST(ProjectCurves, APartitionWithJunctionsStaysAPartitionOnACoarserMesh) {
     for (const char* object : {"teapot", "statuette"}) {
         const Mesh fine = made(object, 6000, 1), coarse = made(object, 1500, 7);
         const AnnotationSet set = cells(fine, 12);

@@ -58,7 +58,7 @@ TEST_F(TransferCommand, OptionsThatFreeOutlinesDoNotUseAreReported) {
     EXPECT_EQ(transfer("--outlines free", "t.ply", "f.ant.json").err.find("do not depend on"), std::string::npos);
 }
 
-TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
+TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     MakeOptions options;
     options.vertices = 3000;
     const SyntheticMesh hand = make_mesh(synthetic_object("hand"), options);
@@ -125,7 +125,7 @@ TEST_F(TransferCommand, RefinesTheTarget) {
     EXPECT_EQ(map["map"].Size(), refined.number_of_faces());
 }
 
-TEST_F(TransferCommand, WrongUsageIsTwoAndTouchesNothing) {
+TEST_F(TransferCommand, WrongUsageExitsWithTwoAndWritesNothing) {
     write_file(scratch / "o.ant.json", "earlier");
     for (const std::string& more :
          {std::string("--metric manhattan"), std::string("--refine"), "--map " + at("m.json"), std::string("--max-angle 1000"),
@@ -137,7 +137,7 @@ TEST_F(TransferCommand, WrongUsageIsTwoAndTouchesNothing) {
     }
 }
 
-TEST_F(TransferCommand, BadInputIsOneNamesTheFileAndTouchesNothing) {
+TEST_F(TransferCommand, InvalidInputExitsWithOneNamesTheFileAndWritesNothing) {
     write_file(scratch / "o.ant.json", "earlier");
     const auto fails = [&](const CommandResult& result, const std::string& word) {
         EXPECT_EQ(result.code, 1) << result.err;

@@ -127,7 +127,7 @@ TEST(Transfer, RefinedTargetHoldsTheOutlineExactly) {
     }
 }
 
-TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
+TEST(Transfer, EnclosingContainsTheFacesThatEnclosedOmits) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(rotated(octahedron_sphere(4), 0.4));
     const AnnotationSet set = set_of({region(1, source, cap)});
     TransferOptions options;
@@ -150,7 +150,7 @@ TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
     }
 }
 
-TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
+TEST(Transfer, SmallRegionsBecomeAPointOrALineWithANote) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(1));
     Annotation dot = region(1, source, [](const Point& p) { return p.z() > 0.995; });
     dot.tag = "dot";
@@ -338,7 +338,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
     }
 }
 
-TEST(Transfer, MeasuresMoveWithTheirPinsAndAreTakenAnew) {
+TEST(Transfer, MeasuresMoveWithTheirPinsAndAreRecomputed) {
     const Mesh source = build_mesh(octahedron_sphere(4)), target = build_mesh(rotated(octahedron_sphere(5), 0.3));
     Annotation top = region(1, source, cap);
     Attribute ruler;

@@ -62,7 +62,7 @@ TEST(VocabularyCommand, ShowIsATree) {
     EXPECT_TRUE(holds(unknown_concept.err, "occhio")) << unknown_concept.err;
 }
 
-TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectFit) {
+TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectSatisfyTheVocabulary) {
     for (const std::string object : {"vase", "teapot", "statuette"}) {
         const auto result = run_command("annotation check " + data + object + ".ply " + data + object +
                                         ".ant.json --strict --vocabulary " + words);
@@ -77,7 +77,7 @@ TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectFit) {
         << chair.out;
 }
 
-TEST(VocabularyCommand, ApplyRefusesATagOutside) {
+TEST(VocabularyCommand, ApplyRefusesAnUnknownTag) {
     const Scratch scratch;
     write_mesh(scratch / "tile.ply", grid(4));
     const auto recipe = [](const std::string& tag) {

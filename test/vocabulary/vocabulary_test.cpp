@@ -187,7 +187,7 @@ TEST(Vocabulary, AttributesAreInherited) {
     EXPECT_EQ(search.attribute_of(2, "beard style"), nullptr);
 }
 
-TEST(CheckAgainstVocabulary, TagsThatFitAndThatDoNot) {
+TEST(CheckAgainstVocabulary, KnownAndUnknownTags) {
     EXPECT_TRUE(defects(set_of({point(0, "head"), point(1, "Auge 1"), point(2, "whiskers")})).empty());
     EXPECT_EQ(only_defect(point(0, "bread")),
               "/annotations/0/tag the tag 'bread' is not in the vocabulary: did you mean 'head' or 'beard'?");
@@ -228,7 +228,7 @@ TEST(CheckAgainstVocabulary, Quantities) {
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {quantity("roundness", 1, "")}), {.strict = true}), "'roundness'"));
 }
 
-TEST(CheckAgainstVocabulary, AMeasureHasItsRangeToo) {
+TEST(CheckAgainstVocabulary, RangesApplyToMeasures) {
     Attribute measure;
     measure.name = "height";
     measure.type = AttributeType::measure;

@@ -166,7 +166,7 @@ bool answers(const Served& served) {
 
 }  // namespace
 
-TEST(WorkbenchServer, GivesThePageToWhoKnowsTheToken) {
+TEST(WorkbenchServer, ServesThePageToClientsWithTheToken) {
     const Served served;
     const std::string token = served.server->token();
     EXPECT_EQ(token.size(), 64U);
@@ -180,7 +180,7 @@ TEST(WorkbenchServer, GivesThePageToWhoKnowsTheToken) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SetsNoCookieAndTakesNone) {
+TEST(WorkbenchServer, SetsAndAcceptsNoCookie) {
     // Browsers send the cookies of one port of a machine to every other port of it.
     const Served served;
     const std::string token = served.server->token(), own = "http://" + served.host();
@@ -197,7 +197,7 @@ TEST(WorkbenchServer, SetsNoCookieAndTakesNone) {
     EXPECT_EQ(ask(served, talk), 403);
 }
 
-TEST(WorkbenchServer, RunsNoScriptButThatOfItsPage) {
+TEST(WorkbenchServer, RunsOnlyTheScriptOfItsPage) {
     const Served served;
     Wire wire(served.server->port());
     wire.send(get(served, "/?token=" + served.server->token()));
@@ -211,7 +211,7 @@ TEST(WorkbenchServer, RunsNoScriptButThatOfItsPage) {
     EXPECT_NE(head.find("style-src " + inline_hashes(workbench_page(), "style") + ";"), std::string::npos) << head;
 }
 
-TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
+TEST(WorkbenchServer, RefusesUnauthorisedClients) {
     const Served served;
     const std::string token = served.server->token(), own = "http://" + served.host();
     const auto page_of = [&](const std::string& more = {}, const std::string& host = {}) {
@@ -260,7 +260,7 @@ TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
+TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
     ServerLimits limits;
     limits.seconds = 1;  // for who does not answer that it is let go
     const Served served(limits);
@@ -313,7 +313,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
     EXPECT_EQ(served.workbench->session().steps().size(), 5U);
 }
 
-TEST(WorkbenchServer, LetsNobodyTakeAllConnections) {
+TEST(WorkbenchServer, NoClientCanOccupyAllConnections) {
     ServerLimits limits;
     limits.seconds = 3;
     const Served served(limits);
@@ -337,7 +337,7 @@ TEST(WorkbenchServer, LetsNobodyTakeAllConnections) {
     EXPECT_TRUE(many.back()->closed());
 }
 
-TEST(WorkbenchServer, LetsNobodyCrowdOutAPage) {
+TEST(WorkbenchServer, NoClientCanDisplaceAPage) {
     const Served served;
     std::atomic<bool> ends = false;
     std::thread crowd([&] {
@@ -366,7 +366,7 @@ TEST(WorkbenchServer, RefusesMorePagesThanItServes) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
+TEST(WorkbenchServer, BoundsTheMemoryForAPageThatDoesNotRead) {
     ServerLimits limits;
     limits.unsent = 1'000'000;
     limits.stalled = 3;
@@ -395,7 +395,7 @@ TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SendsLargeAnswersToWhoReads) {
+TEST(WorkbenchServer, SendsLargeAnswersToReadingClients) {
     ServerLimits limits;
     limits.unsent = 100'000;
     const Served served(limits, 8);
@@ -428,7 +428,7 @@ TEST(WorkbenchServer, BoundsTheBytesOfRequests) {
     }
 }
 
-TEST(WorkbenchServer, TellsOfTheFirstPageOnce) {
+TEST(WorkbenchServer, ReportsTheFirstPageOnce) {
     Scratch scratch;
     Workbench workbench(scratch / "session", scratch.path());
     WorkbenchServer server(workbench);

@@ -76,7 +76,7 @@ std::map<std::string, std::string> checksums(const Session& session) {
 
 }  // namespace
 
-TEST(Session, OpensAnnotatesAndKeepsWhatWasDone) {
+TEST(Session, OpensAnnotatesAndKeepsTheSteps) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -173,7 +173,7 @@ TEST(Session, UndoRestoresEveryStateToTheBit) {
     }
 }
 
-TEST(Session, RefusesInWordsAndChangesNothing) {
+TEST(Session, RefusesWithAMessageAndChangesNothing) {
     Bench bench;
     EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"../../etc/passwd"})").find("is not a mesh"), std::string::npos);
     EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"session/session.json"})").find("is not a mesh"), std::string::npos);
@@ -236,7 +236,7 @@ TEST(Session, SurvivesDamagedMessages) {
     bench.start();  // what it holds is in order
 }
 
-TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
+TEST(Session, IsRefusedIfDamagedOrIfFilesAreMissing) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -254,7 +254,7 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds other data";
 }
 
-TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
+TEST(Session, IsRefusedIfItsPathsLeaveTheFolders) {
     const Scratch outside;
     write_file(outside / "secret.txt", "secret");
     std::filesystem::create_directory(outside / "s001");
@@ -328,7 +328,7 @@ TEST(Session, WritesNoDocumentOverALink) {
     EXPECT_EQ(bench.workbench->session().place(), 1U);
 }
 
-TEST(Session, IsForItsOwnerAndSweepsWhatKilledStepsLeft) {
+TEST(Session, IsPrivateAndRemovesFilesOfKilledSteps) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -364,7 +364,7 @@ TEST(Session, AMapIsShownWithItsOwnObject) {
     EXPECT_EQ(maps(), (std::vector<std::size_t>{0, 0}));
 }
 
-TEST(Session, OffersTheWordsOfVocabularies) {
+TEST(Session, OffersTheConceptsOfVocabularies) {
     Bench bench;
     write_file(bench.scratch / "terracotta.vocabulary.json",
                read_file(Path(OSTRAKA_SOURCE_DIR) / "data/terracotta.vocabulary.json"));
@@ -374,13 +374,13 @@ TEST(Session, OffersTheWordsOfVocabularies) {
     EXPECT_GT(hello["result"]["words"]["en"].Size(), 3U);
 }
 
-TEST(Session, IsWorkedOnByOneAtATime) {
+TEST(Session, IsOpenedByOneProcessAtATime) {
     Bench bench;
     EXPECT_THROW(Workbench(bench.scratch / "session", bench.scratch.path()), Error);
     bench.start();
 }
 
-TEST(Session, DoesNotOpenWhatCannotBeRead) {
+TEST(Session, DoesNotOpenUnreadableFiles) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     write_file(bench.scratch / "bad.ply", "ply\ngarbage");
@@ -389,7 +389,7 @@ TEST(Session, DoesNotOpenWhatCannotBeRead) {
     bench.ask(R"({"id":1,"do":"scene","known":[]})");
 }
 
-TEST(Session, GoesOnAfterItWasCancelled) {
+TEST(Session, ContinuesAfterACancellation) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.workbench->cancel();
@@ -397,7 +397,7 @@ TEST(Session, GoesOnAfterItWasCancelled) {
     EXPECT_EQ(bench.workbench->session().place(), 2U);
 }
 
-TEST(Session, SavesATemplateThatIsWhole) {
+TEST(Session, SavesACompleteTemplate) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));

@@ -163,7 +163,7 @@ const Wrong wrong_studies[]{
 
 }  // namespace
 
-TEST(WrongStudies, AreRefusedWithPlaceAndRemedyBeforeAnythingRuns) {
+TEST(WrongStudies, AreRefusedWithLocationAndRemedyBeforeAnythingRuns) {
     EXPECT_GE(std::size(wrong_studies), 40U);
     for (const Wrong& wrong : wrong_studies) {
         SCOPED_TRACE(wrong.description);
