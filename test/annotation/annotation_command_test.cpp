@@ -139,10 +139,10 @@ TEST(AnnotationCommand, WrongInputLeavesNothingBehind) {
     const std::string recipe = folder.file("r.recipe.json", simple_recipe).string(), mesh = folder.at("tile.ply"),
                       out = folder.at("o.ant.json");
     const std::size_t before = test::count_files(folder.path());
-    const auto expect = [&](const std::string& arguments, int code, const std::string& what) {
+    const auto expect = [&](const std::string& arguments, int code, const std::string& message) {
         const auto result = run_command("annotation " + arguments);
         EXPECT_EQ(result.code, code) << arguments << "\n" << result.err;
-        EXPECT_NE((result.err + result.out).find(what), std::string::npos) << arguments << "\n" << result.err << result.out;
+        EXPECT_NE((result.err + result.out).find(message), std::string::npos) << arguments << "\n" << result.err << result.out;
         EXPECT_EQ(test::count_files(folder.path()), before) << arguments;
     };
     expect("apply " + mesh, 2, "give mesh recipe output, or mesh output");

@@ -29,11 +29,11 @@ std::string error_of(const std::string& text, const Mesh& mesh) {
     return "no error";
 }
 
-void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& what) {
+void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& expected) {
     const std::string message = error_of(text, mesh);
     EXPECT_NE(message.find("a.ant.json"), std::string::npos) << message;
     EXPECT_NE(message.find(pointer), std::string::npos) << message << "\n  for " << text;
-    EXPECT_NE(message.find(what), std::string::npos) << message << "\n  for " << text;
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  for " << text;
 }
 
 std::string with(const std::string& annotation) { return R"({"annotations": [)" + annotation + "]}"; }

@@ -87,8 +87,8 @@ TEST(AnnotationMaps, ACollapsePreservesAnnotations) {
     auto old_index = mesh.add_property_map<Vertex, Index>("v:old").first;
     for (const Vertex v : mesh.vertices()) old_index[v] = v;
     std::vector<Index> now = identity(mesh);
-    const Vertex kept = CGAL::Euler::collapse_edge(mesh.edge(first), mesh);
-    now[a] = now[b] = kept;
+    const Vertex remaining = CGAL::Euler::collapse_edge(mesh.edge(first), mesh);
+    now[a] = now[b] = remaining;
     mesh.collect_garbage();
     std::vector<Index> place(now.size(), no_index);
     for (const Vertex v : mesh.vertices()) place[old_index[v]] = v;

@@ -254,7 +254,7 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
     const auto line = trace_line(mesh, node(0.31, 0), node(0.77, 1), Vector(0, 0, 1), 10);
     ASSERT_TRUE(line);
     std::vector<SurfacePoint> curve;
-    for (const SurfacePoint& one : line->points) curve.push_back(stored_point(mesh, one));
+    for (const SurfacePoint& point : line->points) curve.push_back(stored_point(mesh, point));
     const Annotation left = region(mesh, {curve});
     const double length = std::hypot(0.46, 1.0);
     EXPECT_NEAR(area_of(mesh, left), 0.54, 1e-9);

@@ -65,7 +65,7 @@ TEST(FairOutlines, StaysWithinTheDistance) {
         AnnotationSet set = parted(mesh);
         FairOptions options;
         options.distance = share * mean_edge_length(mesh);
-        for (const auto& one : fair_outlines(mesh, set, {}, options)) EXPECT_LE(one.moved, options.distance) << share;
+        for (const auto& faired : fair_outlines(mesh, set, {}, options)) EXPECT_LE(faired.moved, options.distance) << share;
         check_annotations(set, mesh, "faired");
     }
 }
@@ -110,9 +110,9 @@ TEST(FairOutlines, RoundingUnitAndPositionChangeNothing) {
         }
         AnnotationSet set = parted(mesh);
         std::vector<double> values;
-        for (const FairedAnnotation& one : fair_outlines(other, set, {})) {
-            values.push_back(one.length_after / scale);
-            values.push_back(one.area_after / (scale * scale));
+        for (const FairedAnnotation& faired : fair_outlines(other, set, {})) {
+            values.push_back(faired.length_after / scale);
+            values.push_back(faired.area_after / (scale * scale));
         }
         return values;
     };

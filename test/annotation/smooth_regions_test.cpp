@@ -99,10 +99,10 @@ TEST(SmoothRegions, ThreeLabelsMeetInOnePointPerJunction) {
 
 TEST(SmoothRegions, DegenerateMeshes) {
     EXPECT_TRUE(smooth_regions(Mesh(), {}).outlines.empty());
-    TriangleSoup one;
-    one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    one.triangles = {{0, 1, 2}};
-    EXPECT_TRUE(smooth_regions(build_mesh(one), {4}).patches.empty());
+    TriangleSoup triangle;
+    triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.triangles = {{0, 1, 2}};
+    EXPECT_TRUE(smooth_regions(build_mesh(triangle), {4}).patches.empty());
     TriangleSoup flat;  // no area anywhere
     flat.points = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
     flat.triangles = {{0, 1, 2}, {0, 2, 3}};

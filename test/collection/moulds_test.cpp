@@ -329,10 +329,10 @@ TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
 
     // With answers of a part, or of one kind only, the report says of how many, and scores where there is something to score.
     const std::string mould = moulds.begin()->second;
-    std::string some = "name,label\n", one = some;
+    std::string some = "name,label\n", single_mould = some;
     for (const auto& [name, label] : moulds) {
         if (some.size() < 60) some += name + "," + label + "\n";
-        if (label == mould) one += name + "," + label + "\n";
+        if (label == mould) single_mould += name + "," + label + "\n";
     }
     const auto study = [&](const std::string& answers, const std::string& options) {
         return test::run_command("study moulds " + (*scratch / "heads").string() + " --output " + out.string() + " --truth " +
@@ -341,7 +341,7 @@ TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
     const auto part = study(some, "");
     EXPECT_NE(part.out.find("of 9 objects"), std::string::npos) << part.out;
     EXPECT_FALSE(std::filesystem::exists(out / "choices.csv")) << "of the run before";
-    const Json of_one = parse_json(study(one, " --json --plots png").out, "report");
+    const Json of_one = parse_json(study(single_mould, " --json --plots png").out, "report");
     EXPECT_EQ(of_one["result"]["truth"]["kinds"].GetInt(), 1);
     EXPECT_FALSE(of_one["result"].HasMember("adjustedRandIndex"));
     EXPECT_FALSE(std::filesystem::exists(out / "dendrogram.svg"));

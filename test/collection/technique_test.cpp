@@ -256,14 +256,14 @@ TEST(TechniqueStudy, OutOfClassObjectsAreNotAnswered) {
 }
 
 TEST(TechniqueStudy, FewInClassObjectsAreCalledOutOfClass) {
-    int unlike = 0, asked = 0;
+    int unlike = 0, classified = 0;
     for (const int count : {8, 16, 40, 100})
         for (std::uint64_t seed = 1; seed <= 5; ++seed)
             for (const TechniqueAnswer& each : study_technique(drawn(count, 2, true, seed)).answers) {
-                ++asked;
+                ++classified;
                 unlike += each.unlike ? 1 : 0;
             }
-    EXPECT_LT(unlike, 0.01 * asked);
+    EXPECT_LT(unlike, 0.01 * classified);
 }
 
 TEST(TechniqueStudy, ReasonsGiveDeviationsInPerCentOfTheRadius) {

@@ -70,16 +70,16 @@ std::vector<Point> grid_in(const std::array<double, 3>& low, const std::array<do
     return points;
 }
 
-void expect_promises(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, const std::string& what) {
+void expect_promises(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, const std::string& kind_name) {
     const CoordinateCertificate certificate = certify(c, cage, points, quick());
-    EXPECT_LE(certificate.partition, 1e-11) << what;
-    EXPECT_LE(certificate.linear, 1e-11) << what;
-    EXPECT_EQ(certificate.negative, 0) << what;
-    ASSERT_TRUE(certificate.lagrange) << what;
-    EXPECT_LE(*certificate.lagrange, 1e-9) << what;
-    EXPECT_LE(*certificate.edges, 1e-9) << what;
-    EXPECT_LE(*certificate.on_faces, 1e-9) << what;
-    EXPECT_EQ(Eigen::MatrixXd(c.sparse), Eigen::MatrixXd(c.vertex)) << what;
+    EXPECT_LE(certificate.partition, 1e-11) << kind_name;
+    EXPECT_LE(certificate.linear, 1e-11) << kind_name;
+    EXPECT_EQ(certificate.negative, 0) << kind_name;
+    ASSERT_TRUE(certificate.lagrange) << kind_name;
+    EXPECT_LE(*certificate.lagrange, 1e-9) << kind_name;
+    EXPECT_LE(*certificate.edges, 1e-9) << kind_name;
+    EXPECT_LE(*certificate.on_faces, 1e-9) << kind_name;
+    EXPECT_EQ(Eigen::MatrixXd(c.sparse), Eigen::MatrixXd(c.vertex)) << kind_name;
 }
 
 TEST(InteriorCoordinates, InATetrahedronAreBarycentric) {

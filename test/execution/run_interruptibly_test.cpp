@@ -41,7 +41,7 @@ TEST(RunApart, AbandonsCancelledWork) {
     const auto has_ended = std::make_shared<std::promise<void>>();
     struct Held {
         std::shared_ptr<std::promise<void>> ended;
-        explicit Held(std::shared_ptr<std::promise<void>> told) : ended(std::move(told)) {}
+        explicit Held(std::shared_ptr<std::promise<void>> promise) : ended(std::move(promise)) {}
         ~Held() { ended->set_value(); }
         Held(const Held&) = delete;
         Held& operator=(const Held&) = delete;

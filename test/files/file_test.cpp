@@ -80,12 +80,12 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
 TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
     const test::Scratch folder;
     const Path first = folder / "first", fresh = folder / "fresh", last = folder / "last";
-    const Path held = "memory:held";
+    const Path memory_file = "memory:held";
     write_file(first, "old");
-    write_file(held, "old");
+    write_file(memory_file, "old");
     {
         OutputTransaction outputs;
-        write_file(held, "new");
+        write_file(memory_file, "new");
         write_file(first, "new");
         write_file(fresh, "new");
         write_file(last, "new");
@@ -93,8 +93,8 @@ TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
         EXPECT_THROW(outputs.commit(), Error);
     }
     EXPECT_EQ(read_file(first), "old");
-    EXPECT_EQ(read_file(held), "old");
-    remove_memory_files(held);
+    EXPECT_EQ(read_file(memory_file), "old");
+    remove_memory_files(memory_file);
     EXPECT_FALSE(std::filesystem::exists(fresh));
     EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
 }
@@ -154,8 +154,8 @@ TEST(ReplaceOutputs, KeepsFilesOfTheLastRunAndOfOthers) {
     std::filesystem::create_symlink(scratch / "own.txt", scratch / "link.svg");
     write_outputs(scratch.path(), {{"a.png", "1"}, {"c.csv", "5"}});
     for (const char* gone : {"a.svg", "b.svg"}) EXPECT_FALSE(std::filesystem::exists(scratch / gone)) << gone;
-    for (const char* there : {"own.txt", "edited.csv", "other.csv", "a.png", "c.csv", "link.svg"})
-        EXPECT_TRUE(std::filesystem::exists(scratch / there)) << there;
+    for (const char* name : {"own.txt", "edited.csv", "other.csv", "a.png", "c.csv", "link.svg"})
+        EXPECT_TRUE(std::filesystem::exists(scratch / name)) << name;
     EXPECT_EQ(read_file(scratch / "c.csv"), "5");
     EXPECT_EQ(read_file(scratch / ".test.outputs"), sha256("1") + "  a.png\n" + sha256("5") + "  c.csv\n");
     // What was changed once is the user's from then on.
@@ -168,7 +168,7 @@ TEST(ReplaceOutputs, LeavesInputs) {
     const Scratch scratch;
     write_outputs(scratch.path(), {{"a.ply", "1"}, {"b.ply", "2"}});
     {
-        const KeptFiles kept({scratch.path() / "." / "a.ply"});
+        const KeptFiles protection({scratch.path() / "." / "a.ply"});
         write_outputs(scratch.path(), {{"c.ply", "3"}});
     }
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));

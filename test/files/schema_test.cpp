@@ -42,20 +42,20 @@ public:
     Json make() {
         Json document;
         allocator_ = &document.GetAllocator();
-        static_cast<JsonValue&>(document) = of(schema_, 0);
+        static_cast<JsonValue&>(document) = value_for(schema_, 0);
         return document;
     }
 
 private:
-    JsonValue of(const JsonValue& rules, int depth) {
+    JsonValue value_for(const JsonValue& rules, int depth) {
         if (depth > 7 || !rules.IsObject()) return {};
         if (const JsonValue* reference = find_member(rules, "$ref")) {
             const JsonValue* target = Pointer(text_of(*reference).substr(1).c_str()).Get(schema_);
-            return target == nullptr ? JsonValue() : of(*target, depth + 1);
+            return target == nullptr ? JsonValue() : value_for(*target, depth + 1);
         }
         for (const char* choice : {"anyOf", "oneOf", "allOf"})
             if (const JsonValue* list = find_member(rules, choice); list != nullptr && !list->Empty())
-                return of((*list)[0], depth + 1);
+                return value_for((*list)[0], depth + 1);
         if (const JsonValue* values = find_member(rules, "enum")) return JsonValue((*values)[0], *allocator_);
         const std::string type = text_in(rules, "type");
         if (type == "object" || find_member(rules, "properties") != nullptr) return object(rules, depth);
@@ -66,24 +66,24 @@ private:
     }
 
     JsonValue object(const JsonValue& rules, int depth) {
-        JsonValue made(rapidjson::kObjectType);
+        JsonValue value(rapidjson::kObjectType);
         if (const JsonValue* members = find_member(rules, "properties"))
             for (const auto& member : members->GetObject())
-                add_member(made, text_of(member.name), of(member.value, depth + 1), *allocator_);
+                add_member(value, text_of(member.name), value_for(member.value, depth + 1), *allocator_);
         if (const JsonValue* others = find_member(rules, "additionalProperties"); others != nullptr && others->IsObject())
-            add_member(made, "other", of(*others, depth + 1), *allocator_);
-        return made;
+            add_member(value, "other", value_for(*others, depth + 1), *allocator_);
+        return value;
     }
 
     JsonValue array(const JsonValue& rules, int depth) {
-        JsonValue made(rapidjson::kArrayType);
+        JsonValue value(rapidjson::kArrayType);
         const auto count = static_cast<int>(std::min(4.0, number_or(rules, "minItems", 1)));
         if (const JsonValue* items = find_member(rules, "items"); items != nullptr && items->IsArray()) {
-            for (const auto& one : items->GetArray()) made.PushBack(of(one, depth + 1), *allocator_);
+            for (const auto& item : items->GetArray()) value.PushBack(value_for(item, depth + 1), *allocator_);
         } else if (items != nullptr) {
-            for (int i = 0; i < std::max(1, count); ++i) made.PushBack(of(*items, depth + 1), *allocator_);
+            for (int i = 0; i < std::max(1, count); ++i) value.PushBack(value_for(*items, depth + 1), *allocator_);
         }
-        return made;
+        return value;
     }
 
     const JsonValue& schema_;
@@ -105,18 +105,18 @@ std::size_t with_wrong_types(Json& document, JsonValue& value, const std::string
     static const Json others = parse_json(R"([null, true, 5, -1, 1e300, "", "x", [], {}, [5], [["a"], 5], {"a": 5}])", "others");
     auto& a = document.GetAllocator();
     std::size_t count = 0;
-    JsonValue kept;
-    kept.Swap(value);
+    JsonValue original;
+    original.Swap(value);
     for (const auto& other : others.GetArray()) {
         value.CopyFrom(other, a);
         expect_words(document, schema);
         ++count;
     }
-    value.Swap(kept);
+    value.Swap(original);
     if (value.IsObject())
         for (auto& member : value.GetObject()) count += with_wrong_types(document, member.value, schema);
     else if (value.IsArray())
-        for (auto& one : value.GetArray()) count += with_wrong_types(document, one, schema);
+        for (auto& element : value.GetArray()) count += with_wrong_types(document, element, schema);
     return count;
 }
 

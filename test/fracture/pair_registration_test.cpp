@@ -140,15 +140,15 @@ TEST(PairRegistration, ThreadsDoNotMatter) {
     options.frames = 30;
     const int before = threads();
     set_threads(1);
-    const PairRegistration one = register_fractures(a, b, options);
+    const PairRegistration single_threaded = register_fractures(a, b, options);
     set_threads(3);
     const PairRegistration three = register_fractures(a, b, options);
     set_threads(before);
-    ASSERT_EQ(one.candidates.size(), three.candidates.size());
-    for (std::size_t i = 0; i < one.candidates.size(); ++i) {
-        EXPECT_EQ(one.candidates[i].pose.rotation, three.candidates[i].pose.rotation);
-        EXPECT_EQ(one.candidates[i].pose.translation, three.candidates[i].pose.translation);
-        EXPECT_EQ(one.candidates[i].score, three.candidates[i].score);
+    ASSERT_EQ(single_threaded.candidates.size(), three.candidates.size());
+    for (std::size_t i = 0; i < single_threaded.candidates.size(); ++i) {
+        EXPECT_EQ(single_threaded.candidates[i].pose.rotation, three.candidates[i].pose.rotation);
+        EXPECT_EQ(single_threaded.candidates[i].pose.translation, three.candidates[i].pose.translation);
+        EXPECT_EQ(single_threaded.candidates[i].score, three.candidates[i].score);
     }
 }
 

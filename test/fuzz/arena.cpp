@@ -186,15 +186,15 @@ std::string Arena::betrayed_in() const {
 }
 
 void Arena::judge(Verdict& verdict) {
-    const auto found = [&](Outcome outcome, const std::string& detail) {
+    const auto report = [&](Outcome outcome, const std::string& detail) {
         verdict.outcome = outcome;
         verdict.detail = detail;
     };
     if (!is_finding(verdict.outcome) && said().find("internal error") != std::string::npos)
-        found(Outcome::crash, "an exception that is no Error");
-    if (const std::string file = betrayed_in(); !file.empty()) found(Outcome::betrayed, "what a canary holds is in " + file);
+        report(Outcome::crash, "an exception that is no Error");
+    if (const std::string file = betrayed_in(); !file.empty()) report(Outcome::betrayed, "what a canary holds is in " + file);
     if (look_at_canaries() == canaries_) return;
-    found(Outcome::touched, "the canaries are no longer as they were");
+    report(Outcome::touched, "the canaries are no longer as they were");
     for (const char* name : {"canaries", "work", "tmp"}) clear(home_ / name);
     std::vector<Path> strangers;
     for (const auto& entry : std::filesystem::directory_iterator(home_)) {

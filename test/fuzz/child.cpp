@@ -83,9 +83,9 @@ bool confine(const Path& home) {
     return done;
 }
 
-void limit(int what, double soft, double hard) {
+void limit(int resource, double soft, double hard) {
     const rlimit limits{static_cast<rlim_t>(soft), static_cast<rlim_t>(hard)};
-    ::setrlimit(static_cast<__rlimit_resource>(what), &limits);
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
 void set_limits(const Limits& limits) {
@@ -115,9 +115,9 @@ int act_and_tell(const Act& act, Stopper& stopper) {
     }
 }
 
-[[noreturn]] void be_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits) {
+[[noreturn]] void be_child(const Act& act, const Path& folder, const Path& home, const Path& output_file, const Limits& limits) {
     ::setpgid(0, 0);
-    const int out = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int out = ::open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     ::dup2(in, 0);
     ::dup2(out, 1);
@@ -205,11 +205,11 @@ bool measures_memory() { return !is_sanitized; }
 
 bool can_confine() { return landlock_version() >= 1; }
 
-Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits) {
+Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& output_file, const Limits& limits) {
     std::cout.flush();
     const pid_t child = ::fork();
     if (child < 0) fail_work("a run", std::string("cannot be started: ") + std::strerror(errno), "end other programs");
-    if (child == 0) be_child(act, folder, home, said, limits);
+    if (child == 0) be_child(act, folder, home, output_file, limits);
     rusage used{};
     const int status = wait_for(child, slower * limits.seconds, used);
     ::kill(-child, SIGKILL);  // what it has started

@@ -76,8 +76,8 @@ Kinds kinds_of(const std::vector<Subject>& subjects) {
 }
 
 std::string bytes_of(const Subject& subject, const std::string& file) {
-    for (const SubjectFile& one : subject.files)
-        if (one.name == file) return one.from.empty() ? one.text : read_file(one.from);
+    for (const SubjectFile& subject_file : subject.files)
+        if (subject_file.name == file) return subject_file.from.empty() ? subject_file.text : read_file(subject_file.from);
     return {};
 }
 
@@ -149,10 +149,10 @@ std::string first_lines(const std::string& text) {
     return line;
 }
 
-void tell(const std::string& which, const Trial& trial, const Verdict& verdict, const std::string& said) {
+void tell(const std::string& which, const Trial& trial, const Verdict& verdict, const std::string& output) {
     std::cout << to_string(verdict.outcome) << ": " << which << ", " << trial.kind << ", " << trial.subject->name << " (";
     for (const Change& change : trial.changes) std::cout << change.file << (&change == &trial.changes.back() ? "" : ", ");
-    std::cout << "): " << verdict.detail << ", " << verdict.seconds << " s\n    " << first_lines(said) << std::endl;
+    std::cout << "): " << verdict.detail << ", " << verdict.seconds << " s\n    " << first_lines(output) << std::endl;
 }
 
 int fuzz(Arena& arena, const Kinds& kinds, const Words& words) {

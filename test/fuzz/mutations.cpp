@@ -335,11 +335,11 @@ void change_document(Json& document, Dice& dice) {
     }
 }
 
-void plant(Json& document, const Plant& one, Dice& dice) {
+void plant(Json& document, const Plant& planting, Dice& dice) {
     auto& a = document.GetAllocator();
-    JsonValue* const place = rapidjson::GenericPointer<JsonValue>(one.pointer).Get(document);
+    JsonValue* const place = rapidjson::GenericPointer<JsonValue>(planting.pointer).Get(document);
     if (place == nullptr) return;
-    const Json planted = parse_json(one.value, "what is planted");
+    const Json planted = parse_json(planting.value, "what is planted");
     JsonValue value(planted, a);
     if (place->IsArray()) {
         place->PushBack(value, a);

@@ -74,7 +74,7 @@ TEST(ArcFit, IntervalsHaveTheNominalCoverage) {
     const int n = 200, draws = 200;
     for (const double degrees : {5.0, 20.0, 90.0, 180.0}) {
         const double noise = degrees < 10 ? 0.02 : 0.3, length = 100 * degrees * M_PI / 180;
-        int held = 0;
+        int covered = 0;
         double width = 0;
         for (int draw = 0; draw < draws; ++draw) {
             Random random(11, static_cast<std::uint64_t>(draw));
@@ -86,10 +86,10 @@ TEST(ArcFit, IntervalsHaveTheNominalCoverage) {
             random.shuffle(points);  // in any order
             const ArcFit fit = fit_arc(points);
             EXPECT_TRUE(fit.is_round());
-            if (fit.radius_low <= 100 && 100 <= fit.radius_high) ++held;
+            if (fit.radius_low <= 100 && 100 <= fit.radius_high) ++covered;
             width += (1 / fit.radius_low - 1 / fit.radius_high) / 2 / draws;
         }
-        EXPECT_GE(held, 0.88 * draws) << degrees;
+        EXPECT_GE(covered, 0.88 * draws) << degrees;
         if (degrees < 30) {
             EXPECT_NEAR(width / (1.96 * noise * std::sqrt(720.0 / n) / length / length), 1, 0.2) << degrees;
         }

@@ -56,9 +56,9 @@ TEST(LineComplex, TransformsWithTheNormals) {
         list.emplace_back(any(), any().normalized());
     }
     const Motion motion = some_motion();
-    const LineComplex moved = complex_of(list).moved(motion), made = complex_of(list, motion);
-    EXPECT_NEAR(moved.off_axis(), made.off_axis(), 1e-9);
-    EXPECT_NEAR(std::abs(moved.solve().direction.dot(made.solve().direction)), 1, 1e-8);
+    const LineComplex moved = complex_of(list).moved(motion), recomputed = complex_of(list, motion);
+    EXPECT_NEAR(moved.off_axis(), recomputed.off_axis(), 1e-9);
+    EXPECT_NEAR(std::abs(moved.solve().direction.dot(recomputed.solve().direction)), 1, 1e-8);
 }
 
 TEST(LineComplex, OnlyMatchingPartsShareAnAxis) {

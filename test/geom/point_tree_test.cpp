@@ -38,11 +38,11 @@ void compare(const std::vector<Point>& points, const std::vector<Point>& places)
             for (std::size_t k = 0; k < near.size(); ++k) EXPECT_EQ(std::pair(near[k].squared, near[k].index), all[k]) << k;
         }
         const double search_radius = std::sqrt(all[all.size() / 3].first);
-        std::vector<Index> expected, found{5, 5, 5};
+        std::vector<Index> expected, neighbours{5, 5, 5};
         for (Index i = 0; i < points.size(); ++i)
             if (squared(points[i], place) <= search_radius * search_radius) expected.push_back(i);
-        tree.within(place, search_radius, found);
-        EXPECT_EQ(found, expected);
+        tree.within(place, search_radius, neighbours);
+        EXPECT_EQ(neighbours, expected);
         if (all.front().first == 0) continue;
         EXPECT_EQ(tree.nearest(place, 0.999 * std::sqrt(all.front().first)).index, no_index);
     }
@@ -77,20 +77,20 @@ TEST(PointTree, NoPoints) {
     EXPECT_TRUE(std::isinf(tree.nearest(place).squared));
     EXPECT_TRUE(tree.neighbours(place, 3).empty());
     EXPECT_EQ(tree.farthest_squared(place), 0);
-    std::vector<Index> found{1};
-    tree.within(place, 1e300, found);
-    EXPECT_TRUE(found.empty());
+    std::vector<Index> neighbours{1};
+    tree.within(place, 1e300, neighbours);
+    EXPECT_TRUE(neighbours.empty());
 }
 
 TEST(PointTree, ZeroNeighboursAreRequested) { EXPECT_TRUE(PointTree({Point(0, 0, 0)}).neighbours(Point(0, 0, 0), 0).empty()); }
 
 TEST(PointTree, TheSearchRadiusIsInclusive) {
     const PointTree tree({Point(0, 0, 0), Point(0, 0, 0), Point(3, 0, 0)});
-    std::vector<Index> found;
-    tree.within(Point(0, 0, 0), 0, found);
-    EXPECT_EQ(found, (std::vector<Index>{0, 1}));
-    tree.within(Point(0, 0, 0), 3, found);
-    EXPECT_EQ(found, (std::vector<Index>{0, 1, 2}));
+    std::vector<Index> neighbours;
+    tree.within(Point(0, 0, 0), 0, neighbours);
+    EXPECT_EQ(neighbours, (std::vector<Index>{0, 1}));
+    tree.within(Point(0, 0, 0), 3, neighbours);
+    EXPECT_EQ(neighbours, (std::vector<Index>{0, 1, 2}));
     EXPECT_EQ(tree.nearest(Point(5, 0, 0), 2).index, 2U);
     EXPECT_EQ(tree.nearest(Point(5, 0, 0), 1.9).index, no_index);
 }

@@ -138,7 +138,7 @@ TEST(WebAnnotation, AnotherResolutionKeepsPlacesAndAreas) {
         if (centroid(mesh, f).z() > 0.5) cap.faces.push_back(f);
     set.annotations.push_back(cap);
     const std::string text = web_annotations(mesh, set, "m.ply", {});
-    const double there = area_of(mesh, cap);
+    const double original_area = area_of(mesh, cap);
     for (const int level : {4, 6}) {
         // Turned, so that no vertex is where one was.
         TriangleSoup soup = to_soup(spheres(level));
@@ -147,7 +147,7 @@ TEST(WebAnnotation, AnotherResolutionKeepsPlacesAndAreas) {
         const PlacedAnnotations read = read_web_annotations(text, other, "file");
         EXPECT_EQ(read.placements[0].how, "places");
         EXPECT_GT(read.placements[0].to_vertex, 0);
-        EXPECT_NEAR(area_of(other, read.set.annotations[0]), there, 0.05 * there) << level;
+        EXPECT_NEAR(area_of(other, read.set.annotations[0]), original_area, 0.05 * original_area) << level;
     }
 }
 

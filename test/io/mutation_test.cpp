@@ -30,18 +30,18 @@ std::vector<std::pair<std::string, std::string>> base_files() {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
     std::vector<std::pair<std::string, std::string>> files;
-    const auto made = [&](const std::string& name, Encoding encoding, const MeshExtras& extras) {
+    const auto add_file = [&](const std::string& name, Encoding encoding, const MeshExtras& extras) {
         write_triangles(scratch / name, soup, extras, {encoding, "comment"});
         files.emplace_back(name, read_file(scratch / name));
     };
-    made("binary.ply", Encoding::binary, full_extras(soup));
-    made("ascii.ply", Encoding::ascii, full_extras(soup));
-    made("plain.ply", Encoding::binary, {});
-    made("full.obj", Encoding::binary, full_extras(soup));
-    made("full.off", Encoding::binary, full_extras(soup));
-    made("plain.off", Encoding::binary, {});
-    made("binary.stl", Encoding::binary, {});
-    made("ascii.stl", Encoding::ascii, {});
+    add_file("binary.ply", Encoding::binary, full_extras(soup));
+    add_file("ascii.ply", Encoding::ascii, full_extras(soup));
+    add_file("plain.ply", Encoding::binary, {});
+    add_file("full.obj", Encoding::binary, full_extras(soup));
+    add_file("full.off", Encoding::binary, full_extras(soup));
+    add_file("plain.off", Encoding::binary, {});
+    add_file("binary.stl", Encoding::binary, {});
+    add_file("ascii.stl", Encoding::ascii, {});
     files.emplace_back("big.ply", big_endian_ply());
     files.emplace_back(
         "strips.ply",

@@ -81,9 +81,9 @@ TEST(OrientedBox, IsWithinOnePercentOfTheMinimum) {
             soup.points.push_back({p[0], p[1], p[2]});
         }
         const auto points = moved(soup, some_rotation(seed + 50), Vector3d::Zero()).points;
-        const double minimum = min_box_by_search(points), found = oriented_box(points).volume();
-        EXPECT_LE(found, 1.01 * minimum) << "kind " << kind;
-        RecordProperty("ratio_" + std::to_string(seed), std::to_string(found / minimum));
+        const double minimum = min_box_by_search(points), volume = oriented_box(points).volume();
+        EXPECT_LE(volume, 1.01 * minimum) << "kind " << kind;
+        RecordProperty("ratio_" + std::to_string(seed), std::to_string(volume / minimum));
     }
 }
 

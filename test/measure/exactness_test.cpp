@@ -31,8 +31,8 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
         const double tolerance = 1e-12 * (1 + offset / diagonal);
         DescriptorSearch search(mesh);
         const auto value = [&](const std::string& name) { return search.find(root, name)->values.front(); };
-        const auto expect_near = [&](double x, double exact, const char* what) {
-            EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << what << " at " << offset;
+        const auto expect_near = [&](double x, double exact, const char* quantity) {
+            EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << quantity << " at " << offset;
         };
         expect_near(value("area"), 2 * (a * b + b * c + c * a), "area");
         expect_near(value("volume"), a * b * c, "volume");

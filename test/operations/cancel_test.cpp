@@ -99,9 +99,9 @@ std::map<std::string, std::string> files_below(const Path& folder) {
 }
 
 /// The kind of error that a call ends with when it is cancelled after so long; none where it was done before.
-std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const Path& folder, Context& kept) {
+std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const Path& folder, Context& cache) {
     Context context;
-    context.share_objects(kept);
+    context.share_objects(cache);
     std::atomic<bool> ended = false;
     std::thread other([&] {
         const auto begin = std::chrono::steady_clock::now();
@@ -126,8 +126,8 @@ std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const
 TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
     const Scratch scratch;
     furnish(scratch);
-    Context kept;
-    kept.keep_objects = true;
+    Context cache;
+    cache.keep_objects = true;
     for (const Step& step : steps()) {
         SCOPED_TRACE(step.settings);
         const auto before = files_below(scratch.path());
@@ -141,9 +141,9 @@ TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
         for (const auto& [name, sum] : after)
             if (!before.contains(name)) std::filesystem::remove(scratch / name);
         for (const double share : {0.1, 0.6}) {
-            const auto there = files_below(scratch.path());
-            if (cancelled_after(share * whole, step, scratch.path(), kept)) {
-                EXPECT_EQ(files_below(scratch.path()), there) << step.operation << " left something behind";
+            const auto existing_files = files_below(scratch.path());
+            if (cancelled_after(share * whole, step, scratch.path(), cache)) {
+                EXPECT_EQ(files_below(scratch.path()), existing_files) << step.operation << " left something behind";
             } else {
                 for (const auto& [name, sum] : files_below(scratch.path()))
                     if (!before.contains(name)) std::filesystem::remove(scratch / name);
@@ -151,7 +151,7 @@ TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
         }
         // With what the cancelled ones have kept it makes the same.
         Context last;
-        last.share_objects(kept);
+        last.share_objects(cache);
         static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(last));
         for (const auto& [name, sum] : files_below(scratch.path()))
             EXPECT_EQ(after.contains(name) ? after.at(name) : "nothing", sum) << step.operation << ": " << name;
@@ -184,13 +184,13 @@ TEST(Cancelling, EachAlgorithmChecksForIt) {
         {"remesh", [&] { static_cast<void>(remesh(mesh, remeshed)); }},
         {"simplify",
          [&] {
-             Mesh own = mesh;
-             static_cast<void>(simplify(own, fewer));
+             Mesh copy = mesh;
+             static_cast<void>(simplify(copy, fewer));
          }},
         {"refine",
          [&] {
-             Mesh own = mesh;
-             static_cast<void>(refine(own, more));
+             Mesh copy = mesh;
+             static_cast<void>(refine(copy, more));
          }},
         {"distances", [&] { static_cast<void>(geodesic_distances(mesh, {0}, 10)); }},
         {"curve", [&] { static_cast<void>(geodesic_curve(mesh, vertex_point(0), vertex_point(far))); }},

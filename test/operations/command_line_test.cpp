@@ -121,9 +121,9 @@ TEST(CommandLine, DirectionsAndViewsAreAcceptedAsInTheHelp) {
 TEST(CommandLine, NamesThatBeginWithADash) {
     const Scratch scratch;
     std::filesystem::copy_file(vase, scratch / "-dash.ply");
-    const std::string there = "cd " + scratch.path().string() + " && ";
-    EXPECT_EQ(run_command("mesh info --quiet -- -dash.ply", there).code, 0);
-    const auto result = run_command("mesh info -dash.ply", there);
+    const std::string in_folder = "cd " + scratch.path().string() + " && ";
+    EXPECT_EQ(run_command("mesh info --quiet -- -dash.ply", in_folder).code, 0);
+    const auto result = run_command("mesh info -dash.ply", in_folder);
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find("write ./-dash.ply"), std::string::npos) << result.err;
     expect_refusal("mesh convert " + vase + " memory:x.ply", "which is for programs");

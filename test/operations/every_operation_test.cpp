@@ -277,7 +277,7 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                 }
                 std::vector<std::string> files;
                 if (member.value.IsArray())
-                    for (const auto& one : member.value.GetArray()) files.emplace_back(one.GetString());
+                    for (const auto& item : member.value.GetArray()) files.emplace_back(item.GetString());
                 else files.emplace_back(member.value.GetString());
                 for (const std::string& file : files) {
                     if (slot->role == Role::output) {
@@ -298,9 +298,9 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
             EXPECT_EQ(to_text(report.to_json()["provenance"]), to_text(expected["provenance"]));
             for (const auto& [slot, file] : outputs) {
                 if (!std::filesystem::exists(on_disk / file)) continue;  // not written where the answer is no
-                Object made = call.object(slot);
-                made.name = file;
-                if (const auto folder = made.as<Path>()) {
+                Object object = call.object(slot);
+                object.name = file;
+                if (const auto folder = object.as<Path>()) {
                     for (const std::string& name : files_in(*folder)) {
                         if (name[0] == '.') continue;
                         EXPECT_EQ(read_file(*folder / name) == read_file(on_disk / (file + name)), true) << file << name;
@@ -308,8 +308,8 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                     continue;
                 }
                 const Path written = other / ("written-" + file);
-                if (made.write) made.write(written);
-                else if (const auto bytes = made.as<std::string>()) write_file(written, *bytes);
+                if (object.write) object.write(written);
+                else if (const auto bytes = object.as<std::string>()) write_file(written, *bytes);
                 else FAIL() << file << " cannot be written";
                 if (read_file(written) != read_file(on_disk / file)) {
                     ADD_FAILURE() << file << " differs";
@@ -319,7 +319,7 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                     }
                 }
                 std::filesystem::remove(written);
-                objects[file] = made;
+                objects[file] = object;
             }
         } catch (const std::exception& error) {
             ADD_FAILURE() << step.operation << " in memory: " << error.what();
@@ -515,9 +515,9 @@ TEST(Calls, ShareOptionsOfInputsInEitherOrder) {
     const OperationEntry entry = entry_of<TakesBoth>("test both");
     for (const bool forced : {false, true}) {
         Call call(entry);
-        Object made = Object::of(Template(), "t.template.json");
-        made.sha256 = "known";
-        call.set_object("template", made);
+        Object object = Object::of(Template(), "t.template.json");
+        object.sha256 = "known";
+        call.set_object("template", object);
         call.set("force-mesh", forced);
         Context context;
         EXPECT_EQ(call.run(context).result()["forced"].GetBool(), forced);

@@ -160,8 +160,8 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
     const auto first = fit(quoted(scratch / "bare.ply"));
     EXPECT_EQ(first.code, 3);
     EXPECT_EQ(first.err.find("earlier fit"), std::string::npos) << first.err;
-    const Json kept = read_json(scratch / "out" / "fit.searches.json");
-    validate(kept, "searches", "searches");
+    const Json searches = read_json(scratch / "out" / "fit.searches.json");
+    validate(searches, "searches", "searches");
     const auto before = contents();
     const auto repeated = fit(quoted(scratch / "bare.ply"));
     EXPECT_NE(repeated.err.find("1 of 1 pose searches are reused from an earlier fit"), std::string::npos) << repeated.err;

@@ -114,11 +114,11 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     expect_refused(good + "," + other, "says the same as relationship 0");
     // Of a proportion the first part changes: the other way round it says something else. One level is one level.
     const auto both = [&](const std::string& type) {
-        const auto one = [&](const char* id, const char* members) {
+        const auto relationship_text = [&](const char* id, const char* members) {
             return std::string(R"({"id": )") + id + R"(, "isConstraint": true, "type": ")" + type +
                    R"(", "isDirected": false, "annotations": )" + members + "}";
         };
-        return one("0", "[2, 1]") + "," + one("1", "[1, 2]");
+        return relationship_text("0", "[2, 1]") + "," + relationship_text("1", "[1, 2]");
     };
     EXPECT_EQ(refused(both("proportion")), "read");
     EXPECT_EQ(refused(both("structural continuity")), "read");

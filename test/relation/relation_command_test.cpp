@@ -45,9 +45,9 @@ TEST(RelationCommand, ExtractAddCheckExport) {
                           " --type 'glazed before' --own-type --directed --annotation body --annotation lid --annotation knob")
                   .code,
               0);
-    const auto held = run_command("relation check " + pot + at("c.graph.json"));
-    EXPECT_EQ(held.code, 0) << held.out;
-    EXPECT_NE(held.out.find(" 0 fail, 2 unknown"), std::string::npos) << held.out;
+    const auto checked = run_command("relation check " + pot + at("c.graph.json"));
+    EXPECT_EQ(checked.code, 0) << checked.out;
+    EXPECT_NE(checked.out.find(" 0 fail, 2 unknown"), std::string::npos) << checked.out;
     ASSERT_EQ(run_command(add + at("d.graph.json") + " --graph " + at("c.graph.json") +
                           " --type containment --annotation knob --annotation body")
                   .code,
@@ -78,11 +78,11 @@ TEST(RelationCommand, AddsSeveralRelationshipsToTheGraphInPlace) {
         run_command("relation add " + pot + "--graph " + graph +
                     " --relation 'same level: flower 1, 8 ,flower 3' --relation 'co-axiality: lid, body' --constraint");
     ASSERT_EQ(added.code, 0) << added.err;
-    Json made = read_json(graph);
-    ASSERT_EQ(made["relationships"].Size(), 2U);
-    EXPECT_EQ(to_text(made["relationships"][0]["annotations"]), "[7, 8, 9]\n");
-    EXPECT_STREQ(made["relationships"][1]["type"].GetString(), "co-axiality");
-    EXPECT_TRUE(made["relationships"][1]["isConstraint"].GetBool());
+    Json graph_file = read_json(graph);
+    ASSERT_EQ(graph_file["relationships"].Size(), 2U);
+    EXPECT_EQ(to_text(graph_file["relationships"][0]["annotations"]), "[7, 8, 9]\n");
+    EXPECT_STREQ(graph_file["relationships"][1]["type"].GetString(), "co-axiality");
+    EXPECT_TRUE(graph_file["relationships"][1]["isConstraint"].GetBool());
     ASSERT_EQ(run_command("relation add " + pot + "--graph " + graph + " --relation 'adjacency: lid, body'").code, 0);
     EXPECT_EQ(read_json(graph)["relationships"].Size(), 3U);
     const std::string before = read_file(graph);
@@ -278,14 +278,14 @@ TEST(RelationCommand, ChecksConstraintsOnTheObjectAsItIs) {
 
     // A leg that is half as long again, and its seat bent with it.
     ASSERT_EQ(run_command("deform " + chair + at("long.ply") + " --stretch 'front left leg=1.5'").code & ~3, 0);
-    const auto [wrong, found] = check(at("long.ply"), "--force-mesh --rest " + data + "chair.ply");
+    const auto [wrong, deformed_report] = check(at("long.ply"), "--force-mesh --rest " + data + "chair.ply");
     EXPECT_EQ(wrong, 3);
-    EXPECT_EQ(verdict(found, 0), "fails");
-    const auto& deviation = found["result"]["relationships"][0]["parameters"]["deviations"][0];
+    EXPECT_EQ(verdict(deformed_report, 0), "fails");
+    const auto& deviation = deformed_report["result"]["relationships"][0]["parameters"]["deviations"][0];
     EXPECT_GT(deviation["value"].GetDouble(), 10);
     EXPECT_STREQ(deviation["unit"].GetString(), "%");
-    EXPECT_NE(verdict(found, 1), "unknown");
-    EXPECT_FALSE(found["result"]["conforms"].GetBool());
+    EXPECT_NE(verdict(deformed_report, 1), "unknown");
+    EXPECT_FALSE(deformed_report["result"]["conforms"].GetBool());
     EXPECT_EQ(run_command("relation check " + chair + graph + " --rest " + data + "teapot.ply").code, 1);
 
     // The rules of a class in the same report.
@@ -305,15 +305,15 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     const std::vector<int> wanted{6, 5}, turned{5, 6};  // handle before spout, against the order of the annotations
     const auto expect_kept = [&](const char* name, std::size_t count = 1) {
         const Json graph = read_json(scratch / name);
-        std::size_t kept = 0;
-        for (const auto& one : graph["relationships"].GetArray()) {
-            if (!one["isConstraint"].GetBool()) continue;
+        std::size_t constraint_count = 0;
+        for (const auto& relationship : graph["relationships"].GetArray()) {
+            if (!relationship["isConstraint"].GetBool()) continue;
             std::vector<int> members;
-            for (const auto& id : one["annotations"].GetArray()) members.push_back(id.GetInt());
-            EXPECT_EQ(members, kept == 0 ? wanted : turned) << name;
-            ++kept;
+            for (const auto& id : relationship["annotations"].GetArray()) members.push_back(id.GetInt());
+            EXPECT_EQ(members, constraint_count == 0 ? wanted : turned) << name;
+            ++constraint_count;
         }
-        EXPECT_EQ(kept, count) << name;
+        EXPECT_EQ(constraint_count, count) << name;
     };
     const std::string state =
         " --constraint --parameters '{\"minValue\": 0.5, \"maxValue\": 2, \"measure1\": \"length\", "
@@ -341,8 +341,8 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     expect_kept("e.graph.json", 2);
     const Json extracted = read_json(scratch / "e.graph.json");
     std::string first;
-    for (const auto& one : extracted["relationships"].GetArray())
-        if (!one["isConstraint"].GetBool()) first = std::to_string(one["id"].GetInt());
+    for (const auto& relationship : extracted["relationships"].GetArray())
+        if (!relationship["isConstraint"].GetBool()) first = std::to_string(relationship["id"].GetInt());
     ASSERT_EQ(run_command("relation remove " + pot + at("e.graph.json") + " " + at("f.graph.json") + " --id " + first).code, 0);
     expect_kept("f.graph.json", 2);
     ASSERT_EQ(run_command("template pack " + at("t.template.json") + " --mesh " + data + "teapot.ply --annotations " + data +
@@ -352,11 +352,11 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     expect_kept("f.graph.json", 2);
     const auto checked = run_command("relation check --json " + pot + at("f.graph.json"));
     const Json report = report_of(checked.out);
-    std::vector<std::vector<int>> told;
-    for (const auto& one : report["result"]["relationships"].GetArray()) {
-        if (!one["isConstraint"].GetBool()) continue;
-        told.emplace_back();
-        for (const auto& id : one["annotations"].GetArray()) told.back().push_back(id.GetInt());
+    std::vector<std::vector<int>> orders;
+    for (const auto& relationship : report["result"]["relationships"].GetArray()) {
+        if (!relationship["isConstraint"].GetBool()) continue;
+        orders.emplace_back();
+        for (const auto& id : relationship["annotations"].GetArray()) orders.back().push_back(id.GetInt());
     }
-    EXPECT_EQ(told, (std::vector<std::vector<int>>{wanted, turned}));
+    EXPECT_EQ(orders, (std::vector<std::vector<int>>{wanted, turned}));
 }

@@ -138,21 +138,21 @@ TEST(Edit, AddingAndRemovingUndoEachOther) {
     OSTRAKA_SCAN(mesh, "mannequin-devil.off");
     const std::string left = R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [0.4, 1, 1]}})",
                       right = R"({"invert": )" + left + "}";
-    const std::string made = R"({"id": 1, "tag": "a", "type": "region", "select": )" + left + "}";
-    const auto edited = [&](const std::string& action, const std::string& what, RecipeStart start) {
-        return follow(R"({"action": ")" + action + R"(", "id": 1, "select": )" + what + "}", mesh, "", std::move(start));
+    const std::string initial = R"({"id": 1, "tag": "a", "type": "region", "select": )" + left + "}";
+    const auto edited = [&](const std::string& action, const std::string& selection, RecipeStart start) {
+        return follow(R"({"action": ")" + action + R"(", "id": 1, "select": )" + selection + "}", mesh, "", std::move(start));
     };
-    AnnotationSet all = edited("add to", right, start_with(made, mesh));
+    AnnotationSet all = edited("add to", right, start_with(initial, mesh));
     EXPECT_EQ(all.find(1)->faces.size(), mesh.number_of_faces());
     RecipeStart from;
     from.annotations = std::move(all);
-    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, follow(made, mesh).find(1)->faces);
+    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, follow(initial, mesh).find(1)->faces);
 }
 
 TEST(Edit, ErrorsNameTheStep) {
     const Mesh mesh = grid(4);
-    const auto refuse = [&](const std::string& step, const std::string& pointer, const std::string& what) {
-        expect_refused(step, mesh, pointer, what, start_with(tile_steps, mesh));
+    const auto refuse = [&](const std::string& step, const std::string& pointer, const std::string& expected) {
+        expect_refused(step, mesh, pointer, expected, start_with(tile_steps, mesh));
     };
     refuse(R"({"action": "delete", "id": 9})", "/annotations/0/id", "no annotation has the id 9");
     refuse(R"({"action": "add to", "id": 1})", "/annotations/0", "without \"select\"");

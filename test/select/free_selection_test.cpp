@@ -27,8 +27,8 @@ Annotation selected(const Mesh& mesh, const std::string& select, const std::stri
 }
 
 /// Errors at each refinement fall at least by three: they are of second order.
-void expect_second_order(const std::vector<double>& errors, const std::string& what) {
-    for (std::size_t i = 0; i + 1 < errors.size(); ++i) EXPECT_LT(errors[i + 1], errors[i] / 3) << what << ' ' << i;
+void expect_second_order(const std::vector<double>& errors, const std::string& name) {
+    for (std::size_t i = 0; i + 1 < errors.size(); ++i) EXPECT_LT(errors[i + 1], errors[i] / 3) << name << ' ' << i;
 }
 
 /// A torus of radii 2 and 1 about z.

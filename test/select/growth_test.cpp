@@ -209,8 +209,8 @@ TEST(Threshold, OnAMapNextToTheRecipe) {
 TEST(Threshold, OnAScan) {
     OSTRAKA_SCAN(mesh, "elephant.off");
     for (const char* kind : {R"("curvature": "mean", "scale": 0.02)", R"("thickness": true)", R"("coordinate": [0, 1, 0])"}) {
-        const std::string of = R"({"threshold": {)" + std::string(kind) + R"(, "quantiles": true, )";
-        const auto low = faces_of(of + R"("below": 0.3}})", mesh), high = faces_of(of + R"("above": 0.3}})", mesh);
+        const std::string prefix = R"({"threshold": {)" + std::string(kind) + R"(, "quantiles": true, )";
+        const auto low = faces_of(prefix + R"("below": 0.3}})", mesh), high = faces_of(prefix + R"("above": 0.3}})", mesh);
         EXPECT_NEAR(measure_region(mesh, low).area / surface_area(mesh), 0.3, 0.01) << kind;
         std::vector<Index> both(low);
         both.insert(both.end(), high.begin(), high.end());
@@ -221,8 +221,8 @@ TEST(Threshold, OnAScan) {
 }
 
 TEST(Segments, TheBallsOfADumbbell) {
-    const SyntheticMesh made = dumbbell();
-    const Mesh& mesh = made.mesh;
+    const SyntheticMesh object = dumbbell();
+    const Mesh& mesh = object.mesh;
     const std::string by_seed = R"({"segments": {"clusters": 2, "smoothing": 0.3, "seeds": [[)";
     const std::vector<std::pair<std::string, int>> seeds{{"-70, 0, 0", 0}, {"70, 0, 0", 1}, {"0, 6, 0", 2}};
     for (const auto& [seed, label] : seeds) {
@@ -231,7 +231,7 @@ TEST(Segments, TheBallsOfADumbbell) {
         std::vector<bool> flag(mesh.number_of_faces(), false);
         for (const Index f : faces) flag[f] = true;
         for (const Face f : mesh.faces()) {
-            const bool truth = made.face_labels[f] == label;
+            const bool truth = object.face_labels[f] == label;
             if (flag[f] && truth) shared += face_area(mesh, f);
             if (flag[f] || truth) all += face_area(mesh, f);
         }

@@ -67,9 +67,9 @@ TEST(SelectCommand, ASecondPartWithATagIsReported) {
     EXPECT_NE(second.err.find("a second annotation 'cap' is added beside that of id 0"), std::string::npos) << second.err;
     EXPECT_NE(second.err.find("--action 'add to' --id 0"), std::string::npos) << second.err;
     EXPECT_EQ(folder.select("--action 'add to' --id 0 --sphere 1,0,0,0.5").err, "");
-    const auto taken = folder.select("--tag cap --id 0 --sphere 1,0,0,0.5");
-    EXPECT_EQ(taken.code, 1);
-    EXPECT_NE(taken.err.find("'add to'"), std::string::npos) << taken.err;
+    const auto duplicate = folder.select("--tag cap --id 0 --sphere 1,0,0,0.5");
+    EXPECT_EQ(duplicate.code, 1);
+    EXPECT_NE(duplicate.err.find("'add to'"), std::string::npos) << duplicate.err;
 }
 
 TEST(SelectCommand, ColoursDistinguishPartsFromTheWhole) {
@@ -93,18 +93,18 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
         folder.select("--class ball --unit mm --up 0,1,0 --tag top --view top --rectangle 500,350,700,550" + record);
     ASSERT_EQ(first.code, 0) << first.err;
     const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
-    const AnnotationSet made = read_annotations(folder / "a.ant.json", mesh);
-    EXPECT_EQ(made.object_class, "ball");
-    EXPECT_EQ(made.unit, "mm");
+    const AnnotationSet created = read_annotations(folder / "a.ant.json", mesh);
+    EXPECT_EQ(created.object_class, "ball");
+    EXPECT_EQ(created.unit, "mm");
     EXPECT_NE(first.out.find("area mm^2"), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("perimeter / length mm"), std::string::npos) << first.out;
-    ASSERT_TRUE(made.up);
-    EXPECT_EQ(*made.up, (std::array<double, 3>{0, 1, 0}));
+    ASSERT_TRUE(created.up);
+    EXPECT_EQ(*created.up, (std::array<double, 3>{0, 1, 0}));
     // The next step looks down the same direction without being told, and another --up turns its camera only.
     ASSERT_EQ(folder.select("--tag again --view top --rectangle 500,350,700,550" + record).code, 0);
     ASSERT_EQ(folder.select("--tag side --view top --up 0,0,1 --rectangle 500,350,700,550" + record).code, 0);
     const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
-    EXPECT_EQ(*set.up, *made.up);
+    EXPECT_EQ(*set.up, *created.up);
     EXPECT_EQ(set.find(2)->faces, set.find(1)->faces);
     EXPECT_NE(set.find(3)->faces, set.find(1)->faces);
     ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
@@ -234,10 +234,10 @@ TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
     const std::string before = read_file(folder / "a.ant.json"), recipe = read_file(folder / "r.recipe.json");
     const std::size_t files = test::count_files(folder.path());
-    const auto refuse = [&](const std::string& flags, int code, const std::string& what) {
+    const auto refuse = [&](const std::string& flags, int code, const std::string& expected) {
         const auto result = folder.select(flags + record);
         EXPECT_EQ(result.code, code) << flags << "\n" << result.err;
-        EXPECT_NE(result.err.find(what), std::string::npos) << flags << "\n" << result.err;
+        EXPECT_NE(result.err.find(expected), std::string::npos) << flags << "\n" << result.err;
         EXPECT_EQ(read_file(folder / "a.ant.json"), before);
         EXPECT_EQ(read_file(folder / "r.recipe.json"), recipe);
         EXPECT_EQ(test::count_files(folder.path()), files);

@@ -85,9 +85,9 @@ struct Bench {
         region(a_upper, faces[a], [](double z) { return z > 3; });
         region(a_sides, faces[a], [](double z) { return z > 1 && z < 5; });
         add(sheet, AnnotationType::region).faces = inside;
-        for (const auto& [id, of] : {std::pair{a_line, a}, {b_line, b}}) {
+        for (const auto& [id, tube] : {std::pair{a_line, a}, {b_line, b}}) {
             std::vector<Index> way;
-            for (Index j = 0; j < levels; ++j) way.push_back(first[of] + j * around);
+            for (Index j = 0; j < levels; ++j) way.push_back(first[tube] + j * around);
             add(id, AnnotationType::line).polylines.push_back(way);
         }
         const auto at = [&](Index i, Index j) { return first[a] + j * around + i; };
@@ -101,17 +101,17 @@ struct Bench {
     }
 
     Annotation& add(int id, AnnotationType type) {
-        Annotation one;
-        one.id = id;
-        one.tag = "part " + std::to_string(id);
-        one.type = type;
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = id;
+        annotation.tag = "part " + std::to_string(id);
+        annotation.type = type;
+        set.annotations.push_back(annotation);
         return set.annotations.back();
     }
     void region(int id, std::pair<std::size_t, std::size_t> range, const std::function<bool(double)>& has) {
-        Annotation& one = add(id, AnnotationType::region);
+        Annotation& annotation = add(id, AnnotationType::region);
         for (std::size_t f = range.first; f < range.second; ++f)
-            if (has(centroid(mesh, Face(static_cast<Index>(f))).z())) one.faces.push_back(static_cast<Index>(f));
+            if (has(centroid(mesh, Face(static_cast<Index>(f))).z())) annotation.faces.push_back(static_cast<Index>(f));
     }
     void add_height(int id) {
         Attribute height;
@@ -120,8 +120,8 @@ struct Bench {
         height.measure.tool = "bounding";
         height.measure.points = {first[id], first[id] + (levels - 1) * around};
         height.measure.direction = {0, 0, 1};
-        for (Annotation& one : set.annotations)
-            if (one.id == id) one.attributes.push_back(height);
+        for (Annotation& annotation : set.annotations)
+            if (annotation.id == id) annotation.attributes.push_back(height);
     }
     [[nodiscard]] std::vector<Index> vertices(int id) const { return vertices_of(mesh, *set.find(id)); }
     [[nodiscard]] Places at_rest() const {
@@ -158,8 +158,8 @@ struct Bench {
 };
 
 inline const Bench& bench() {
-    static const Bench one;
-    return one;
+    static const Bench instance;
+    return instance;
 }
 
 inline double degrees(const Vector3d& p, const Vector3d& q) {

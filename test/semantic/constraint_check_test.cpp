@@ -20,8 +20,8 @@ std::vector<Case> axes_and_places() {
     const auto apart = [](auto height) { return [=](const Places& p) { return std::abs(height(p, a) - height(p, b)); }; };
     const auto mean_height = [](const Places& p, int id) { return bench().middle(p, id).z(); };
     const auto base_height = [](const Places& p, int id) { return bench().end(p, id, false).z(); };
-    const auto between = [](int one, int other, double right) {
-        return [=](const Places& p) { return std::abs(right - degrees(bench().axis(p, one), bench().axis(p, other))); };
+    const auto between = [](int first_part, int other, double right) {
+        return [=](const Places& p) { return std::abs(right - degrees(bench().axis(p, first_part), bench().axis(p, other))); };
     };
     // Of the ring between the halves of the first cylinder.
     const auto tilt = [](const Places& p) {
@@ -31,8 +31,8 @@ std::vector<Case> axes_and_places() {
     };
     const auto off_axis = [](const Places& p) {
         const Vector3d way = bench().axis(p, a), from = bench().end(p, a, false);
-        const Vector3d other = bench().axis(p, above), there = bench().end(p, above, false);
-        return std::max(way.cross(bench().middle(p, above) - from).norm(), other.cross(bench().middle(p, a) - there).norm());
+        const Vector3d other = bench().axis(p, above), end_point = bench().end(p, above, false);
+        return std::max(way.cross(bench().middle(p, above) - from).norm(), other.cross(bench().middle(p, a) - end_point).norm());
     };
     return {
         {"parallel axes", {b, a}, "{}", rotated(b, y), {0, 3, 30}, between(b, a, 0), 5},
@@ -136,8 +136,8 @@ std::vector<Case> axes_and_places() {
 std::vector<Case> measures_and_shapes() {
     const auto height = [](const Places& p) { return bench().height(p, b); };
     const auto off_mean = [](const Places& p) {
-        const double one = bench().height(p, a), other = bench().height(p, b);
-        return 100 * (std::max(one, other) / ((one + other) / 2) - 1);
+        const double first_height = bench().height(p, a), second_height = bench().height(p, b);
+        return 100 * (std::max(first_height, second_height) / ((first_height + second_height) / 2) - 1);
     };
     const auto out_of = [](double value, double low, double high) {
         return value < low ? 100 * (low - value) / low : value > high ? 100 * (value - high) / high : 0;
@@ -356,9 +356,9 @@ std::vector<Case> cases() {
     return list;
 }
 
-RelationGraph graph_of(const Case& one) {
+RelationGraph graph_of(const Case& test_case) {
     RelationGraph graph;
-    graph.relationships.push_back(constraint(0, one.type, one.members, one.parameters));
+    graph.relationships.push_back(constraint(0, test_case.type, test_case.members, test_case.parameters));
     return graph;
 }
 
@@ -372,9 +372,9 @@ Places places_of(const Mesh& mesh) {
     for (const Vertex v : mesh.vertices()) places.push_back(eigen(mesh.point(v)));
     return places;
 }
-std::vector<Point> wrong_by(const Case& one, double wrong) {
+std::vector<Point> wrong_by(const Case& test_case, double wrong) {
     Places places = bench().at_rest();
-    one.shape(places, wrong);
+    test_case.shape(places, wrong);
     return points_of(places);
 }
 
@@ -382,26 +382,27 @@ std::vector<Point> wrong_by(const Case& one, double wrong) {
 
 TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
     const Scratch scratch;
-    for (const Case& one : cases()) {
+    for (const Case& test_case : cases()) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const Mesh object = from_file(scratch, wrong_by(one, one.wrong.at(i)));
-            const double value = one.value(places_of(object));
-            EXPECT_EQ(value <= one.tolerance, i < 2) << one.type << ", " << one.wrong.at(i) << ": " << value;
-            const RelationGraph graph = graph_of(one);
-            const std::string what =
-                std::string(one.type) + " " + one.parameters + ", wrong by " + std::to_string(one.wrong.at(i));
+            const Mesh object = from_file(scratch, wrong_by(test_case, test_case.wrong.at(i)));
+            const double value = test_case.value(places_of(object));
+            EXPECT_EQ(value <= test_case.tolerance, i < 2) << test_case.type << ", " << test_case.wrong.at(i) << ": " << value;
+            const RelationGraph graph = graph_of(test_case);
+            const std::string name =
+                std::string(test_case.type) + " " + test_case.parameters + ", wrong by " + std::to_string(test_case.wrong.at(i));
             const ConstraintReport alone = judge_constraints(object, bench().set, graph).at(0);
-            if (one.rest) {
-                EXPECT_EQ(alone.verdict, Verdict::unknown) << what;
-                EXPECT_NE(alone.text.find("--rest"), std::string::npos) << what << ": " << alone.text;
+            if (test_case.rest) {
+                EXPECT_EQ(alone.verdict, Verdict::unknown) << name;
+                EXPECT_NE(alone.text.find("--rest"), std::string::npos) << name << ": " << alone.text;
             }
             // Against the shape at rest the verdict is that of deformations.
-            const ConstraintReport judged = one.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
-            ASSERT_FALSE(judged.deviations.empty()) << what << ": " << judged.text;
-            EXPECT_EQ(judged.verdict, value <= one.tolerance ? Verdict::holds : Verdict::fails)
-                << what << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
-            if (one.exact) {
-                EXPECT_NEAR(*judged.deviations[0].value, value, 0.02 * one.tolerance + 0.02 * value) << what;
+            const ConstraintReport judged =
+                test_case.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
+            ASSERT_FALSE(judged.deviations.empty()) << name << ": " << judged.text;
+            EXPECT_EQ(judged.verdict, value <= test_case.tolerance ? Verdict::holds : Verdict::fails)
+                << name << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
+            if (test_case.exact) {
+                EXPECT_NEAR(*judged.deviations[0].value, value, 0.02 * test_case.tolerance + 0.02 * value) << name;
             }
         }
     }
@@ -409,7 +410,7 @@ TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
 
 TEST(ConstraintCheck, EveryTypeIsInTheTable) {
     std::set<std::string> judged{"containment", "equal selections"};
-    for (const Case& one : cases()) judged.insert(one.type);
+    for (const Case& test_case : cases()) judged.insert(test_case.type);
     for (const RelationType& type : relation_types()) EXPECT_TRUE(judged.count(type.name) > 0) << type.name;
 }
 
@@ -429,23 +430,23 @@ TEST(ConstraintCheck, TheSolvedQuantityIsTheMeasuredOne) {
     const Scratch scratch;
     DeformOptions options;
     options.conflicts = 0;
-    for (const Case& one : cases()) {
-        RelationGraph graph = graph_of(one);
+    for (const Case& test_case : cases()) {
+        RelationGraph graph = graph_of(test_case);
         graph.relationships[0].weight = 1000;
-        const std::vector<Point> start = wrong_by(one, one.wrong[2]);
-        const std::vector<bool> held(start.size(), false);
-        DeformResult result = restore_constraints(bench().mesh, bench().set, graph, start, held, options);
+        const std::vector<Point> start = wrong_by(test_case, test_case.wrong[2]);
+        const std::vector<bool> fixed(start.size(), false);
+        DeformResult result = restore_constraints(bench().mesh, bench().set, graph, start, fixed, options);
         const Mesh object = from_file(scratch, result.points);
-        const double value = one.value(places_of(object)), before = one.value(places_of(from_file(scratch, start)));
-        const std::string what = std::string(one.type) + " " + one.parameters;
+        const double value = test_case.value(places_of(object)), before = test_case.value(places_of(from_file(scratch, start)));
+        const std::string name = std::string(test_case.type) + " " + test_case.parameters;
         const ConstraintReport &solved = result.constraints.at(0),
                                judged = judge_constraints(object, bench().set, graph, &bench().mesh).at(0);
-        EXPECT_EQ(solved.verdict, judged.verdict) << what;
-        std::cout << what << ": " << before << " -> " << value << " (at most " << one.tolerance << "), "
+        EXPECT_EQ(solved.verdict, judged.verdict) << name;
+        std::cout << name << ": " << before << " -> " << value << " (at most " << test_case.tolerance << "), "
                   << to_string(solved.verdict) << "\n";
-        if (one.exact) {
-            EXPECT_EQ(solved.verdict, value <= one.tolerance ? Verdict::holds : Verdict::fails)
-                << what << ": " << value << " against " << *solved.deviations.at(0).value;
+        if (test_case.exact) {
+            EXPECT_EQ(solved.verdict, value <= test_case.tolerance ? Verdict::holds : Verdict::fails)
+                << name << ": " << value << " against " << *solved.deviations.at(0).value;
         }
     }
 }

@@ -21,8 +21,8 @@ const std::string pot = data + "teapot.ply ", parts = data + "teapot.ant.json ";
 struct Caged : Scratch {
     [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
     Caged() {
-        const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80");
-        EXPECT_EQ(made.code, 0) << made.err;
+        const auto command = run_command("cage make " + pot + at("cage.ply") + " --vertices 80");
+        EXPECT_EQ(command.code, 0) << command.err;
         const auto weights = run_command("cage weights " + pot + at("cage.ply") + " " + at("w.npy"));
         EXPECT_EQ(weights.code, 0) << weights.err;
         static_cast<void>(file("lift.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
@@ -40,9 +40,9 @@ struct Caged : Scratch {
 TEST(CageCommand, MakesAndChecks) {
     const Scratch scratch;
     const std::string cage = (scratch / "cage.ply").string();
-    const auto made = run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --json");
-    ASSERT_EQ(made.code, 0) << made.err;
-    const Json report = parse_json(made.out, "report");
+    const auto result = run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     EXPECT_EQ(report["result"]["cages"].Size(), 2U);
     const std::string fine = (scratch / "cage-120.ply").string(), coarse = (scratch / "cage-60.ply").string();
@@ -59,10 +59,10 @@ TEST(CageCommand, MakesAndChecks) {
 TEST(CageCommand, CagesWithinACageAreEditedLevelByLevel) {
     const Scratch scratch;
     const auto at = [&](const std::string& name) { return (scratch / name).string(); };
-    const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80 --annotations " + parts +
-                                  "--parts spout handle --part-vertices 30 --json");
-    ASSERT_EQ(made.code, 0) << made.err;
-    const Json report = parse_json(made.out, "report");
+    const auto result = run_command("cage make " + pot + at("cage.ply") + " --vertices 80 --annotations " + parts +
+                                    "--parts spout handle --part-vertices 30 --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     const auto& cages = report["result"]["cages"];
     ASSERT_EQ(cages.Size(), 3U);
@@ -112,9 +112,9 @@ TEST(CageCommand, OnlyASymmetryOfTheWholeMirrorsTheCage) {
         const auto stated =
             run_command("relation add " + pot + parts + at("s.graph.json") + " --type 'mirror symmetry' " + members);
         EXPECT_EQ(stated.code, 0) << stated.err;
-        const auto made = run_command("cage make " + pot + at("c.ply") + " --vertices 60 --annotations " + parts + "--graph " +
-                                      at("s.graph.json"));
-        EXPECT_EQ(made.code, 0) << made.err;
+        const auto result = run_command("cage make " + pot + at("c.ply") + " --vertices 60 --annotations " + parts + "--graph " +
+                                        at("s.graph.json"));
+        EXPECT_EQ(result.code, 0) << result.err;
         return read_mesh(at("c.ply")).mesh;
     };
     const Mesh plain = read_mesh(at("plain.ply")).mesh;
@@ -152,11 +152,11 @@ TEST(DeformCommand, SatisfiesTheConstraints) {
     const auto plain = run_command(base + folder.at("plain.ply") + folder.handles());
     EXPECT_EQ(plain.code, 0) << plain.err;
     EXPECT_NE(plain.out.find("no constraints"), std::string::npos);
-    const auto kept =
+    const auto result =
         run_command(base + folder.at("out.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") +
                     " --annotations-out " + folder.at("out.ant.json") + " --cage-out " + folder.at("out-cage.ply") + " --json");
-    ASSERT_EQ(kept.code, 0) << kept.err << kept.out;
-    const Json report = parse_json(kept.out, "report");
+    ASSERT_EQ(result.code, 0) << result.err << result.out;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     const JsonValue& constraint = report["result"]["constraints"][0];
     EXPECT_STREQ(constraint["verdict"].GetString(), "holds");
@@ -244,9 +244,9 @@ TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     EXPECT_GT(types.size(), 30U);
     for (const std::string& type : types) {
         const std::string graph = (scratch / (type + ".graph.json")).string();
-        const bool one = type == "keep measure" || type == "keep position";
+        const bool has_one_member = type == "keep measure" || type == "keep position";
         const auto added = run_command("relation add " + pot + parts + "'" + graph + "' --type '" + type + "' --annotation 5" +
-                                       (one ? "" : " --annotation 1") +
+                                       (has_one_member ? "" : " --annotation 1") +
                                        (type == "equal attributes" ? " --attribute height" : "") + " --constraint");
         EXPECT_EQ(added.code, 0) << type << added.err;
     }
@@ -293,10 +293,10 @@ TEST(DeformCommand, StatesAndEditedCages) {
     const Mesh rest = read_mesh(data + "teapot.ply").mesh, first = read_mesh(folder / "out-step1.ply").mesh;
     for (const Vertex v : rest.vertices()) ASSERT_NEAR(first.point(v).x(), rest.point(v).x() + 1, 1e-9);
     EXPECT_EQ(read_file(folder / "out-step2.ply"), read_file(folder / "out.ply"));
-    const auto taken = run_command("deform " + pot + parts + two + " " + folder.at("out.ply") + folder.handles() +
-                                   " --states --cage-out " + folder.at("out-step2.ply"));
-    EXPECT_EQ(taken.code, 2);
-    EXPECT_NE(taken.err.find("two outputs have the name"), std::string::npos) << taken.err;
+    const auto refused = run_command("deform " + pot + parts + two + " " + folder.at("out.ply") + folder.handles() +
+                                     " --states --cage-out " + folder.at("out-step2.ply"));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("two outputs have the name"), std::string::npos) << refused.err;
     ASSERT_EQ(run_command("cage edit " + folder.at("cage.ply") + " " + two + " " + folder.at("moved.ply")).code, 0);
     const Mesh cage = read_mesh(folder / "cage.ply").mesh, moved = read_mesh(folder / "moved.ply").mesh;
     EXPECT_NEAR(moved.point(Vertex(5)).y(), cage.point(Vertex(5)).y() + 2, 1e-12);

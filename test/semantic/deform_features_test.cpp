@@ -22,7 +22,7 @@ double level_spread(const Caged& object, const std::vector<Point>& points, const
     for (const int id : ids) {
         double sum = 0, whole = 0;
         for (const Index f : object.set.find(id)->faces) {
-            const auto [a, b, c] = corners(object.made.mesh, Face(f));
+            const auto [a, b, c] = corners(object.synthetic.mesh, Face(f));
             const double area = (eigen(points[b]) - eigen(points[a])).cross(eigen(points[c]) - eigen(points[a])).norm();
             sum += area * (points[a].z() + points[b].z() + points[c].z()) / 3;
             whole += area;
@@ -49,11 +49,11 @@ struct RingDistortion {
 /// same height tells.
 std::pair<double, Eigen::Vector3d> stretched_body(const Eigen::Vector3d& p) {
     const double radius = std::hypot(p.x(), p.y()), free = 72 * M_PI / 180;
-    const Point there(radius * std::cos(free), radius * std::sin(free), p.z() / 1.4);
-    const Vector g = synthetic_object("teapot").gradient(there);
+    const Point unstretched(radius * std::cos(free), radius * std::sin(free), p.z() / 1.4);
+    const Vector g = synthetic_object("teapot").gradient(unstretched);
     const double outwards = g.x() * std::cos(free) + g.y() * std::sin(free);
     const Eigen::Vector3d gradient(outwards * p.x() / radius, outwards * p.y() / radius, g.z() / 1.4);
-    return {synthetic_object("teapot").value(there), gradient};
+    return {synthetic_object("teapot").value(unstretched), gradient};
 }
 
 RingDistortion distortion_around(const Caged& object, const std::vector<int>& flowers, const DeformResult& result) {
@@ -64,13 +64,14 @@ RingDistortion distortion_around(const Caged& object, const std::vector<int>& fl
         const std::set<Index> inside(flower.faces.begin(), flower.faces.end());
         Eigen::Vector3d middle = Eigen::Vector3d::Zero();
         double radius = 0;
-        const auto own = vertices_of(object.made.mesh, flower);
-        const std::set<Index> touched(own.begin(), own.end());
-        for (const Index v : own) middle += eigen(object.made.mesh.point(Vertex(v))) / static_cast<double>(own.size());
-        for (const Index v : own) radius = std::max(radius, (eigen(object.made.mesh.point(Vertex(v))) - middle).norm());
-        for (const Face f : object.made.mesh.faces()) {
-            if (inside.count(f.idx()) > 0 || (eigen(centroid(object.made.mesh, f)) - middle).norm() > 1.6 * radius) continue;
-            const auto [a, b, c] = corners(object.made.mesh, f);
+        const auto feature = vertices_of(object.synthetic.mesh, flower);
+        const std::set<Index> touched(feature.begin(), feature.end());
+        for (const Index v : feature)
+            middle += eigen(object.synthetic.mesh.point(Vertex(v))) / static_cast<double>(feature.size());
+        for (const Index v : feature) radius = std::max(radius, (eigen(object.synthetic.mesh.point(Vertex(v))) - middle).norm());
+        for (const Face f : object.synthetic.mesh.faces()) {
+            if (inside.count(f.idx()) > 0 || (eigen(centroid(object.synthetic.mesh, f)) - middle).norm() > 1.6 * radius) continue;
+            const auto [a, b, c] = corners(object.synthetic.mesh, f);
             const auto frame = [&](const std::vector<Point>& p) {
                 const Eigen::Vector3d u = eigen(p[b] - p[a]), v = eigen(p[c] - p[a]), x = u.normalized();
                 Eigen::Matrix2d m;
@@ -79,7 +80,7 @@ RingDistortion distortion_around(const Caged& object, const std::vector<int>& fl
             };
             const Eigen::Matrix2d map = frame(result.points) * frame(result.edited).inverse();
             const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(map).singularValues();
-            const double weight = face_area(object.made.mesh, f);
+            const double weight = face_area(object.synthetic.mesh, f);
             sum.stretch += weight * (std::abs(s[0] - 1) + std::abs(s[1] - 1));
             const Eigen::Vector3d p = eigen(result.points[a]), q = eigen(result.points[b]), r = eigen(result.points[c]);
             const Eigen::Vector3d n = (q - p).cross(r - p).normalized();
@@ -105,7 +106,7 @@ TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}},
                                  {"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})";
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     for (const bool hard : {false, true}) {
         RelationGraph graph;
         graph.relationships.push_back(
@@ -120,14 +121,14 @@ TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
         EXPECT_LT(level_spread(object, result.points, flowers), (hard ? 1e-3 : 1e-2) * diagonal);
         // Each flower is a rigid copy of what it was.
         for (const int id : flowers) {
-            const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
+            const auto vertices = vertices_of(object.synthetic.mesh, *object.set.find(id));
             const Points rest = [&] {
-                Points p(3, static_cast<Eigen::Index>(object.made.mesh.number_of_vertices()));
-                for (const Vertex v : object.made.mesh.vertices()) p.col(v.idx()) = eigen(object.made.mesh.point(v));
+                Points p(3, static_cast<Eigen::Index>(object.synthetic.mesh.number_of_vertices()));
+                for (const Vertex v : object.synthetic.mesh.vertices()) p.col(v.idx()) = eigen(object.synthetic.mesh.point(v));
                 return p;
             }();
             Points now = rest;
-            for (const Vertex v : object.made.mesh.vertices()) now.col(v.idx()) = eigen(result.points[v]);
+            for (const Vertex v : object.synthetic.mesh.vertices()) now.col(v.idx()) = eigen(result.points[v]);
             const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
             const double off = std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size()));
             EXPECT_LT(off, (hard ? 1e-3 : 5e-3) * diagonal) << id;
@@ -149,7 +150,7 @@ TEST(Deform, ThroughTheCageConstraintsAreMetAsFarAsPossible) {
     // The mesh is what the weights make of the cage.
     const auto again = deformed(object.coordinates, object.cage, result.cage);
     for (std::size_t i = 0; i < again.size(); ++i)
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(again[i], result.points[i])), 1e-9 * box_diagonal(object.made.mesh));
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(again[i], result.points[i])), 1e-9 * box_diagonal(object.synthetic.mesh));
     // What is solved for is the cost: shapes and levels together. What must hold counts a thousandfold, so that the levels gain.
     EXPECT_LT(result.constraints[0].cost, result.constraints[0].cost_before);
     graph.relationships[0] =
@@ -197,7 +198,7 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}},
                                  {"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})";
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "same level", flowers, ""));
     for (const auto& [space, bend] : {std::pair{"mesh", true}, {"cage", true}, {"mesh", false}}) {
@@ -207,9 +208,9 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
         const DeformResult result = deform(object.handles(), graph, edit(steps), "e", options);
         EXPECT_TRUE(result.acceptable);
         EXPECT_LT(*result.constraints[0].deviations[0].value, 1e-9 * diagonal);
-        const Points rest = points_matrix(points_of(object.made.mesh)), now = points_matrix(result.points);
+        const Points rest = points_matrix(points_of(object.synthetic.mesh)), now = points_matrix(result.points);
         for (const int id : flowers) {
-            const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
+            const auto vertices = vertices_of(object.synthetic.mesh, *object.set.find(id));
             const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
             // It bends by no more than it may.
             EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())),
@@ -217,8 +218,8 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
                 << id;
         }
         // Nothing else moves farther than the flowers' size.
-        EXPECT_EQ(result.points[object.made.mesh.number_of_vertices() - 1],
-                  result.edited[object.made.mesh.number_of_vertices() - 1]);
+        EXPECT_EQ(result.points[object.synthetic.mesh.number_of_vertices() - 1],
+                  result.edited[object.synthetic.mesh.number_of_vertices() - 1]);
     }
     // The whole object sits on nothing.
     graph.relationships[0] = constraint(0, "keep shape", {0}, R"({"mode": "seat"})");

@@ -15,8 +15,8 @@ namespace {
 
 /// A made hand whose ring and little finger have a bounding measure "length", upwards.
 struct Hand {
-    SyntheticMesh made = make_mesh(synthetic_object("hand"), {.vertices = 6000});
-    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/hand.recipe.json", made.mesh, made.face_labels);
+    SyntheticMesh synthetic = make_mesh(synthetic_object("hand"), {.vertices = 6000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/hand.recipe.json", synthetic.mesh, synthetic.face_labels);
     Hand() {
         for (Annotation& annotation : set.annotations) {
             if (annotation.id != 6 && annotation.id != 7) continue;
@@ -26,12 +26,12 @@ struct Hand {
             length.type = AttributeType::measure;
             length.measure.tool = "bounding";
             length.measure.direction = {0, 0, 1};
-            const auto ends = extremes(made.mesh, annotation, {0, 0, 1});
+            const auto ends = extremes(synthetic.mesh, annotation, {0, 0, 1});
             length.measure.points.assign(ends.begin(), ends.end());
             annotation.attributes.push_back(length);
         }
     }
-    [[nodiscard]] HandleSpace space() const { return {made.mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {synthetic.mesh, set}; }
 };
 
 }  // namespace
@@ -39,7 +39,7 @@ struct Hand {
 TEST(Deform, AProportionStretchesThePartFromItsJoint) {
     // The little finger is to be as long as 0.9 to 1 of the ring finger: it grows at its tip and stays where it joins the palm.
     const Hand hand;
-    const Mesh& mesh = hand.made.mesh;
+    const Mesh& mesh = hand.synthetic.mesh;
     const AnnotationSet& set = hand.set;
     RelationGraph graph;
     graph.relationships.push_back(constraint(
@@ -121,29 +121,30 @@ TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
 }
 
 TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
-    const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 8000});
-    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
+    const SyntheticMesh synthetic = make_mesh(synthetic_object("chair"), {.vertices = 8000});
+    const AnnotationSet set =
+        apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", synthetic.mesh, synthetic.face_labels);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {6, 8}, R"({"hard": true})"));
     const DeformResult result =
-        deform({made.mesh, set}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
-    EXPECT_LT(result.constraints.at(0).before_values.at(1), 0.002 * box_diagonal(made.mesh));
+        deform({synthetic.mesh, set}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
+    EXPECT_LT(result.constraints.at(0).before_values.at(1), 0.002 * box_diagonal(synthetic.mesh));
     EXPECT_EQ(result.points, result.edited) << "what holds is left alone";
-    Mesh after = made.mesh;
+    Mesh after = synthetic.mesh;
     for (const Vertex v : after.vertices()) after.point(v) = result.points[v];
     double area = 0, rest = 0;
-    for (const Index f : set.find(6)->faces) area += face_area(after, Face(f)), rest += face_area(made.mesh, Face(f));
+    for (const Index f : set.find(6)->faces) area += face_area(after, Face(f)), rest += face_area(synthetic.mesh, Face(f));
     EXPECT_NEAR(area, rest, 0.02 * rest);
 }
 
 TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
     // A leg cut in halves, the lower one rotated. Let free, the upper half leans over with it, further pass by pass.
-    const SyntheticMesh made = make_mesh(synthetic_object("chair"), {.vertices = 8000});
-    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", made.mesh, made.face_labels);
+    const SyntheticMesh synthetic = make_mesh(synthetic_object("chair"), {.vertices = 8000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", synthetic.mesh, synthetic.face_labels);
     Annotation& leg = *std::find_if(set.annotations.begin(), set.annotations.end(), [](const auto& a) { return a.id == 7; });
     double low = 1e300, high = -1e300;
-    for (const Index v : vertices_of(made.mesh, leg)) {
-        const double z = made.mesh.point(Vertex(v)).z();
+    for (const Index v : vertices_of(synthetic.mesh, leg)) {
+        const double z = synthetic.mesh.point(Vertex(v)).z();
         low = std::min(low, z), high = std::max(high, z);
     }
     Annotation half = leg;
@@ -154,16 +155,16 @@ TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
     std::vector<Index> upper;
     for (const Index f : leg.faces) {
         double z = 0;
-        for (const Index v : corners(made.mesh, Face(f))) z += made.mesh.point(Vertex(v)).z() / 3;
+        for (const Index v : corners(synthetic.mesh, Face(f))) z += synthetic.mesh.point(Vertex(v)).z() / 3;
         (z < (low + high) / 2 ? half.faces : upper).push_back(f);
     }
     leg.faces = upper;
     leg.attributes.clear();
     Eigen::Vector3d joint = Eigen::Vector3d::Zero();
     int shared = 0;
-    const auto above = vertices_of(made.mesh, leg);
-    for (const Index v : vertices_of(made.mesh, half))
-        if (std::find(above.begin(), above.end(), v) != above.end()) joint += eigen(made.mesh.point(Vertex(v))), ++shared;
+    const auto above = vertices_of(synthetic.mesh, leg);
+    for (const Index v : vertices_of(synthetic.mesh, half))
+        if (std::find(above.begin(), above.end(), v) != above.end()) joint += eigen(synthetic.mesh.point(Vertex(v))), ++shared;
     joint /= shared;
     set.annotations.push_back(half);
     const std::string steps =
@@ -174,7 +175,7 @@ TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
         graph.relationships.push_back(constraint(0, "structural continuity", {60, 7}, R"({"hard": true})"));
         DeformOptions options;
         options.passes = passes;
-        const DeformResult result = deform({made.mesh, set}, graph, edit(steps), "e", options);
+        const DeformResult result = deform({synthetic.mesh, set}, graph, edit(steps), "e", options);
         const ConstraintReport& report = result.constraints.at(0);
         ASSERT_EQ(report.deviations.size(), 2U);
         std::cout << "angle " << report.before_values[0] << " -> " << *report.deviations[0].value << " in " << result.passes
@@ -183,7 +184,7 @@ TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
         EXPECT_LT(*report.deviations[0].value, 0.5);
         EXPECT_EQ(result.surface.crossings_new, 0U);
         // The residual is that of the shape that is given back: the distance that its verdict measures.
-        EXPECT_NEAR(report.distance, *report.deviations[1].value, 1e-9 * box_diagonal(made.mesh));
+        EXPECT_NEAR(report.distance, *report.deviations[1].value, 1e-9 * box_diagonal(synthetic.mesh));
     }
 }
 
@@ -197,7 +198,8 @@ TEST(Deform, ResidualsAreThoseOfTheShapeWithItsFeaturesSeated) {
     const ConstraintReport& report = result.constraints.at(0);
     ASSERT_EQ(report.low_level, 1U);
     Eigen::AlignedBox3d box;
-    for (const Index v : vertices_of(object.made.mesh, *object.set.find(7))) box.extend(eigen(object.made.mesh.point(Vertex(v))));
+    for (const Index v : vertices_of(object.synthetic.mesh, *object.set.find(7)))
+        box.extend(eigen(object.synthetic.mesh.point(Vertex(v))));
     EXPECT_GT(*report.deviations.at(0).value, 1e-3);
     EXPECT_NEAR(100 * report.maximum / box.diagonal().norm(), *report.deviations[0].value, 1e-9);
 }
@@ -225,8 +227,8 @@ TEST(Deform, ReportsConflictingConstraints) {
     }
     EXPECT_TRUE(fights.count({3, 4}) == 1 || fights.count({4, 3}) == 1);
     // What cannot hold leaves a compromise, not a wreck.
-    for (const Vertex v : hand.made.mesh.vertices())
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(hand.made.mesh));
+    for (const Vertex v : hand.synthetic.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(hand.synthetic.mesh));
     for (const ConstraintConflict& conflict : result.conflicts) {
         ASSERT_EQ(conflict.deviations.size(), 1U);
         // The ring finger is some 1.3 times as long: either would have to give by tens of per cent.
@@ -276,26 +278,26 @@ TEST(Deform, AxesBecomeParallelAndPerpendicular) {
 
 TEST(Deform, PartsMoveToTheAxisOfAnother) {
     // The parts as they were made: the body is cut open by spout and handle, so that its centroid is off its axis.
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 3000});
+    const SyntheticMesh synthetic = make_mesh(synthetic_object("teapot"), {.vertices = 3000});
     AnnotationSet set;
     for (const int id : {0, 1, 2}) {
         Annotation& part = set.annotations.emplace_back();
         part.id = id, part.tag = "part " + std::to_string(id), part.type = AnnotationType::region;
-        for (const Face f : made.mesh.faces())
-            if (made.face_labels[f.idx()] == id) part.faces.push_back(f.idx());
+        for (const Face f : synthetic.mesh.faces())
+            if (synthetic.face_labels[f.idx()] == id) part.faces.push_back(f.idx());
     }
     RelationGraph graph;
     graph.relationships = {constraint(0, "co-axiality", {2, 0}, R"({"hard": true})"),
                            constraint(1, "co-axiality", {1, 0}, R"({"hard": true})")};
     const DeformResult result =
-        deform({made.mesh, set}, graph, edit(R"({"select": {"annotation": "part 0"}, "translate": [8, 0, 0]})"), "e");
+        deform({synthetic.mesh, set}, graph, edit(R"({"select": {"annotation": "part 0"}, "translate": [8, 0, 0]})"), "e");
     for (const ConstraintReport& report : result.constraints) EXPECT_EQ(report.verdict, Verdict::holds) << report.text;
 }
 
 TEST(Deform, PartsThatAreNotNamedStay) {
     // Flowers follow one that is raised; a tenth of the diagonal away from all of them hardly anything moves.
     const Caged pot("teapot", 3000, 100);
-    const Mesh& mesh = pot.made.mesh;
+    const Mesh& mesh = pot.synthetic.mesh;
     RelationGraph graph;
     graph.relationships = {
         constraint(0, "same level", {7, 8, 9, 10, 11}, R"({"follow": true, "heights": "equal", "hard": true})")};
@@ -324,19 +326,19 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
     const Hand hand;
     const auto length = [&](int id, const std::vector<Point>& points) {
         double low = 1e300, high = -1e300;
-        for (const Index v : vertices_of(hand.made.mesh, *hand.set.find(id)))
+        for (const Index v : vertices_of(hand.synthetic.mesh, *hand.set.find(id)))
             low = std::min(low, points[v].z()), high = std::max(high, points[v].z());
         return high - low;
     };
-    const auto rest = points_of(hand.made.mesh);
+    const auto rest = points_of(hand.synthetic.mesh);
     const double was = length(6, rest);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {6},
                                              R"({"measure": "length", "hard": true, "minValue": )" + std::to_string(1.2 * was) +
                                                  R"(, "maxValue": )" + std::to_string(1.3 * was) + "}"));
-    const DeformResult kept = deform(hand.space(), graph, edit(""), "e");
-    EXPECT_TRUE(kept.acceptable) << kept.constraints[0].text;
-    EXPECT_NEAR(length(6, kept.points), 1.2 * was, 2e-3 * was);
+    const DeformResult result = deform(hand.space(), graph, edit(""), "e");
+    EXPECT_TRUE(result.acceptable) << result.constraints[0].text;
+    EXPECT_NEAR(length(6, result.points), 1.2 * was, 2e-3 * was);
     // Two fingers that meet half-way, each from its joint.
     graph.relationships[0] = constraint(0, "same measure", {6, 7}, R"({"measure": "length", "hard": true})");
     const DeformResult equal = deform(hand.space(), graph, edit(""), "e");
@@ -355,7 +357,8 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
         constraint(1, "proportion", {6, 7}, R"({"measure1": "length", "measure2": "length")" + range(1.12 * ratio, 1.3 * ratio))};
     const DeformResult within = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(within.conflicts.empty());
-    for (const ConstraintReport& one : within.constraints) EXPECT_EQ(one.verdict, Verdict::holds) << one.text;
+    for (const ConstraintReport& constraint_report : within.constraints)
+        EXPECT_EQ(constraint_report.verdict, Verdict::holds) << constraint_report.text;
     EXPECT_NEAR(length(6, within.points), 1.2 * was, 2e-3 * was);
     graph.relationships.pop_back();
     // Of a tape the line changes.
@@ -366,10 +369,10 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
     attribute.name = "way";
     attribute.type = AttributeType::measure;
     attribute.measure.tool = "tape";
-    const auto ends = extremes(tape.made.mesh, finger, {0, 0, 1});
+    const auto ends = extremes(tape.synthetic.mesh, finger, {0, 0, 1});
     attribute.measure.points.assign(ends.begin(), ends.end());
     finger.attributes.push_back(attribute);
-    const double way = evaluate(tape.made.mesh, finger, attribute.measure);
+    const double way = evaluate(tape.synthetic.mesh, finger, attribute.measure);
     graph.relationships[0] = constraint(0, "keep measure", {6},
                                         R"({"measure": "way", "hard": true, "minValue": )" + std::to_string(1.1 * way) +
                                             R"(, "maxValue": )" + std::to_string(1.2 * way) + "}");
@@ -390,7 +393,7 @@ TEST(Deform, TheOtherSideFollowsAMirror) {
     EXPECT_GT(result.constraints[0].before_values[0], 10);
     EXPECT_TRUE(result.acceptable);
     double moved = 0;
-    const auto other = vertices_of(object.made.mesh, *object.set.find(5));
+    const auto other = vertices_of(object.synthetic.mesh, *object.set.find(5));
     for (const Index v : other) moved += (result.points[v].z() - result.edited[v].z()) / static_cast<double>(other.size());
     EXPECT_NEAR(moved, 20, 1);
     // A part that mirrors nothing is refused.
@@ -410,13 +413,14 @@ TEST(Deform, ConstraintsOfTheSolverCanBeUsedByName) {
     EXPECT_LT(*flat.constraints[0].deviations[0].value, flat.constraints[0].before_values[0] / 10);
     const auto faces = object.set.find(7)->faces.size();
     EXPECT_EQ(solve("triangle strain", 7, R"({"minValue": 1, "maxValue": 1})").constraints[0].low_level, faces);
-    EXPECT_EQ(solve("laplacian", 7, "{}").constraints[0].low_level, vertices_of(object.made.mesh, *object.set.find(7)).size());
+    EXPECT_EQ(solve("laplacian", 7, "{}").constraints[0].low_level,
+              vertices_of(object.synthetic.mesh, *object.set.find(7)).size());
     EXPECT_GT(solve("bending", 7, "{}").constraints[0].low_level, faces);
     const auto tilted = solve("orientation", 7, R"({"direction": [0, 0, 1], "hard": true})");
     double low = 1e300, high = -1e300;
-    for (const Index v : vertices_of(object.made.mesh, *object.set.find(7)))
+    for (const Index v : vertices_of(object.synthetic.mesh, *object.set.find(7)))
         low = std::min(low, tilted.points[v].z()), high = std::max(high, tilted.points[v].z());
-    EXPECT_LT(high - low, 1e-3 * box_diagonal(object.made.mesh));
+    EXPECT_LT(high - low, 1e-3 * box_diagonal(object.synthetic.mesh));
     const auto refused = [&](const std::string& type, const std::string& parameters, const std::string& words) {
         graph.relationships = {constraint(0, type, {7}, parameters)};
         EXPECT_NE(error_of(object.bare(), "", graph).find(words), std::string::npos) << error_of(object.bare(), "", graph);
@@ -465,9 +469,9 @@ TEST(Deform, AdjacentPartsStayAdjacent) {
 TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
     // The palm, with fingers, thumb and wrist around it, is made narrower: all of it, and they follow.
     const Hand hand;
-    const double diagonal = box_diagonal(hand.made.mesh);
+    const double diagonal = box_diagonal(hand.synthetic.mesh);
     const auto area = [&](const std::vector<Point>& points) {
-        Mesh mesh = hand.made.mesh;
+        Mesh mesh = hand.synthetic.mesh;
         for (const Vertex v : mesh.vertices()) mesh.point(v) = points[v];
         double sum = 0;
         for (const Index f : hand.set.find(1)->faces) sum += face_area(mesh, Face(f));
@@ -475,7 +479,7 @@ TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
     };
     double width = 0;
     for (const Attribute& attribute : hand.set.find(1)->attributes)
-        if (attribute.name == "width") width = evaluate(hand.made.mesh, *hand.set.find(1), attribute.measure);
+        if (attribute.name == "width") width = evaluate(hand.synthetic.mesh, *hand.set.find(1), attribute.measure);
     ASSERT_GT(width, 0);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {1},
@@ -483,16 +487,16 @@ TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
                                                  R"(, "maxValue": )" + std::to_string(0.92 * width) + "}"));
     const DeformResult result = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(result.acceptable) << result.constraints[0].text;
-    const double share = area(result.points) / area(points_of(hand.made.mesh));
+    const double share = area(result.points) / area(points_of(hand.synthetic.mesh));
     EXPECT_GT(share, 0.92);
     EXPECT_LT(share, 0.98);
-    for (const Vertex v : hand.made.mesh.vertices())
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], hand.made.mesh.point(v))), 0.05 * diagonal);
+    for (const Vertex v : hand.synthetic.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], hand.synthetic.mesh.point(v))), 0.05 * diagonal);
     // As a whole: its height changes like its width.
     graph.relationships[0].constraint.insert(1, R"("mode": "scale", )");
     const DeformResult whole = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(whole.acceptable);
-    EXPECT_NEAR(area(whole.points) / area(points_of(hand.made.mesh)), 0.92 * 0.92, 0.02);
+    EXPECT_NEAR(area(whole.points) / area(points_of(hand.synthetic.mesh)), 0.92 * 0.92, 0.02);
 }
 
 TEST(Deform, ThroughACagePartsStayConnected) {
@@ -504,6 +508,7 @@ TEST(Deform, ThroughACagePartsStayConnected) {
     const DeformResult result = deform(
         object.handles(), graph,
         edit(R"({"select": {"annotation": "left arm"}, "stretch": {"direction": [1, 0, 0], "factor": 1.3}})"), "e", options);
-    for (const Vertex v : object.made.mesh.vertices())
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(object.made.mesh));
+    for (const Vertex v : object.synthetic.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])),
+                  0.5 * box_diagonal(object.synthetic.mesh));
 }

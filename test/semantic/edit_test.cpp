@@ -12,11 +12,12 @@ using namespace ostraka::test;
 
 TEST(Edit, AnEditOfTheWholeCageMovesTheMeshEqually) {
     const Caged& object = teapot();
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     const auto expect = [&](const std::string& operation, auto&& move) {
         const DeformResult result = deform(object.handles(), {}, edit(R"({"select": {"all": true}, )" + operation + "}"), "e");
-        for (const Vertex v : object.made.mesh.vertices())
-            ASSERT_LT((eigen(result.points[v]) - move(eigen(object.made.mesh.point(v)))).norm(), 1e-9 * diagonal) << operation;
+        for (const Vertex v : object.synthetic.mesh.vertices())
+            ASSERT_LT((eigen(result.points[v]) - move(eigen(object.synthetic.mesh.point(v)))).norm(), 1e-9 * diagonal)
+                << operation;
     };
     using V = Eigen::Vector3d;
     expect(R"("translate": [1, 2, 3])", [](const V& p) -> V { return p + V(1, 2, 3); });
@@ -36,13 +37,14 @@ TEST(Edit, SelectsByInfluence) {
     EXPECT_EQ(rows, w.rowwise().maxCoeff().minCoeff());
     EXPECT_EQ(columns, w.colwise().maxCoeff().minCoeff());
     for (Index v = 0; v < 50; ++v) EXPECT_FALSE(influential(object.coordinates, {v}, rows).empty());
-    std::vector<Index> everything(object.made.mesh.number_of_vertices());
+    std::vector<Index> everything(object.synthetic.mesh.number_of_vertices());
     for (Index v = 0; v < everything.size(); ++v) everything[v] = v;
     EXPECT_EQ(influential(object.coordinates, everything, columns).size(), object.cage.number_of_vertices());
     // A part's own handles move it more than the rest.
     const auto states = follow_edit(edit(R"({"select": {"annotation": "spout", "threshold": 0.2}, "translate": [0, 0, 5]})"),
                                     object.handles(), "e");
-    EXPECT_EQ(states.front().selected, influential(object.coordinates, vertices_of(object.made.mesh, *object.set.find(5)), 0.2));
+    EXPECT_EQ(states.front().selected,
+              influential(object.coordinates, vertices_of(object.synthetic.mesh, *object.set.find(5)), 0.2));
     EXPECT_NE(error_of(object.handles(), R"({"select": {"annotation": "spout", "threshold": 2}, "translate": [0, 0, 5]})")
                   .find("the largest is"),
               std::string::npos);
@@ -55,7 +57,7 @@ TEST(Edit, StepsFollowEachOther) {
         {"select": {"vertices": [3]}, "moveTo": [[7, 8, 9]]})"),
                                     object.bare(), "e");
     ASSERT_EQ(states.size(), 3U);
-    const Point p = object.made.mesh.point(Vertex(4));
+    const Point p = object.synthetic.mesh.point(Vertex(4));
     EXPECT_EQ(states[0].handles[4], Point(p.x() + 1, p.y(), p.z()));
     EXPECT_EQ(states[1].handles[4], Point(p.x() + 1, p.y() + 1, p.z()));
     EXPECT_EQ(states[2].handles[3], Point(7, 8, 9));
@@ -98,13 +100,13 @@ struct Nested {
         while (whole.set.annotations[spout].tag != "spout") ++spout;
         CageOptions options;
         options.vertices = 40;
-        const auto parts = make_part_cages(whole.made.mesh, whole.set, {spout}, options, {}, "graph");
+        const auto parts = make_part_cages(whole.synthetic.mesh, whole.set, {spout}, options, {}, "graph");
         EXPECT_TRUE(parts[0].check.valid());
         cage = together({&whole.cage, &parts[0].made.cage});
-        coordinates = compute_coordinates("mean-value", cage, whole.made.mesh);
+        coordinates = compute_coordinates("mean-value", cage, whole.synthetic.mesh);
         levels = cage_levels(cage);
     }
-    [[nodiscard]] HandleSpace handles() const { return {whole.made.mesh, whole.set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace handles() const { return {whole.synthetic.mesh, whole.set, &cage, &coordinates}; }
     [[nodiscard]] std::vector<EditState> follow(const std::string& steps) const {
         return follow_edit(edit(steps), handles(), "e");
     }
@@ -138,8 +140,8 @@ TEST(NestedEdit, InnerCagesFollowOuterCages) {
     const auto states = n.follow(R"({"select": {"all": true, "level": 0}, "translate": [5, 0, 0]},
         {"select": {"all": true, "level": 1}, "translate": [0, 7, 0]})");
     const std::vector<Point> first = deformed(n.coordinates, n.cage, states[0].handles);
-    for (const Vertex v : n.whole.made.mesh.vertices())
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.made.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
+    for (const Vertex v : n.whole.synthetic.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.synthetic.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
     for (const Vertex v : n.cage.vertices())
         ASSERT_LT(std::sqrt(CGAL::squared_distance(states[0].handles[v], n.cage.point(v) + Vector(5, 0, 0))), 1e-9);
     // Both levels in one edit; what is carried does not count as touched.
@@ -206,8 +208,8 @@ TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
     const Nested& n = nested();
     RelationGraph graph;
     int spout = 0;
-    for (const Annotation& one : n.whole.set.annotations)
-        if (one.tag == "spout") spout = one.id;
+    for (const Annotation& annotation : n.whole.set.annotations)
+        if (annotation.tag == "spout") spout = annotation.id;
     graph.relationships.push_back(constraint(1, "keep direction", {spout}, "{}"));
     DeformOptions options;
     options.space = DeformOptions::Space::cage;

@@ -21,7 +21,7 @@ double farthest(const std::vector<Point>& a, const std::vector<Point>& b) {
 
 /// The handles that an annotation means.
 std::vector<Index> handles_of(const Caged& object, int annotation) {
-    const std::vector<Index> rows = vertices_of(object.made.mesh, *object.set.find(annotation));
+    const std::vector<Index> rows = vertices_of(object.synthetic.mesh, *object.set.find(annotation));
     return influential(object.coordinates, rows, influence_threshold(object.coordinates.vertex, "auto-mesh", rows));
 }
 
@@ -43,7 +43,7 @@ TEST(LiveDeformation, WithoutConstraintsIsTheEdit) {
     for (const Index h : handles) places.push_back(live.cage()[h] + Vector(1, 2, 3));
     const auto shape = deformed(object.coordinates, object.cage, live.follow(places));
     const auto step = edit(R"({"select": {"cageVertices": [)" + numbers(handles) + R"(]}, "translate": [1, 2, 3]})");
-    EXPECT_LT(farthest(shape, deform(object.handles(), {}, step, "e").points), 1e-9 * box_diagonal(object.made.mesh));
+    EXPECT_LT(farthest(shape, deform(object.handles(), {}, step, "e").points), 1e-9 * box_diagonal(object.synthetic.mesh));
 }
 
 TEST(LiveDeformation, ConvergesToTheExactSolution) {
@@ -57,7 +57,7 @@ TEST(LiveDeformation, ConvergesToTheExactSolution) {
     options.conflicts = 0;
     LiveDeformation live(object.handles(), graph, edit(""), handles, options);
     ASSERT_TRUE(live.has_constraints());
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     const Vector way(0.02 * diagonal, 0, 0.05 * diagonal);
     std::vector<Point> start, places;
     for (const Index h : handles) start.push_back(live.cage()[h]);

@@ -50,11 +50,11 @@ TEST(Parts, AreInvariantUnderPositionAndSize) {
         motion.translation = scale * Eigen::Vector3d(1000, 2000, -500);
         const auto original =
                        part_quantities(template_tower.known(), points_in(member_of(template_tower, "a", 1, 0.8, 1.1).mesh)),
-                   there = part_quantities(template_tower.known(),
+                   moved = part_quantities(template_tower.known(),
                                            points_in(member_of(template_tower, "a", 1, 0.8, 1.1, motion).mesh));
-        ASSERT_EQ(original.size(), there.size());
+        ASSERT_EQ(original.size(), moved.size());
         for (std::size_t i = 0; i < original.size(); ++i)
-            EXPECT_NEAR(*original[i].value, *there[i].value, 1e-8) << original[i].text();
+            EXPECT_NEAR(*original[i].value, *moved[i].value, 1e-8) << original[i].text();
     }
 }
 

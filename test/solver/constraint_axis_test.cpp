@@ -57,27 +57,27 @@ TEST(Constraint, AxesRotateByTheMinimumAngle) {
         Points rest = random_points(30, 6);
         rest.colwise() -= rest.rowwise().mean().eval();
         rest = size.asDiagonal() * rest;
-        for (const Vector3d& own : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
+        for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
             for (int place = 0; place < 4; ++place) {
                 Matrix3d rotation = some_rotation();
-                if (place == 1) rotation = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
-                if (place == 2) rotation = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
+                if (place == 1) rotation = Eigen::Quaterniond::FromTwoVectors(axis, d).toRotationMatrix();
+                if (place == 2) rotation = Eigen::Quaterniond::FromTwoVectors(axis, d.unitOrthogonal()).toRotationMatrix();
                 if (place == 3)
-                    rotation = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
+                    rotation = Eigen::Quaterniond::FromTwoVectors(axis, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
                 const Points rows = rotation * rest;
                 for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
-                    const auto c = make_constraint(kinds::AxisDirection{d, {wanted, wanted}, own}, first_ids(30), 1, rest);
+                    const auto c = make_constraint(kinds::AxisDirection{d, {wanted, wanted}, axis}, first_ids(30), 1, rest);
                     const Outcome o = outcome(*c, rows);
-                    const std::string what = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
+                    const std::string name = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
                                              " angle " + std::to_string(wanted);
-                    const Matrix3d found = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
-                    ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
-                    const double angle_there = angle(found * rotation * own, d);
-                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
-                    const double minimum = min_by_trying(rows, rotation * own, d, wanted),
+                    const Matrix3d best = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
+                    ASSERT_LT((best * rows - o.projected).norm(), 1e-10) << name;
+                    const double angle_there = angle(best * rotation * axis, d);
+                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << name;
+                    const double minimum = min_by_trying(rows, rotation * axis, d, wanted),
                                  reached = (o.rows - o.projected).squaredNorm();
-                    ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << what;
-                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;
+                    ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << name;
+                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << name;
                 }
             }
     }

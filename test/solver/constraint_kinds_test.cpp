@@ -30,8 +30,8 @@ double angle_of_axis(const Example& e, const kinds::AxisDirection& kind, const P
     Vector3d axis = Eigen::JacobiSVD<Eigen::MatrixXd>(shape, Eigen::ComputeFullU).matrixU().col(0);
     if (kind.rest_direction) axis = *kind.rest_direction;
     const Matrix3d carried = Eigen::umeyama(shape, now, false).topLeftCorner<3, 3>();
-    const double found = angle(carried * axis, kind.direction);
-    return std::min(found, std::numbers::pi - found);
+    const double deviation = angle(carried * axis, kind.direction);
+    return std::min(deviation, std::numbers::pi - deviation);
 }
 
 double length(const Points& p, Eigen::Index a, Eigen::Index b) { return (p.col(b) - p.col(a)).norm(); }

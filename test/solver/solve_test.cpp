@@ -276,7 +276,7 @@ TEST(MeshSpace, SolversOfSeveralThreadsDoNotDisturbEachOther) {
             set_threads(1);
             for (int lap = 0; lap < 5; ++lap) wrong += solved() != alone ? 1 : 0;
         });
-    for (std::thread& one : threads) one.join();
+    for (std::thread& thread : threads) thread.join();
     EXPECT_EQ(wrong, 0);
 }
 
@@ -410,14 +410,14 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
     solver.solve(warm, steps(2));
     // A few rows, another few, back, many, none, again: each time as if made anew.
     List now = mixed(n, rest);
-    const auto expect_same = [&](const std::string& what, int updated) {
+    const auto expect_same = [&](const std::string& name, int updated) {
         List copy = mixed(n, rest);
         for (std::size_t i = 0; i < copy.size(); ++i) copy[i]->set_weight(now[i]->weight());
         MeshSpaceSolver fresh(std::move(copy), rest);
         Points a = rest, b = rest;
         fresh.solve(a, steps(6));
-        EXPECT_EQ(solver.solve(b, steps(6)).updated_rows, updated) << what;
-        EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9) << what;
+        EXPECT_EQ(solver.solve(b, steps(6)).updated_rows, updated) << name;
+        EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9) << name;
     };
     const auto set = [&](std::size_t i, double w) {
         solver.set_weight(i, w);

@@ -177,11 +177,11 @@ TEST(CrossValidation, EverySampleIsTestedOncePerRepeatAndNeverTrainedOn) {
 Learner by_threshold(const std::vector<double>& values, const std::vector<bool>& truth) {
     return [&](const std::vector<std::size_t>& training, const std::vector<std::size_t>& test) {
         std::vector<double> v;
-        std::vector<bool> t, said;
+        std::vector<bool> t, answers;
         for (const std::size_t i : training) v.push_back(values[i]), t.push_back(truth[i]);
         const Threshold threshold = best_threshold(v, t);
-        for (const std::size_t i : test) said.push_back(threshold.positive(values[i]));
-        return said;
+        for (const std::size_t i : test) answers.push_back(threshold.positive(values[i]));
+        return answers;
     };
 }
 

@@ -83,9 +83,9 @@ TEST(Heads, WearErodesTheNoseInProportion) {
         const HeadCast worn = cast_head(archetype(3), options);
         EXPECT_GE(worn.wear, wear / 2);
         EXPECT_LE(worn.wear, wear);
-        const double taken = distance(worn, fresh, HeadPart::nose);
-        EXPECT_GT(taken, 1.5 * last);
-        last = taken;
+        const double erosion = distance(worn, fresh, HeadPart::nose);
+        EXPECT_GT(erosion, 1.5 * last);
+        last = erosion;
     }
 }
 

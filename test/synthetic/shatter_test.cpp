@@ -164,9 +164,9 @@ TEST(Shatter, NeedsAnInside) {
     open.triangles.pop_back();
     EXPECT_THROW((void)shatter(build_mesh(open), {}), Error);
     EXPECT_THROW((void)shatter(Mesh(), {}), Error);
-    ShatterOptions one;
-    one.pieces = 1;
-    EXPECT_EQ(shatter(build_mesh(test::octahedron_sphere(2)), one).size(), 1U);
+    ShatterOptions options;
+    options.pieces = 1;
+    EXPECT_EQ(shatter(build_mesh(test::octahedron_sphere(2)), options).size(), 1U);
 }
 
 TEST(Shatter, ABodyThatCrossesItselfIsRefusedAsAnErrorOrBroken) {

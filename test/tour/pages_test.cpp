@@ -17,10 +17,10 @@ std::vector<Path> pages() {
 
 /// What the first group of the pattern matches in the text.
 std::vector<std::string> all_matches(const std::string& text, const std::string& pattern) {
-    std::vector<std::string> found;
+    std::vector<std::string> matches;
     const std::regex expression(pattern);
-    for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) found.push_back((*i)[1].str());
-    return found;
+    for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) matches.push_back((*i)[1].str());
+    return matches;
 }
 
 TEST(Pages, LinksResolve) {

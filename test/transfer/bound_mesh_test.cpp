@@ -82,8 +82,9 @@ TEST(BoundMesh, SmallAnnotationsDegenerateWithANote) {
     MeshFile file = labelled_ball();
     AnnotationSet set;
     for (int i = 0; i < 60; ++i) {
-        Annotation& one = set.annotations.emplace_back();
-        one.id = i, one.tag = "face " + std::to_string(i), one.type = AnnotationType::region, one.faces = {Index(i * 30)};
+        Annotation& annotation = set.annotations.emplace_back();
+        annotation.id = i, annotation.tag = "face " + std::to_string(i), annotation.type = AnnotationType::region,
+        annotation.faces = {Index(i * 30)};
     }
     BoundMesh bound(std::move(file), set);
     SimplifyOptions few;

@@ -60,16 +60,16 @@ TEST(CurveLoops, BacktrackingIsRemoved) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     const auto at = [&](double x, double y) { return Point(x * side, y * side, 0); };
-    auto there = drawn(mesh, {at(2.1, 5.3), at(9.4, 5.3)});
+    auto straight = drawn(mesh, {at(2.1, 5.3), at(9.4, 5.3)});
     const auto aside = drawn(mesh, {at(9.4, 5.3), at(9.4, 7.8)});
-    auto places = there;
+    auto places = straight;
     places.insert(places.end(), aside.begin() + 1, aside.end());
     places.insert(places.end(), aside.rbegin() + 1, aside.rend());
     const auto on = drawn(mesh, {at(9.4, 5.3), at(12.2, 5.3)});
     places.insert(places.end(), on.begin() + 1, on.end());
-    there.insert(there.end(), on.begin() + 1, on.end());
-    EXPECT_EQ(without_small_loops(mesh, places, side, false), there);
-    EXPECT_EQ(without_small_loops(mesh, there, side, false), there);
+    straight.insert(straight.end(), on.begin() + 1, on.end());
+    EXPECT_EQ(without_small_loops(mesh, places, side, false), straight);
+    EXPECT_EQ(without_small_loops(mesh, straight, side, false), straight);
 }
 
 TEST(CurveLoops, AClosedCurveStaysClosedWhereverTheLoopIs) {
@@ -86,9 +86,9 @@ TEST(CurveLoops, AClosedCurveStaysClosedWhereverTheLoopIs) {
     EXPECT_EQ(without_small_loops(mesh, overshot, side, false).front(), overshot.front());
     // Nothing but a small closed curve is itself no loop of another.
     const auto small = drawn(mesh, {at(4.2, 4.3), at(4.8, 4.3), at(4.5, 4.8), at(4.2, 4.3)});
-    const auto kept = without_small_loops(mesh, small, side, true);
-    EXPECT_EQ(kept.front(), kept.back());
-    EXPECT_NEAR(length(mesh, kept), length(mesh, small), 1e-12);
+    const auto cleaned = without_small_loops(mesh, small, side, true);
+    EXPECT_EQ(cleaned.front(), cleaned.back());
+    EXPECT_NEAR(length(mesh, cleaned), length(mesh, small), 1e-12);
 }
 
 TEST(CurveLoops, SmallPartsAndHolesAreRemovedUntilTheNumberOfOutlinesMatches) {

@@ -90,13 +90,14 @@ TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     const Json report = parse_json(result.out, "report");
     EXPECT_NEAR(report["result"]["registration"]["scale"].GetDouble(), 0.001, 1e-6);
     EXPECT_GT(report["result"]["annotations"][0]["overlap"].GetDouble(), 0.95);
-    const AnnotationSet there = read_annotations(at("o.ant.json"), target), back = read_annotations(at("b.ant.json"), hand.mesh);
-    EXPECT_EQ(there.unit, "m");
-    ASSERT_TRUE(there.up);
-    EXPECT_NEAR((*there.up)[1], 1, 1e-3);
-    const Descriptor& area = there.annotations[0].attributes[0].descriptor;
+    const AnnotationSet transferred = read_annotations(at("o.ant.json"), target),
+                        back = read_annotations(at("b.ant.json"), hand.mesh);
+    EXPECT_EQ(transferred.unit, "m");
+    ASSERT_TRUE(transferred.up);
+    EXPECT_NEAR((*transferred.up)[1], 1, 1e-3);
+    const Descriptor& area = transferred.annotations[0].attributes[0].descriptor;
     EXPECT_EQ(area.unit, "m^2");
-    EXPECT_NEAR(area.values[0], area_of(target, there.annotations[0].faces), 1e-12);
+    EXPECT_NEAR(area.values[0], area_of(target, transferred.annotations[0].faces), 1e-12);
     EXPECT_EQ(back.unit, "mm");
     EXPECT_NEAR((*back.up)[2], 1, 1e-9);
     EXPECT_EQ(back.annotations[0].attributes[0].descriptor.unit, "mm^2");

@@ -21,10 +21,10 @@ Vocabulary parts() {
 AnnotationSet tagged(const std::vector<std::string>& tags) {
     AnnotationSet set;
     for (std::size_t i = 0; i < tags.size(); ++i) {
-        Annotation one;
-        one.id = static_cast<int>(10 + i);
-        one.tag = tags[i];
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = static_cast<int>(10 + i);
+        annotation.tag = tags[i];
+        set.annotations.push_back(annotation);
     }
     return set;
 }

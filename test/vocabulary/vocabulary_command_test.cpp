@@ -98,7 +98,7 @@ TEST(VocabularyCommand, ApplyRefusesAnUnknownTag) {
     EXPECT_EQ(apply("Naso", scratch.file("bad.vocabulary.json", "{}").string()).code, 1);
     EXPECT_EQ(read_file(output), "earlier");
     EXPECT_EQ(apply("Naso", output).code, 2) << "an output that is an input";
-    const auto taken = apply("Naso", words);
-    EXPECT_EQ(taken.code, 0) << taken.err;
+    const auto accepted = apply("Naso", words);
+    EXPECT_EQ(accepted.code, 0) << accepted.err;
     EXPECT_TRUE(holds(read_file(output), "terracotta.vocabulary.json")) << "provenance";
 }

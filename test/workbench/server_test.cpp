@@ -183,7 +183,7 @@ TEST(WorkbenchServer, ServesThePageToClientsWithTheToken) {
 TEST(WorkbenchServer, SetsAndAcceptsNoCookie) {
     // Browsers send the cookies of one port of a machine to every other port of it.
     const Served served;
-    const std::string token = served.server->token(), own = "http://" + served.host();
+    const std::string token = served.server->token(), origin = "http://" + served.host();
     const std::string cookie =
         "Cookie: token=" + token + "; ostraka-" + std::to_string(served.server->port()) + "=" + token + "\r\n";
     Wire wire(served.server->port());
@@ -192,7 +192,7 @@ TEST(WorkbenchServer, SetsAndAcceptsNoCookie) {
     EXPECT_EQ(head.find("ookie"), std::string::npos) << head;
     EXPECT_EQ(head.find(token), std::string::npos) << head;
     EXPECT_EQ(ask(served, get(served, "/", cookie)), 403);
-    std::string talk = upgrade(served, own, "");
+    std::string talk = upgrade(served, origin, "");
     talk.insert(talk.size() - 2, cookie);
     EXPECT_EQ(ask(served, talk), 403);
 }
@@ -213,7 +213,7 @@ TEST(WorkbenchServer, RunsOnlyTheScriptOfItsPage) {
 
 TEST(WorkbenchServer, RefusesUnauthorisedClients) {
     const Served served;
-    const std::string token = served.server->token(), own = "http://" + served.host();
+    const std::string token = served.server->token(), origin = "http://" + served.host();
     const auto page_of = [&](const std::string& more = {}, const std::string& host = {}) {
         return get(served, "/?token=" + token, more, host);
     };
@@ -233,8 +233,8 @@ TEST(WorkbenchServer, RefusesUnauthorisedClients) {
         {page_of("Origin: http://evil.example\r\n"), 403},
         {page_of("Origin: null\r\n"), 403},
         {page_of("Origin: https://" + served.host() + "\r\n"), 403},
-        {page_of("Origin: " + own + ".evil.example\r\n"), 403},
-        {page_of("Origin: " + own + "\r\n"), 200},
+        {page_of("Origin: " + origin + ".evil.example\r\n"), 403},
+        {page_of("Origin: " + origin + "\r\n"), 200},
         {get(served, "/../etc/passwd?token=" + token), 400},
         {get(served, "/%2e%2e/etc/passwd?token=" + token), 400},
         {get(served, "/..%2fetc/passwd?token=" + token), 400},
@@ -249,8 +249,8 @@ TEST(WorkbenchServer, RefusesUnauthorisedClients) {
         {"GET\r\n\r\n", 400},
         {upgrade(served, "", token), 403},
         {upgrade(served, "http://evil.example", token), 403},
-        {upgrade(served, own, std::string(64, 'f')), 403},
-        {upgrade(served, own, token), 101},
+        {upgrade(served, origin, std::string(64, 'f')), 403},
+        {upgrade(served, origin, token), 101},
     };
     for (const auto& [request, expected] : tried) {
         Wire wire(served.server->port());
@@ -432,18 +432,18 @@ TEST(WorkbenchServer, ReportsTheFirstPageOnce) {
     Scratch scratch;
     Workbench workbench(scratch / "session", scratch.path());
     WorkbenchServer server(workbench);
-    std::atomic<int> told = 0;
-    server.on_first_page = [&] { ++told; };
+    std::atomic<int> notifications = 0;
+    server.on_first_page = [&] { ++notifications; };
     std::thread thread([&] { server.run(); });
-    const std::string own = "127.0.0.1:" + std::to_string(server.port());
+    const std::string host = "127.0.0.1:" + std::to_string(server.port());
     for (int i = 0; i < 3; ++i) {
         Wire wire(server.port());
-        wire.send("GET /messages?token=" + server.token() + " HTTP/1.1\r\nHost: " + own + "\r\nOrigin: http://" + own +
+        wire.send("GET /messages?token=" + server.token() + " HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
                   "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
                   "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
         EXPECT_EQ(status(wire.receive(12)), 101);
     }
     server.stop();
     thread.join();
-    EXPECT_EQ(told, 1);
+    EXPECT_EQ(notifications, 1);
 }

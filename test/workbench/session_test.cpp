@@ -259,7 +259,7 @@ TEST(Session, IsRefusedIfItsPathsLeaveTheFolders) {
     write_file(outside / "secret.txt", "secret");
     std::filesystem::create_directory(outside / "s001");
     write_file(outside / "s001/kept.txt", "kept");
-    const auto refused = [&](const std::string& what, const std::function<void(const Path&, std::string&)>& change) {
+    const auto refused = [&](const std::string& name, const std::function<void(const Path&, std::string&)>& change) {
         Bench bench;
         bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
         bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -271,13 +271,13 @@ TEST(Session, IsRefusedIfItsPathsLeaveTheFolders) {
         write_file(folder / "session.json", text);
         try {
             bench.start();
-            ADD_FAILURE() << what;
+            ADD_FAILURE() << name;
         } catch (const Error& error) {
-            EXPECT_FALSE(error.where().empty()) << what;
-            EXPECT_FALSE(error.remedy().empty()) << what;
+            EXPECT_FALSE(error.where().empty()) << name;
+            EXPECT_FALSE(error.remedy().empty()) << name;
         }
-        EXPECT_TRUE(file_exists(outside / "secret.txt")) << what;
-        EXPECT_EQ(read_file(outside / "s001/kept.txt"), "kept") << what;
+        EXPECT_TRUE(file_exists(outside / "secret.txt")) << name;
+        EXPECT_EQ(read_file(outside / "s001/kept.txt"), "kept") << name;
     };
     const auto replaced = [](std::string& text, const std::string& old, const std::string& by) {
         ASSERT_NE(text.find(old), std::string::npos) << old;

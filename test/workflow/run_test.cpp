@@ -170,14 +170,14 @@ TEST(RunStudy, KillLosesOnlyTheRunningStep) {
         const Path out = scratch / signal;
         run_command("run " + file.string() + " --threads 1 --quiet --output " + out.string(),
                     std::string("timeout --foreground -s ") + signal + " 1.5");
-        std::size_t kept = 0;
+        std::size_t record_count = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(out))
-            kept += entry.path().filename() == "record.json" ? 1 : 0;
+            record_count += entry.path().filename() == "record.json" ? 1 : 0;
         const auto resumed = run_command("run " + file.string() + " --json --output " + out.string());
         ASSERT_EQ(resumed.code, 0) << resumed.err;
         const Json report = parse_json(resumed.out, "report");
-        EXPECT_EQ(report["result"]["unchanged"].GetUint64(), kept) << signal;
-        EXPECT_EQ(report["result"]["done"].GetUint64(), 12 - kept) << signal;
+        EXPECT_EQ(report["result"]["unchanged"].GetUint64(), record_count) << signal;
+        EXPECT_EQ(report["result"]["done"].GetUint64(), 12 - record_count) << signal;
     }
     EXPECT_EQ(files_of(scratch / "KILL"), files_of(scratch / "INT"));
 }
