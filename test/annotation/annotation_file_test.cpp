@@ -135,8 +135,8 @@ TEST(AnnotationFile, TheThesisFormatIsReadExactly) {
     EXPECT_EQ(set.annotations[0].attributes[3].measure.direction, (std::array<double, 3>{0, 1.5, 0}));
     EXPECT_EQ(set.annotations[1].polylines, (std::vector<std::vector<Index>>{{0, 1, 2}, {4, 5}}));
     EXPECT_EQ(set.annotations[2].points, std::vector<Index>{15});
-    ASSERT_EQ(set.notes.size(), 1U);  // it does not say which mesh it is for
-    // What is written of it holds the same members.
+    ASSERT_EQ(set.notes.size(), 1U);  // it does not identify its mesh
+    // The written file has the same members.
     const Json out = annotations_to_json(set, mesh, "m.ply", {});
     const JsonValue& region = out["annotations"][0];
     for (const char* member : {"id", "tag", "colour", "attributes", "type", "boundaries"})

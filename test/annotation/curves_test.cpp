@@ -18,7 +18,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The closed curve through the nearest places of points, counter-clockwise seen from outside.
+/// The closed curve through the nearest surface points of given points, counter-clockwise seen from outside.
 std::vector<SurfacePoint> drawn(const Mesh& mesh, const SurfaceSearch& search, const std::vector<Point>& points) {
     std::vector<SurfacePoint> places;
     const auto node_of = [&](const Point& p) {
@@ -38,7 +38,7 @@ std::vector<SurfacePoint> drawn(const Mesh& mesh, const SurfaceSearch& search, c
     return places;
 }
 
-/// A circle on the unit sphere at an angle from an axis that is none of the mesh's.
+/// A circle on the unit sphere at an angle from an axis not aligned with the mesh.
 std::vector<Point> circle(double angle, int n, const Point& centre = Point(0, 0, 0)) {
     const Vector axis(0.36, 0.48, 0.8), u(0.8, -0.6, 0), v = CGAL::cross_product(axis, u);
     std::vector<Point> points;
@@ -123,7 +123,7 @@ TEST(FreeOutline, CutAndBroughtBackIsTheIdentity) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const SurfaceSearch search(mesh);
     AnnotationSet set;
-    // Two that overlap, one inside a single face, and a plain one.
+    // Two overlapping annotations, one inside a single face, and one along edges.
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(0.7, 200))}));
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(1.2, 150))}));
     const auto corner = corners(mesh, Face(77));
@@ -226,7 +226,7 @@ TEST(FreeOutline, InvalidCurvesAreRefused) {
     for (SurfacePoint& place : outside)
         if (place.is_on_edge()) place.weights = {-0.5, 1.5, 0};
     refused(outside, "not within the edge");
-    // Its elements are kept from saying something else.
+    // Contradictory elements are corrected.
     AnnotationSet set;
     set.annotations.push_back(region(mesh, {good}));
     set.annotations.front().faces.pop_back();
@@ -234,7 +234,7 @@ TEST(FreeOutline, InvalidCurvesAreRefused) {
 }
 
 TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
-    // A square of two triangles a cell; a curve across it from border to border.
+    // A square with two triangles per cell; a curve across it from border to border.
     TriangleSoup soup;
     const int n = 8;
     for (int j = 0; j <= n; ++j)

@@ -1,4 +1,4 @@
-// Outlines in steps made fair.
+// Fairing of stepped outlines.
 #include "ostraka/annotation/fair_outlines.h"
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
@@ -15,7 +15,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// The sphere parted into a cap around an axis that is none of the mesh's, a band and the rest, by the faces' centroids.
+/// The sphere divided into a cap around an axis not aligned with the mesh, a band and the rest, by the faces' centroids.
 AnnotationSet parted(const Mesh& mesh) {
     const Vector axis(0.36, 0.48, 0.8);
     AnnotationSet set;

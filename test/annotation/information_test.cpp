@@ -1,4 +1,4 @@
-// What annotations refer to: texts, links, images, files.
+// Information of annotations: texts, links, images, files.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"

@@ -43,7 +43,7 @@ TEST(Labels, ReadAndWritten) {
     write_labels(scratch / "a.seg", labels);
     EXPECT_EQ(read_labels(scratch / "a.seg", 4), labels);
     EXPECT_EQ(read_labels(scratch.file("b.seg", "1\r\n 2 \n\n\n"), 2), (std::vector<std::int32_t>{1, 2}));
-    // One label a polygon: each triangle takes its polygon's.
+    // One label per polygon: each triangle has its polygon's label.
     EXPECT_EQ(read_labels(scratch.file("c.seg", "5\n6\n"), 3, {0, 0, 1}), (std::vector<std::int32_t>{5, 5, 6}));
     EXPECT_EQ(read_labels(scratch.file("d.seg", "5\n6\n7\n"), 3, {0, 0, 1}), (std::vector<std::int32_t>{5, 6, 7}));
     const auto fails = [&](const std::string& text, const std::string& expected) {
@@ -96,7 +96,7 @@ TEST(Colouring, NeighboursDifferAndTheWholeIsNeutral) {
         }
     const AnnotationSet single_label = regions_from_labels(mesh, std::vector<std::int32_t>(labels.size(), 7));
     EXPECT_EQ(single_label.annotations[0].colour, neutral_colour);
-    // What joins takes the first colour that is free.
+    // An added annotation gets the first unused colour.
     for (std::size_t f = 0; f < labels.size(); ++f) labels[f] = f < 1 ? 0 : f < 30 ? 1 : 2;
     AnnotationSet two = regions_from_labels(mesh, labels);
     two.annotations.erase(two.annotations.begin() + 1);

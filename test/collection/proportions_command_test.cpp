@@ -113,7 +113,7 @@ TEST(StudyProportionsCommand, FindsPlantedProportionsOfAnnotatedMeshes) {
     for (const char* name : {"table-3-1.md", "table-3-1.csv", "table-3-1.tex", "ratios.md", "values.csv", "variation.svg",
                              "deviations.svg", "measures.svg"})
         EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / name)) << name;
-    // The values are those of the table the boxes were made of, and the table by itself gives the same.
+    // The values are those of the table from which the boxes were made, and the table alone gives the same result.
     const auto from_table = run_command("study proportions " + quoted(boxes.scratch / "out" / "values.csv") + " --output " +
                                         quoted(boxes.scratch / "other") + " --permutations 999 --json");
     ASSERT_EQ(from_table.code, 0) << from_table.err;

@@ -35,7 +35,7 @@ Fragment fragment_of(const SyntheticSherd& sherd, const std::string& name, const
     return fragment;
 }
 
-/// Three sherds of a pot, side by side, and the two halves of a bar, each anywhere.
+/// Three adjacent sherds of a pot, and the two halves of a bar, each in a random pose.
 struct Mixture {
     std::vector<Fragment> fragments;
     std::vector<Motion> motions;
@@ -223,7 +223,7 @@ TEST(SuspiciousFragments, WallThicknessRevealsAnotherUnitWhereSizesAreSimilar) {
     const auto suspicious = scaled(6.5 * equal);
     ASSERT_EQ(suspicious.size(), 1u);
     EXPECT_NE(suspicious[0].text.find("in another unit"), std::string::npos) << suspicious[0].text;
-    // As much larger with a wall as thick: no other unit.
+    // Larger by the same factor with the same wall thickness: not another unit.
     for (Facet& facet : two[0].facets) facet = Facet::outer;
     EXPECT_TRUE(scaled(6.5 * equal).empty()) << "no wall thickness to compare";
 }

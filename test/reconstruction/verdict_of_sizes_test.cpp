@@ -1,4 +1,4 @@
-// What the sizes and landmarks of fragments say where these depend on posture.
+// Verdicts from sizes and landmarks of fragments if these depend on posture.
 #include "../../src/reconstruction/reconstruction_verdict.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Reconstruction judged(const std::vector<std::vector<LandmarkPair>>& pairs, doubl
     Reconstruction result;
     result.placement = place_by_landmarks(pairs);
     ReconstructOptions options;
-    options.residual = residual;  // of 10: sizes alone are asked
+    options.residual = residual;  // of 10: only sizes are tested
     judge_reconstruction(result, pairs, {}, options);
     return result;
 }
@@ -46,7 +46,7 @@ TEST(VerdictOfSizes, PostureIsNotAnotherSize) {
 }
 
 TEST(VerdictOfSizes, AFragmentPlacedByItsShapeHasTheSizeOfTheOthers) {
-    // Its two landmarks are a fifth farther apart than the template's: one distance says nothing of a size.
+    // Its two landmarks are a fifth farther apart than the template's: one distance does not determine a size.
     auto two = bent(0, 1.2);
     two.resize(2);
     const std::vector<std::vector<LandmarkPair>> pairs{bent(0, 1), two};
@@ -86,7 +86,7 @@ TEST(VerdictOfLandmarks, AnotherShapeIsDetected) {
     EXPECT_EQ(other.verdict, Compatibility::incompatible);
     EXPECT_TRUE(std::any_of(other.objections.begin(), other.objections.end(),
                             [](const Objection& objection) { return objection.kind == ObjectionKind::landmarks; }));
-    // Of three landmarks nothing says that they belong to parts that move against each other.
+    // Three landmarks do not show whether they belong to parts that move relative to each other.
     std::vector<LandmarkPair> few = bent(1.2, 1);
     few.erase(few.begin() + 1, few.begin() + 5);
     few.erase(few.begin() + 3, few.end());

@@ -17,7 +17,7 @@ struct Cloud {
     std::vector<Vector3d> places, normals;
 };
 
-/// A piece of a surface given by two parameters, its normals by differences.
+/// A piece of a parametric surface, with normals from finite differences.
 Cloud cloud(const std::function<Vector3d(double, double)>& surface) {
     Cloud c;
     for (int i = 0; i < 20; ++i)
@@ -35,7 +35,7 @@ Vector3d on_sphere(double u, double v) {
     return 3 * Vector3d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
 }
 
-/// Moved, so that nothing stands in the axes.
+/// Moved, so that nothing is aligned with the axes.
 Motion tilted(double size) {
     Motion motion;
     motion.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();

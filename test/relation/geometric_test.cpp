@@ -1,4 +1,4 @@
-// Relationships that are planted in synthetic objects are found at every noise, and what is false is not.
+// Relationships planted in synthetic objects are found at every noise level, and false ones are not.
 #include "ostraka/relation/geometric.h"
 
 #include "meshes.h"
@@ -93,7 +93,7 @@ Relationship stated(const std::string& type, std::vector<int> members, const std
     return relationship;
 }
 
-/// Vertices moved along their normals, Gaussian with the given share of the diagonal as its deviation.
+/// Vertices moved along their normals, Gaussian with the given share of the diagonal as standard deviation.
 void add_noise(Mesh& mesh, double share, unsigned seed = 11) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, share * box_diagonal(mesh));
@@ -150,7 +150,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
         return std::any_of(graph.relationships.begin(), graph.relationships.end(),
                            [&](const auto& r) { return r.type == type && r.annotations == members; });
     };
-    // Whatever else is on their level: the five flowers are in one group.
+    // The five flowers are in one group, possibly with other parts on their level.
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     EXPECT_TRUE(std::any_of(graph.relationships.begin(), graph.relationships.end(), [&](const auto& r) {
         return r.type == "same level" &&
@@ -158,9 +158,9 @@ TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
     }));
     EXPECT_TRUE(has("co-axiality", {1, 2}));
     EXPECT_FALSE(has("mirror symmetry", {5, 6}));
-    // What is extracted holds when it is checked.
+    // Extracted relationships hold when checked.
     for (const auto& check : check_relations(object.mesh, set, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
-    // Types alone.
+    // Selected types only.
     for (const auto& relationship : meter.extract({"same level"}, 0)) EXPECT_EQ(relationship.type, "same level");
 }
 
@@ -221,7 +221,7 @@ TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {
         EXPECT_NEAR(*bad.parameters.deviations[0].value, 0.18 * 180 / M_PI, 0.3 + 400 * noise);
         EXPECT_EQ(meter.measure(stated("parallel axes", {0, 1})).verdict, Verdict::holds);
         EXPECT_EQ(meter.measure(stated("perpendicular axes", {0, 1})).verdict, Verdict::fails);
-        // A tolerance of its own decides.
+        // The relationship's own tolerance decides.
         Relationship loose = stated("parallel axes", {0, 2});
         loose.parameters.deviations = {{"angle", {}, 20.0, "degree"}};
         EXPECT_EQ(meter.measure(loose).verdict, Verdict::holds);
@@ -262,7 +262,7 @@ TEST(GeometricRelations, PointsAndPlanes) {
     EXPECT_NEAR(mirrored.parameters.plane->point[2], 0.5, 1e-9);
     EXPECT_NEAR(std::abs(mirrored.parameters.plane->direction[2]), 1, 1e-9);
     EXPECT_LT(*mirrored.parameters.deviations[0].value, 1e-9);
-    // Nothing is known of what is up, until it is said.
+    // The upward direction is unknown until it is given.
     EXPECT_EQ(meter.measure(stated("same level", {0, 1})).verdict, Verdict::unknown);
     Relationship level = stated("same level", {0, 1});
     level.parameters.up = std::array<double, 3>{0, 0, 1};

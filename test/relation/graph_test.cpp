@@ -41,7 +41,7 @@ const char* const own_file = R"({"format": "ostraka-graph", "version": 1, "relat
 
 RelationGraph read(const std::string& text) { return graph_from_json(parse_json(text, "g"), four(), "g"); }
 
-/// The words of the refusal.
+/// The message of the refusal.
 std::string refused(const std::string& entry) {
     try {
         read("{\"relationships\": [" + entry + "]}");
@@ -112,7 +112,7 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     std::string other = good;
     other.replace(other.find("\"id\": 0"), 7, "\"id\": 1");
     expect_refused(good + "," + other, "says the same as relationship 0");
-    // Of a proportion the first part changes: the other way round it says something else. One level is one level.
+    // The first part of a proportion changes, so that the order matters. For one level it does not.
     const auto both = [&](const std::string& type) {
         const auto relationship_text = [&](const char* id, const char* members) {
             return std::string(R"({"id": )") + id + R"(, "isConstraint": true, "type": ")" + type +

@@ -1,4 +1,4 @@
-// Drawings of graphs: no bracket lies on another, and the tree is that of the containment.
+// Drawings of graphs: no brackets overlap, and the tree is that of the containment.
 #include "ostraka/relation/layout.h"
 #include "ostraka/core/error.h"
 #include "ostraka/figures/bracket_graph.h"
@@ -42,7 +42,7 @@ TEST(Layout, BracketsThatShareRowsLieInDifferentLanes) {
         relationship.type = i % 9 == 0 ? "containment" : "adjacency";
         for (int k = 0; k < 2 + i % 3; ++k) relationship.annotations.push_back(static_cast<int>(10 * (random() % n)));
     }
-    graph.relationships.emplace_back().annotations = {12345};  // of nothing that is there
+    graph.relationships.emplace_back().annotations = {12345};  // of missing annotations
     const GraphLayout layout = layout_of(graph, set, chain_of(n));
     ASSERT_EQ(layout.rows.size(), n);
     std::map<int, std::size_t> row_of;

@@ -1,4 +1,4 @@
-// Wholes and parts of a vocabulary, held against the selections.
+// Wholes and parts of a vocabulary, compared with the selections.
 #include "ostraka/relation/part_of.h"
 #include "meshes.h"
 #include "ostraka/core/error.h"

@@ -14,7 +14,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A box of 12 x 6^2 faces, its faces dealt out to parts in order: areas are as the numbers of faces.
+/// A box of 12 x 6^2 faces, its faces assigned to parts in order: areas are proportional to the numbers of faces.
 class Query : public ::testing::Test {
 protected:
     Query() : mesh(build_mesh(box(6))), face(face_area(mesh, Face(0))) {
@@ -105,7 +105,7 @@ TEST_F(Query, ComparesQuantitiesInAnyUnit) {
 TEST_F(Query, AWordDenotesOneAnnotationThroughout) {
     EXPECT_TRUE(holds("related(\"same mould\", leg)"));
     EXPECT_EQ(annotations_of("related(\"same mould\", leg, handle)"), (Ids{4, 6}));
-    // Both conditions hold, but not of one arm.
+    // Both conditions hold, but not for the same arm.
     EXPECT_TRUE(holds("2 leg and area(leg) > 0"));
     note(3, "side", "left");
     note(4, "glaze", "none");

@@ -34,7 +34,7 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     ASSERT_EQ(run_command("relation extract --threads 1 " + pot + at("a.graph.json")).code, 0);
     EXPECT_EQ(read_file(scratch / "a.graph.json"), first);
 
-    // A constraint, a type of one's own, and one that is not so.
+    // A constraint, a user-defined type, and a relationship that does not hold.
     const std::string add = "relation add " + pot;
     ASSERT_EQ(run_command(add + at("b.graph.json") + " --graph " + at("a.graph.json") +
                           " --type Proportion --annotation spout --annotation 6 --weight 4 --directed --parameters "
@@ -60,7 +60,7 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     EXPECT_STREQ(last["verdict"].GetString(), "fails");
     EXPECT_EQ(last["parameters"]["deviations"][0]["value"].GetDouble(), 100) << "no face of the body lies in the knob";
 
-    // Stated relationships survive another extraction; extracted ones are not doubled.
+    // User-specified relationships survive another extraction; extracted ones are not duplicated.
     const auto again = run_command("relation extract --json " + pot + at("e.graph.json") + " --graph " + at("c.graph.json"));
     ASSERT_EQ(again.code, 0) << again.err;
     const Json before = parse_json(first, "a"), after = read_json(scratch / "e.graph.json");
@@ -173,7 +173,7 @@ TEST(RelationCommand, ExtractedRelationshipsCanBeSpecifiedListedAndRemoved) {
     EXPECT_NE(listed.out.find("proportion (constraint, weight 3)"), std::string::npos) << listed.out;
     EXPECT_NE(run_command("relation check " + pot + at("old.graph.json")).out.find("equal attributes: area"), std::string::npos);
 
-    // The members of what has no direction may be named in any order.
+    // The members of an undirected relationship may be given in any order.
     const std::string state =
         "relation add " + pot + at("new.graph.json") + " --graph " + at("old.graph.json") +
         " --type 'equal attributes' --attribute area --annotation 2 --annotation 1 --tolerance difference=40";
@@ -318,7 +318,7 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     const std::string state =
         " --constraint --parameters '{\"minValue\": 0.5, \"maxValue\": 2, \"measure1\": \"length\", "
         "\"measure2\": \"length\"}'";
-    // Stated by options and in one.
+    // Specified by separate options and by one.
     ASSERT_EQ(run_command("relation add " + pot + at("a.graph.json") +
                           " --type proportion --annotation handle --annotation spout" + state)
                   .code,
@@ -327,7 +327,7 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     ASSERT_EQ(run_command("relation add " + pot + at("b.graph.json") + " --relation 'proportion: handle, spout'" + state).code,
               0);
     expect_kept("b.graph.json");
-    // The other way round is another constraint, which is neither refused nor takes the place of the first.
+    // The reversed order is another constraint, which is neither refused nor replaces the first.
     const auto other = run_command("relation add " + pot + at("c.graph.json") + " --graph " + at("b.graph.json") +
                                    " --relation 'proportion: 5, 6'" + state);
     ASSERT_EQ(other.code, 0) << other.err;
@@ -336,7 +336,7 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
                           " --relation 'proportion: 6, 5'" + state)
                   .code,
               1);
-    // Beside what is extracted, after another was removed, in a package, and as it is checked.
+    // Next to extracted ones, after another was removed, in a template, and in a check.
     ASSERT_EQ(run_command("relation extract " + pot + at("e.graph.json") + " --graph " + at("c.graph.json")).code, 0);
     expect_kept("e.graph.json", 2);
     const Json extracted = read_json(scratch / "e.graph.json");

@@ -33,7 +33,7 @@ Annotation points(int id, std::vector<Index> list) {
     return a;
 }
 
-/// The six rules by the letter.
+/// The six rules literally.
 bool contained(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
     const auto vertices = [&](const Annotation& a) {
         std::set<Index> result(a.points.begin(), a.points.end());
@@ -57,7 +57,7 @@ bool contained(const Mesh& mesh, const Annotation& inner, const Annotation& oute
     return within(vertices(inner), vertices(outer));
 }
 
-/// A patch of faces around one, by breadth.
+/// A patch of faces around one face, by breadth-first search.
 std::vector<Index> patch_around(const Mesh& mesh, Index seed, std::size_t count) {
     std::vector<Index> list{seed};
     std::vector<bool> seen(mesh.number_of_faces(), false);
@@ -157,7 +157,7 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
                     parent = b;
             EXPECT_EQ(computed.order.parent[a], parent);
         }
-        // Adjacency by the letter.
+        // Adjacency by its definition.
         std::map<std::pair<std::size_t, std::size_t>, double> lengths;
         for (std::size_t a = 0; a < n; ++a)
             for (std::size_t b = a + 1; b < n; ++b) {
@@ -178,7 +178,7 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
         for (const auto& pair : computed.adjacent)
             EXPECT_NEAR(pair.length, (lengths.at({pair.a, pair.b})), 1e-12 * (1 + pair.length));
     }
-    // The cases that matter did occur.
+    // All relevant cases occurred.
     EXPECT_GT(strict, 1000U);
     EXPECT_GT(equal, 100U);
     EXPECT_GT(overlapping, 50U);

@@ -194,7 +194,7 @@ TEST(CreasesCommand, WritesAnnotationsOrReportsThatThereAreNone) {
         EXPECT_EQ(result.out.find("mean curvature 1/mm") != std::string::npos, has_unit) << result.out;
         EXPECT_NE(result.out.find("robust deviations"), std::string::npos) << result.out;
     }
-    // What stood in the file stays.
+    // Earlier contents of the file are kept.
     const std::string before = read_file(scratch / "out.ant.json");
     const auto none = run("ball.ply", "");
     EXPECT_EQ(none.code, 3);
@@ -203,7 +203,7 @@ TEST(CreasesCommand, WritesAnnotationsOrReportsThatThereAreNone) {
     const auto fine = run("tube.ply", " --scale 0.0001");
     EXPECT_EQ(fine.code, 2);
     EXPECT_NE(fine.err.find("too coarse"), std::string::npos) << fine.err;
-    // With the scale that it names it works.
+    // With the suggested scale it works.
     const auto at = fine.err.find("use --scale ");
     ASSERT_NE(at, std::string::npos) << fine.err;
     EXPECT_NE(run("tube.ply", " --scale " + fine.err.substr(at + 12, fine.err.find(' ', at + 12) - at - 12)).code, 2);

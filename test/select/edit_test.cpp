@@ -1,4 +1,4 @@
-// Lassos that cross themselves, and recipes that edit annotations that are there.
+// Self-intersecting lassos, and recipes that edit existing annotations.
 #include "annotation/example_meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "select/follow.h"
@@ -37,7 +37,7 @@ TEST(Lasso, ASelfIntersectingLassoIsRefusedWithItsLocation) {
     // The same picks in their order around the square do not.
     EXPECT_DOUBLE_EQ(
         area_of(R"({"lasso": {"points": [[2, 2, 0], [8, 2, 0], [8, 8, 0], [2, 8, 0]], "seed": [5.2, 5.1, 0]}})", mesh), 36);
-    // Legs that run together for a while at a pick do not cross: a spike from (8, 5) to (9, 5) and back.
+    // Segments that coincide near a pick do not cross: a spike from (8, 5) to (9, 5) and back.
     EXPECT_DOUBLE_EQ(
         area_of(R"({"lasso": {"points": [[2, 2, 0], [8, 2, 0], [8, 5, 0], [9, 5, 0], [8, 8, 0], [2, 8, 0]], "seed": [5.2, 5.1, 0],
                               "metric": "segment"}})",
@@ -116,7 +116,7 @@ TEST(Edit, EveryActionOnEveryType) {
 }
 
 TEST(Edit, OtherAnnotationsAreUnchanged) {
-    // A descriptor that an operation of collections wrote cannot be computed here: other parts are selected all the same.
+    // A descriptor written by an operation on collections cannot be recomputed here: other parts can still be selected.
     const Mesh mesh = grid(4);
     RecipeStart start = start_with(tile_steps, mesh);
     Attribute height;

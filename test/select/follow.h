@@ -19,7 +19,7 @@ inline Annotation select(const std::string& type, const std::string& expression,
         .annotations.at(0);
 }
 
-/// The faces selected as a whole.
+/// The selected faces.
 inline std::vector<Index> faces_of(const std::string& expression, const Mesh& mesh, const std::string& head = "") {
     return follow(R"({"id": 0, "tag": "t", "type": "region", "outline": "edges", "select": )" + expression + "}", mesh, head)
         .annotations.at(0)

@@ -70,7 +70,7 @@ TEST(Recipe, NormalsOfAnyLengthAndFinitePoints) {
     ASSERT_GT(plain.size(), 0U);
     for (const std::string n : {"1e308", "1e-320"})
         EXPECT_EQ(faces_of(R"({"halfspace": {"point": [0.1, 0, 0], "normal": [)" + n + "," + n + ", -" + n + "]}}", ball), plain);
-    // Squares of distances overflow long before: no face is nearest then.
+    // Squared distances would overflow: no face is nearest then.
     for (const std::string select :
          {R"({"component": {"seed": [1e155, 0, 0]}})", R"({"sphere": {"centre": [0, 1.1e60, 0], "radius": 1}})",
           R"({"halfspace": {"point": [0, 0, 1e200], "normal": [0, 0, 1]}})",

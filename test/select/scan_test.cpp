@@ -1,4 +1,4 @@
-// Every selection tool on a real scan, against what can be told independently.
+// Every selection tool on a real scan, against independent computations.
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/select/selections.h"
 #include "select/follow.h"

@@ -22,7 +22,7 @@ PictureCamera camera_of(const Mesh& mesh, const std::string& view, bool perspect
     return fit_camera(mesh, {parse_view(view), {0, 0, 1}, perspective, 1, plain_pane(width, height)});
 }
 
-/// Every triangle tried in turn (Moeller and Trumbore 1997), with a doubtful answer where a hit is close to an edge.
+/// Every triangle tried in turn (Moeller and Trumbore 1997), with an uncertain answer if a hit is close to an edge.
 enum class Sight { free, hidden, doubtful };
 Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double max_distance) {
     const Point& p = mesh.point(vertex);
@@ -182,7 +182,7 @@ TEST(Screen, APixelOfAPictureSelectsTheVisibleElement) {
                     const std::uint32_t argb = rendering.picture.at(x, y);
                     const int red = argb >> 16 & 255, green = argb >> 8 & 255, blue = argb & 255;
                     ++compared;
-                    if (red == green && green == blue) {  // the background, or too dark to tell
+                    if (red == green && green == blue) {  // the background, or too dark to classify
                         different += hit.has_value() && red > 200;
                         continue;
                     }
@@ -285,7 +285,7 @@ TEST(Screen, MeshesWithFewVisibleElements) {
     EXPECT_EQ(select("point", everything, build_mesh(soup)).points, (std::vector<Index>{0, 1, 2}));
     soup.points[2] = {2, 0, 0};  // without area
     expect_error(everything, build_mesh(soup), "/rectangle", "no face with an area");
-    // Two sheets in one place hide each other, which is said by selecting nothing.
+    // Two coincident sheets hide each other, so that nothing is selected.
     soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     soup.triangles = {{0, 1, 2}, {3, 4, 5}};
     expect_error(everything, build_mesh(soup), "", "selects no face");

@@ -1,4 +1,4 @@
-// 'annotation select' and 'annotation apply --edit', as people run them.
+// 'annotation select' and 'annotation apply --edit', as users run them.
 #include "annotation/example_meshes.h"
 #include "mutate.h"
 #include "ostraka/annotation/annotation_file.h"
@@ -100,7 +100,7 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
     EXPECT_NE(first.out.find("perimeter / length mm"), std::string::npos) << first.out;
     ASSERT_TRUE(created.up);
     EXPECT_EQ(*created.up, (std::array<double, 3>{0, 1, 0}));
-    // The next step looks down the same direction without being told, and another --up turns its camera only.
+    // The next step uses the same direction by default, and another --up rotates only its camera.
     ASSERT_EQ(folder.select("--tag again --view top --rectangle 500,350,700,550" + record).code, 0);
     ASSERT_EQ(folder.select("--tag side --view top --up 0,0,1 --rectangle 500,350,700,550" + record).code, 0);
     const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
@@ -112,7 +112,7 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
                   .code,
               0);
     EXPECT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "a.ant.json"));
-    // A recipe that was there already does not hide what is said of a new file.
+    // An existing recipe does not override options for a new file.
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5 --record " + folder.at("s.recipe.json"), "b.ant.json").code, 0);
     ASSERT_EQ(folder
                   .select("--tag cap --unit m --up 1,0,0 --sphere 0,0,1,0.5 --id 5 --record " + folder.at("s.recipe.json"),
@@ -129,7 +129,7 @@ TEST(SelectCommand, HelpGivesDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
-    // Every order of the arguments, and each argument by its name.
+    // Every order of the arguments, and each argument by name.
     const std::string orders = run_command("annotation apply --help").out;
     for (const char* words : {"[OPTIONS] mesh recipe output\n", "[OPTIONS] mesh output\n", "\n  mesh FILE", "\n  recipe FILE"})
         EXPECT_NE(orders.find(words), std::string::npos) << words << "\n" << orders;
@@ -280,7 +280,7 @@ TEST(SelectCommand, APictureReportsItsCameras) {
     ASSERT_EQ(picture.code, 0) << picture.err;
     const Json report = parse_json(picture.out, "report");
     const JsonValue& pane = report["result"]["panes"][0];
-    // The middle of the pane shows the point nearest to the viewer, wherever the legend has pushed it.
+    // The middle of the pane shows the point nearest to the viewer, regardless of the legend.
     const double x = pane["camera"]["pane"][0].GetDouble() + pane["camera"]["pane"][2].GetDouble() / 2,
                  y = pane["camera"]["pane"][1].GetDouble() + pane["camera"]["pane"][3].GetDouble() / 2;
     EXPECT_LT(x, 299);
@@ -292,7 +292,7 @@ TEST(SelectCommand, APictureReportsItsCameras) {
     const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
     const AnnotationSet set = apply_recipe(recipe, mesh);
     EXPECT_EQ(mesh.point(Vertex(set.annotations.at(0).points.at(0))), Point(0, -1, 0));
-    // The same by flags; the type is that of the tool.
+    // The same with flags; the type is that of the tool.
     const auto flags =
         folder.select("--tag nearest --camera '" + camera + "' --vertices @" + std::to_string(x) + "," + std::to_string(y));
     ASSERT_EQ(flags.code, 0) << flags.err;
@@ -348,7 +348,7 @@ TEST(SelectCommand, BrushThresholdAndSegment) {
 
 namespace {
 
-/// How many of 200 damaged copies can still be followed; the others are refused in words.
+/// Number of 200 damaged copies that can still be followed; the others are refused with a message.
 std::size_t survive(const std::string& recipe, const Mesh& mesh) {
     std::size_t done = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -388,7 +388,7 @@ TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
     const std::size_t done = survive(recipe, mesh);
     EXPECT_LT(done, 200U);
     EXPECT_GT(done, 5U);
-    // And one that is shipped, on its object.
+    // A shipped recipe on its object.
     MakeOptions options;
     options.vertices = 2000;
     EXPECT_LT(survive(read_file(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json"),

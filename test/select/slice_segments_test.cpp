@@ -47,7 +47,7 @@ double rectangle(double angle, double a, double b) {
 double three_parts(double share, double angle) { return share < 0.35 || share > 0.75 ? 10 : rectangle(angle, 20, 5); }
 
 TEST(SliceSegments, ProposesTheNumberOfKindsAndFindsTheirBands) {
-    // Rings so close that no slice lies between two of different kinds.
+    // Rings are so dense that no slice lies between rings of different kinds.
     const Mesh mesh = lofted(three_parts, 60, 1201, 36);
     for (const char* criterion : {"silhouette", "gap"}) {
         SliceSegmentOptions options;

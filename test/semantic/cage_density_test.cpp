@@ -1,4 +1,4 @@
-// What annotations ask of a cage.
+// Influence of annotations on cages.
 #include "ostraka/semantic/cage_density.h"
 
 #include "annotation/example_meshes.h"

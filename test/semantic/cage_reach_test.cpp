@@ -1,4 +1,4 @@
-// Where constraints are solved when the choice is left to us, and what a cage can hold.
+// Automatic choice of the space of the solve, and constraints that a cage can satisfy.
 #include "caged.h"
 
 #include "ostraka/geom/eigen.h"
@@ -28,7 +28,7 @@ DeformResult automatic(const HandleSpace& space, const RelationGraph& graph, con
     return deform(space, graph, edit(steps), "e", options, deform_tolerances());
 }
 
-/// Greatest difference of the heights of the parts' centroids, by area.
+/// Maximum difference of the heights of the parts' area centroids.
 double level_spread(const Caged& object, const std::vector<Point>& points, const std::vector<int>& ids) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const int id : ids) {
@@ -66,9 +66,9 @@ TEST(AutomaticSpace, SeatsNoPartWithSpecifiedShapes) {
         EXPECT_TRUE(result.seated.empty()) << parameters;
         EXPECT_TRUE(result.solved) << parameters;
     }
-    // Spout and handle are no ornaments: they stand out.
+    // Spout and handle are not ornaments: they protrude.
     EXPECT_TRUE(automatic(object.handles(), graph_with(constraint(0, "same level", {5, 6}, "{}")), stretched).seated.empty());
-    // Two constraints about one flower: it is not to be put in two places.
+    // Two constraints on one flower: it cannot be seated twice.
     RelationGraph two = graph_with(constraint(0, "same level", flowers, "{}"));
     two.relationships.push_back(constraint(1, "keep shape", {7}, "{}"));
     EXPECT_TRUE(automatic(object.handles(), two, stretched).seated.empty());
@@ -82,7 +82,7 @@ TEST(AutomaticSpace, WithoutConstraintsIsTheEdit) {
 }
 
 TEST(AutomaticSpace, ThroughACageTheNamedPartMovesAsWithoutACage) {
-    // The constraint must not take half of the edit back, as if nothing held it.
+    // The constraint must not undo half of the edit.
     const Caged& object = teapot();
     const RelationGraph graph = graph_with(constraint(0, "same level", {4, 14}, R"({"reference": "vertex", "hard": true})"));
     const DeformResult result =
@@ -93,7 +93,7 @@ TEST(AutomaticSpace, ThroughACageTheNamedPartMovesAsWithoutACage) {
 }
 
 TEST(AutomaticSpace, IsNeverWorseThanTheMesh) {
-    // Two levels at once that the parts cannot have: nothing is acceptable, and the answer is that of the mesh or a better one.
+    // Two incompatible levels: nothing is acceptable, and the result is that of mesh space or a better one.
     const Caged& object = teapot();
     RelationGraph graph = graph_with(
         constraint(0, "keep measure", {0}, R"({"measure": "height", "minValue": 100, "maxValue": 101, "hard": true})"));
@@ -112,7 +112,7 @@ TEST(AutomaticSpace, IsNeverWorseThanTheMesh) {
 }
 
 TEST(CageReach, APointCanReachAnyPosition) {
-    // One row of which the weights sum to one: every cage can meet it, with rank 1.
+    // One row whose weights sum to one: every cage can satisfy it, with rank 1.
     const Caged& object = teapot();
     const auto list = cage_reach(object.handles(), graph_with(constraint(4, "keep position", {14}, "{}")));
     ASSERT_EQ(list.size(), 1u);
@@ -135,13 +135,13 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     ASSERT_TRUE(coarse.lacking);
     EXPECT_TRUE(std::find(flowers.begin(), flowers.end(), *coarse.lacking) != flowers.end());
     EXPECT_NE(describe(coarse, object.set).find("'" + object.set.find(*coarse.lacking)->tag + "'"), std::string::npos);
-    // A cage that is made for it comes nearer, and still is one.
+    // A cage made for the constraints leaves a smaller deviation, and is valid.
     const CageForConstraints adapted = make_cage_for(object.synthetic.mesh, object.set, graph, {.vertices = 150});
     ASSERT_EQ(adapted.reach.size(), 1u);
     EXPECT_LT(adapted.reach[0].left, 0.8 * coarse.left);
     EXPECT_LE(adapted.made.cage.number_of_vertices(), 300u);
     EXPECT_TRUE(check_cage(adapted.made.cage, object.synthetic.mesh).outside.empty());
-    // Seated, they are put back as they were: no cage has to hold them.
+    // Seated parts are put back as rigid copies: no cage has to reproduce them.
     EXPECT_TRUE(cage_reach(object.handles(), graph_with(constraint(0, "same level", flowers, R"({"shapes": "seat"})"))).empty());
 }
 

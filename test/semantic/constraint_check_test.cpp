@@ -1,4 +1,4 @@
-// Constraints judged on an object as it is: every type against what positions say by themselves.
+// Constraints judged on an object as it is: every type against quantities computed from positions.
 #include "constraint_bench.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/mesh_file.h"
@@ -23,7 +23,7 @@ std::vector<Case> axes_and_places() {
     const auto between = [](int first_part, int other, double right) {
         return [=](const Places& p) { return std::abs(right - degrees(bench().axis(p, first_part), bench().axis(p, other))); };
     };
-    // Of the ring between the halves of the first cylinder.
+    // The ring between the halves of the first cylinder.
     const auto tilt = [](const Places& p) {
         return degrees(
             (bench().point(p, ring, 0) - bench().point(p, ring, 2)).cross(bench().point(p, ring, 1) - bench().point(p, ring, 3)),
@@ -229,7 +229,7 @@ std::vector<Case> measures_and_shapes() {
 }
 
 std::vector<Case> kinds_of_the_solver() {
-    // How far off a few points are, in per cent of their size; 2 % and more is far beyond the tolerance of 1 % of a residual.
+    // Deviation of a few points, in per cent of their size; 2 % and more is far beyond the tolerance of 1 % of a residual.
     const Shape out = pulled(ring, 0, x), up = pulled(ring, 0, z);
     const auto lifted = [](const Places& p) {
         return 100 *
@@ -362,7 +362,7 @@ RelationGraph graph_of(const Case& test_case) {
     return graph;
 }
 
-/// A shape of the bench as a file has it.
+/// A shape of the bench as read from a file.
 Mesh from_file(const Scratch& scratch, const std::vector<Point>& points) {
     write_mesh(scratch / "shape.ply", with_points(bench().mesh, points));
     return read_mesh(scratch / "shape.ply").mesh;
@@ -395,7 +395,7 @@ TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
                 EXPECT_EQ(alone.verdict, Verdict::unknown) << name;
                 EXPECT_NE(alone.text.find("--rest"), std::string::npos) << name << ": " << alone.text;
             }
-            // Against the shape at rest the verdict is that of deformations.
+            // With the rest shape the verdict is that of `deform`.
             const ConstraintReport judged =
                 test_case.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
             ASSERT_FALSE(judged.deviations.empty()) << name << ": " << judged.text;

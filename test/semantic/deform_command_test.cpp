@@ -1,4 +1,4 @@
-// 'ostraka cage make', 'cage check' and 'deform', as people run them.
+// 'ostraka cage make', 'cage check' and 'deform' as users run them.
 #include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/operations/table.h"
@@ -118,7 +118,7 @@ TEST(CageCommand, OnlyASymmetryOfTheWholeMirrorsTheCage) {
         return read_mesh(at("c.ply")).mesh;
     };
     const Mesh plain = read_mesh(at("plain.ply")).mesh;
-    // Two flowers mirror each other in a plane that says nothing of the pot.
+    // Two flowers mirror each other in a plane that is not a symmetry plane of the pot.
     EXPECT_EQ(mesh_checksum(with_graph("--annotation 7 --annotation 8")), mesh_checksum(plain));
     EXPECT_NE(mesh_checksum(with_graph("--annotation 0")), mesh_checksum(plain));
 }
@@ -170,7 +170,7 @@ TEST(DeformCommand, SatisfiesTheConstraints) {
             .code,
         0);
     EXPECT_EQ(read_file(folder / "out.ply"), first);
-    // Through the cage, and without one.
+    // With and without the cage.
     EXPECT_NE(
         run_command(base + folder.at("c.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") + " --space cage")
             .code,
@@ -196,7 +196,7 @@ TEST(DeformCommand, ADeformedCageIsAnEdit) {
 
 TEST(DeformCommand, AnInvalidCageIsReported) {
     const Caged folder;
-    // One vertex of the cage is drawn through the object: faces cross, and vertices of the mesh are outside.
+    // One vertex of the cage is moved through the object: faces cross, and vertices of the mesh are outside.
     Mesh cage = read_mesh(folder.at("cage.ply")).mesh;
     const Mesh mesh = read_mesh(data + "teapot.ply").mesh;
     const CGAL::Bbox_3 box = bounding_box(mesh);
@@ -214,7 +214,7 @@ TEST(DeformCommand, AnInvalidCageIsReported) {
                                   folder.at("bad.ply") + " --weights " + folder.at("bad.npy"));
     EXPECT_EQ(bent.code, 3) << bent.out;
     EXPECT_NE(bent.out.find("the cage is not fit for deformation"), std::string::npos) << bent.out;
-    // An object with a hole may stand for a solid: it is told what the cage goes around.
+    // An object with a hole may be treated as a solid: a note reports it.
     Mesh open = mesh;
     CGAL::Euler::remove_face(open.halfedge(Face(0)), open);
     open.collect_garbage();
@@ -225,7 +225,7 @@ TEST(DeformCommand, AnInvalidCageIsReported) {
 
 TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     const Scratch scratch;
-    // What the first column of the table in the page says.
+    // The first column of the table in the page.
     const std::string page = read_file(Path(OSTRAKA_SOURCE_DIR) / "doc/deformation.md");
     const std::size_t begin = page.find("| type | members | parameters"), end = page.find("\n\n", begin);
     ASSERT_NE(begin, std::string::npos);
@@ -266,7 +266,7 @@ TEST(DeformCommand, ATemplateIsSufficientInput) {
                           folder.handles() + " --graph " + folder.at("k.graph.json"))
                   .code,
               0);
-    // The files differ in the inputs that they name.
+    // The files differ in their recorded inputs.
     EXPECT_EQ(mesh_checksum(read_mesh(folder / "whole.ply").mesh), mesh_checksum(read_mesh(folder / "pieces.ply").mesh));
     // A template without a cage is deformed by its own vertices.
     ASSERT_EQ(
@@ -323,7 +323,7 @@ TEST(DeformCommand, StatesInMemory) {
     for (const std::size_t i : {0, 2}) EXPECT_NEAR(x(i).y(), rest.point(Vertex(5)).y() + 2, 1e-9);
     EXPECT_THROW(static_cast<void>(call.object("output", 3)), Error);
     EXPECT_NE(call.object("annotations-out").as<AnnotationSet>(), nullptr);
-    // Nothing is asked; or a part is named, and there are no annotations.
+    // No edit is given; or a part is named without annotations.
     Call half(find_operation("deform"));
     half.set_file("mesh", data + "teapot.ply");
     EXPECT_THROW(static_cast<void>(half.run(context)), Error);

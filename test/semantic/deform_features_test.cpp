@@ -1,4 +1,4 @@
-// Features that keep their shape and their level, and what happens around them.
+// Features that keep their shape and their level, and the distortion around them.
 #include "caged.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
@@ -16,7 +16,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Of the heights of the parts' centroids.
+/// Spread of the heights of the parts' centroids.
 double level_spread(const Caged& object, const std::vector<Point>& points, const std::vector<int>& ids) {
     double low = 1e300, high = -1e300;
     for (const int id : ids) {
@@ -38,15 +38,15 @@ Points points_matrix(const std::vector<Point>& list) {
     return points;
 }
 
-/// What happens around the flowers, faces within 1.6 of a flower's radius, against the made body stretched upwards by 1.4.
+/// Distortion of faces within 1.6 of a flower's radius, relative to the synthetic body stretched upwards by 1.4.
 struct RingDistortion {
     double stretch = 0;   ///< mean of |s1 - 1| + |s2 - 1| over the singular values of edited -> final
-    double angle = 0;     ///< mean angle between a face without a flower's vertex and the body beside it, degrees
+    double angle = 0;     ///< mean angle between a face without a flower's vertex and the nearby body, degrees
     double distance = 0;  ///< root mean square distance of their vertices from the body
 };
 
-/// Value and gradient of the teapot's body, without flowers, stretched: it is round, so that a place between two flowers at the
-/// same height tells.
+/// Value and gradient of the teapot's body, without flowers, stretched: it is round, so that a point between two flowers at the
+/// same height is sufficient.
 std::pair<double, Eigen::Vector3d> stretched_body(const Eigen::Vector3d& p) {
     const double radius = std::hypot(p.x(), p.y()), free = 72 * M_PI / 180;
     const Point unstretched(radius * std::cos(free), radius * std::sin(free), p.z() / 1.4);
@@ -101,7 +101,7 @@ RingDistortion distortion_around(const Caged& object, const std::vector<int>& fl
 }  // namespace
 
 TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
-    // One side of the teapot is lifted by a turn about y: flowers leave their level and are sheared.
+    // One side of the teapot is lifted by a rotation about y: flowers leave their level and are sheared.
     const Caged& object = teapot();
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     const std::string steps = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}},
@@ -119,7 +119,7 @@ TEST(Deform, FlowersOnOneLevelKeepTheirShape) {
                   << level_spread(object, result.points, flowers) << " of " << diagonal << ", " << result.summary.iterations
                   << " iterations\n";
         EXPECT_LT(level_spread(object, result.points, flowers), (hard ? 1e-3 : 1e-2) * diagonal);
-        // Each flower is a rigid copy of what it was.
+        // Each flower is a rigid copy of its rest shape.
         for (const int id : flowers) {
             const auto vertices = vertices_of(object.synthetic.mesh, *object.set.find(id));
             const Points rest = [&] {
@@ -147,11 +147,12 @@ TEST(Deform, ThroughTheCageConstraintsAreMetAsFarAsPossible) {
                edit(R"({"select": {"annotation": "spout", "threshold": 0.15}, "translate": [0, 0, 12]})"), "e", options);
     EXPECT_TRUE(result.solved);
     EXPECT_EQ(result.cage.size(), object.cage.number_of_vertices());
-    // The mesh is what the weights make of the cage.
+    // The mesh follows the cage through the weights.
     const auto again = deformed(object.coordinates, object.cage, result.cage);
     for (std::size_t i = 0; i < again.size(); ++i)
         ASSERT_LT(std::sqrt(CGAL::squared_distance(again[i], result.points[i])), 1e-9 * box_diagonal(object.synthetic.mesh));
-    // What is solved for is the cost: shapes and levels together. What must hold counts a thousandfold, so that the levels gain.
+    // The solve minimises the cost of shapes and levels together. Hard constraints have a thousandfold weight, so that the levels
+    // improve.
     EXPECT_LT(result.constraints[0].cost, result.constraints[0].cost_before);
     graph.relationships[0] =
         constraint(0, "same level", {7, 8, 9, 10, 11}, R"({"heights": "equal", "shapes": "free", "hard": true})", 10);
@@ -183,7 +184,7 @@ TEST(Deform, SurroundingsAreDistortedLessThanInTheThesis) {
     };
     const std::string hard = R"({"hard": true})";
     distortion(R"({"shapes": "free"})", "edited", DeformOptions().spread);
-    // With a strong hold on each vertex the change is crowded into the rings; with a weak one it spreads.
+    // With a large closeness weight the change is concentrated in the rings; with a small one it spreads.
     const RingDistortion ours = distortion(hard, "edited", DeformOptions().spread);
     const RingDistortion rest = distortion(hard, "rest", DeformOptions().spread), crowded = distortion(hard, "rest", 0.02);
     EXPECT_LT(ours.stretch, rest.stretch);
@@ -212,7 +213,7 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
         for (const int id : flowers) {
             const auto vertices = vertices_of(object.synthetic.mesh, *object.set.find(id));
             const auto rigid = make_constraint(kinds::Rigid{}, {vertices.begin(), vertices.end()}, 1, rest);
-            // It bends by no more than it may.
+            // It bends by no more than permitted.
             EXPECT_LT(std::sqrt(rigid->squared_distance(now) / static_cast<double>(vertices.size())),
                       (bend ? 7.6e-4 : 1e-9) * diagonal)
                 << id;
@@ -221,14 +222,14 @@ TEST(Deform, ReattachedFeaturesAreRigidAndLevelThroughTheCageToo) {
         EXPECT_EQ(result.points[object.synthetic.mesh.number_of_vertices() - 1],
                   result.edited[object.synthetic.mesh.number_of_vertices() - 1]);
     }
-    // The whole object sits on nothing.
+    // The whole object has no base.
     graph.relationships[0] = constraint(0, "keep shape", {0}, R"({"mode": "seat"})");
     EXPECT_NE(error_of(object.handles(), steps, graph).find("sits on nothing"), std::string::npos);
-    // A feature by itself keeps its place.
+    // A single feature keeps its position.
     graph.relationships[0] = constraint(0, "keep shape", {7}, R"({"mode": "seat", "bend": 0})");
     const DeformResult alone = deform(object.handles(), graph, edit(steps), "e");
     EXPECT_LT(*alone.constraints[0].deviations[0].value, 1e-9 * diagonal);
-    // Features that touch cannot be moved one by one.
+    // Touching features cannot be moved separately.
     graph.relationships[0] = constraint(0, "same level", flowers, R"({"shapes": "seat"})");
     graph.relationships[0].annotations = {1, 5};
     EXPECT_NE(error_of(object.handles(), steps, graph).find("touches another feature"), std::string::npos)
@@ -239,7 +240,7 @@ TEST(Deform, AScannedBustKeepsItsFeatures) {
     const Path file = Path(OSTRAKA_SHARED_DATA) / "heritage-scans" / "Laurana50k.ply";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no " << file;
     const Mesh mesh = read_mesh(file).mesh;
-    // Two patches, as large as the diagonal over 15, stand for details on it.
+    // Two patches with a size of the diagonal / 15 represent details on it.
     AnnotationSet set;
     const double diagonal = box_diagonal(mesh);
     Eigen::AlignedBox3d box;

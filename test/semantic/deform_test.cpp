@@ -1,4 +1,4 @@
-// What constraints make of edits.
+// Effect of constraints on edits.
 #include "caged.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/measure/measure.h"
@@ -13,7 +13,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A made hand whose ring and little finger have a bounding measure "length", upwards.
+/// A synthetic hand whose ring and little finger have a bounding measure "length", upwards.
 struct Hand {
     SyntheticMesh synthetic = make_mesh(synthetic_object("hand"), {.vertices = 6000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/hand.recipe.json", synthetic.mesh, synthetic.face_labels);
@@ -37,7 +37,8 @@ struct Hand {
 }  // namespace
 
 TEST(Deform, AProportionStretchesThePartFromItsJoint) {
-    // The little finger is to be as long as 0.9 to 1 of the ring finger: it grows at its tip and stays where it joins the palm.
+    // The length of the little finger must be 0.9 to 1 of that of the ring finger: it grows at its tip, and its joint with the
+    // palm stays.
     const Hand hand;
     const Mesh& mesh = hand.synthetic.mesh;
     const AnnotationSet& set = hand.set;
@@ -62,7 +63,7 @@ TEST(Deform, AProportionStretchesThePartFromItsJoint) {
     EXPECT_LE(ratio, 1 + 1e-3);
     EXPECT_GT(high - was_high, 0.02 * diagonal);
     EXPECT_LT(std::abs(low - was_low), 0.002 * diagonal);
-    // What is far from the finger stays.
+    // Distant parts do not move.
     for (const Index v : vertices_of(mesh, *set.find(3)))
         ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], rest[v])), 1e-3 * diagonal);
 }
@@ -70,7 +71,7 @@ TEST(Deform, AProportionStretchesThePartFromItsJoint) {
 TEST(Deform, ContradictionsAreReportedAndLeaveNoHoles) {
     const Caged& object = teapot();
     RelationGraph graph;
-    // Upright and level planes at once, through one pair of flowers, both hard.
+    // Two contradictory hard planes, vertical and horizontal, through one pair of flowers.
     graph.relationships.push_back(constraint(0, "keep shape", {5}, R"({"hard": true})"));
     graph.relationships.push_back(constraint(1, "same level", {5, 6}, R"({"hard": true, "direction": [1, 0, 0]})"));
     graph.relationships.push_back(constraint(2, "of my own", {5, 6}, "{}"));
@@ -91,7 +92,7 @@ TEST(Deform, ContradictionsAreReportedAndLeaveNoHoles) {
 
 TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
     const Caged object("chair", 8000, 200);
-    // The arm is drawn forwards and outwards with what is on it; its support's foot is to stay on the axis of the leg below.
+    // The arm is moved forwards and outwards with its parts; the foot of its support must stay on the axis of the leg below.
     const std::string steps = R"({"select": {"annotation": "left arm", "threshold": 0.3}, "translate": [0, -25, 0]})";
     double angle_soft = 0;
     for (const bool hard : {false, true}) {
@@ -113,7 +114,7 @@ TEST(Deform, ASupportContinuesItsLegWhileTheArmIsMoved) {
             EXPECT_LT(angle_soft, report.before_values[0]);
         }
     }
-    // A part that leaves the axis at once has nothing to continue.
+    // A part that leaves the axis immediately has no segment to continue.
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {3, 7}, R"({"angle": 5})"));
     EXPECT_NE(error_of(object.handles(), steps, graph).find("leaves it by more than"), std::string::npos)
@@ -138,7 +139,7 @@ TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
 }
 
 TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
-    // A leg cut in halves, the lower one rotated. Let free, the upper half leans over with it, further pass by pass.
+    // A leg cut in halves, the lower one rotated. If it were free, the upper half would lean with it, further in each pass.
     const SyntheticMesh synthetic = make_mesh(synthetic_object("chair"), {.vertices = 8000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/chair.recipe.json", synthetic.mesh, synthetic.face_labels);
     Annotation& leg = *std::find_if(set.annotations.begin(), set.annotations.end(), [](const auto& a) { return a.id == 7; });
@@ -183,7 +184,7 @@ TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
         EXPECT_GT(report.before_values[0], 5);
         EXPECT_LT(*report.deviations[0].value, 0.5);
         EXPECT_EQ(result.surface.crossings_new, 0U);
-        // The residual is that of the shape that is given back: the distance that its verdict measures.
+        // The residual is that of the returned shape: the distance that its verdict measures.
         EXPECT_NEAR(report.distance, *report.deviations[1].value, 1e-9 * box_diagonal(synthetic.mesh));
     }
 }
@@ -226,12 +227,12 @@ TEST(Deform, ReportsConflictingConstraints) {
         EXPECT_NE(b, 5);
     }
     EXPECT_TRUE(fights.count({3, 4}) == 1 || fights.count({4, 3}) == 1);
-    // What cannot hold leaves a compromise, not a wreck.
+    // Contradictory constraints give a compromise, not a destroyed shape.
     for (const Vertex v : hand.synthetic.mesh.vertices())
         ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], result.edited[v])), 0.5 * box_diagonal(hand.synthetic.mesh));
     for (const ConstraintConflict& conflict : result.conflicts) {
         ASSERT_EQ(conflict.deviations.size(), 1U);
-        // The ring finger is some 1.3 times as long: either would have to give by tens of per cent.
+        // The ring finger is about 1.3 times as long: either constraint would have to yield by tens of per cent.
         EXPECT_GT(*conflict.deviations[0].value, 10) << conflict.id;
         EXPECT_EQ(conflict.deviations[0].unit, "%");
     }
@@ -240,7 +241,7 @@ TEST(Deform, ReportsConflictingConstraints) {
 }
 
 TEST(Deform, AxesFollowTheirReference) {
-    // The whole chair is turned: its back leg's axis is elsewhere, and the support goes there, not to where the axis was.
+    // The whole chair is rotated: the support moves to the new axis of the back leg, not to the old one.
     const Caged object("chair", 8000, 200);
     const std::string steps = R"({"select": {"all": true}, "rotate": {"axis": [1, 0, 0], "angle": 20}},
                                  {"select": {"annotation": "left arm", "threshold": 0.3}, "translate": [0, -45, 0]})";
@@ -257,7 +258,7 @@ TEST(Deform, AxesFollowTheirReference) {
 TEST(Deform, AxesBecomeParallelAndPerpendicular) {
     const Caged chair("chair", 8000, 200);
     for (const bool parallel : {true, false}) {
-        // A leg, or an arm, is bent out of its direction against the leg before it.
+        // A leg or an arm is bent relative to the leg in front of it.
         const int moved = parallel ? 9 : 3;
         const std::string bent =
             R"({"select": {"annotation": )" + std::to_string(moved) + R"(}, "rotate": {"axis": [0, 1, 0], "angle": 12}})";
@@ -277,7 +278,7 @@ TEST(Deform, AxesBecomeParallelAndPerpendicular) {
 }
 
 TEST(Deform, PartsMoveToTheAxisOfAnother) {
-    // The parts as they were made: the body is cut open by spout and handle, so that its centroid is off its axis.
+    // The synthetic parts: the body is cut open by spout and handle, so that its centroid is off its axis.
     const SyntheticMesh synthetic = make_mesh(synthetic_object("teapot"), {.vertices = 3000});
     AnnotationSet set;
     for (const int id : {0, 1, 2}) {
@@ -339,7 +340,7 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
     const DeformResult result = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(result.acceptable) << result.constraints[0].text;
     EXPECT_NEAR(length(6, result.points), 1.2 * was, 2e-3 * was);
-    // Two fingers that meet half-way, each from its joint.
+    // Two fingers that change to their mean, each from its joint.
     graph.relationships[0] = constraint(0, "same measure", {6, 7}, R"({"measure": "length", "hard": true})");
     const DeformResult equal = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(equal.acceptable);
@@ -347,7 +348,7 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
     EXPECT_NEAR(length(6, equal.points), length(7, equal.points), 0.01 * was);
     EXPECT_GT(length(7, equal.points), length(7, rest) * 1.05);
     EXPECT_LT(length(6, equal.points), length(6, rest) * 0.95);
-    // A range of which the nearer end is denied by another measure, but not the range.
+    // Another measure excludes the nearer end of the range, but not the whole range.
     const auto range = [&](double from, double to) {
         return R"(, "hard": true, "minValue": )" + std::to_string(from) + R"(, "maxValue": )" + std::to_string(to) + "}";
     };
@@ -361,7 +362,7 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
         EXPECT_EQ(constraint_report.verdict, Verdict::holds) << constraint_report.text;
     EXPECT_NEAR(length(6, within.points), 1.2 * was, 2e-3 * was);
     graph.relationships.pop_back();
-    // Of a tape the line changes.
+    // For a tape, the line changes.
     Caged tape("hand", 6000, 100);
     Annotation& finger = *tape.set.find(6);
     Attribute attribute;
@@ -396,7 +397,7 @@ TEST(Deform, TheOtherSideFollowsAMirror) {
     const auto other = vertices_of(object.synthetic.mesh, *object.set.find(5));
     for (const Index v : other) moved += (result.points[v].z() - result.edited[v].z()) / static_cast<double>(other.size());
     EXPECT_NEAR(moved, 20, 1);
-    // A part that mirrors nothing is refused.
+    // A part without a mirror image is refused.
     graph.relationships[0].constraint = R"({"direction": [1, 0, 0], "point": [500, 0, 0]})";
     EXPECT_NE(error_of(object.bare(), arm, graph).find("mirror image"), std::string::npos);
 }
@@ -433,7 +434,7 @@ TEST(Deform, ConstraintsOfTheSolverCanBeUsedByName) {
 }
 
 TEST(Deform, AdjacentPartsStayAdjacent) {
-    // Two balls apart by little: pieces of one mesh that no edge joins.
+    // Two balls with a small gap: separate components of one mesh.
     const double width = 2;
     const Mesh both = spheres(3, {{0, 0, 0}, {1.01 * width, 0, 0}});
     const std::size_t faces = both.number_of_faces() / 2;
@@ -467,7 +468,7 @@ TEST(Deform, AdjacentPartsStayAdjacent) {
 }
 
 TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
-    // The palm, with fingers, thumb and wrist around it, is made narrower: all of it, and they follow.
+    // The palm, with fingers, thumb and wrist around it, is made narrower, and they follow.
     const Hand hand;
     const double diagonal = box_diagonal(hand.synthetic.mesh);
     const auto area = [&](const std::vector<Point>& points) {
@@ -492,7 +493,7 @@ TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
     EXPECT_LT(share, 0.98);
     for (const Vertex v : hand.synthetic.mesh.vertices())
         ASSERT_LT(std::sqrt(CGAL::squared_distance(result.points[v], hand.synthetic.mesh.point(v))), 0.05 * diagonal);
-    // As a whole: its height changes like its width.
+    // Scaled as a whole: its height changes like its width.
     graph.relationships[0].constraint.insert(1, R"("mode": "scale", )");
     const DeformResult whole = deform(hand.space(), graph, edit(""), "e");
     EXPECT_TRUE(whole.acceptable);

@@ -1,4 +1,4 @@
-// What a deformation says of its result is what is there.
+// The report of a deformation agrees with its result.
 #include "caged.h"
 #include "io/soups.h"
 #include "ostraka/geom/with_points.h"
@@ -82,7 +82,7 @@ TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) 
     const Mesh now = with_points(hand.synthetic.mesh, result.points);
     for (const Index v : vertices_of(now, hand.tagged("ring finger")))
         ASSERT_NEAR(now.point(Vertex(v)).z(), hand.synthetic.mesh.point(Vertex(v)).z() + far, 1e-6);
-    // Nothing is torn: no edge is more than three times as long.
+    // No edge is stretched by more than a factor of three.
     const auto length = [](const Mesh& mesh, Halfedge h) {
         return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
     };
@@ -90,7 +90,7 @@ TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) 
 }
 
 TEST(DeformVerdict, NewCrossingsAreNotAcceptable) {
-    // Two spheres that cross move apart until they cross in a smaller circle: fewer pairs, and others.
+    // Two intersecting spheres are moved apart until they intersect in a smaller circle: fewer pairs, and different ones.
     const Mesh mesh = build_mesh(soups::both(soups::sphere(16, 32), soups::sphere(16, 32, 0.8, {0.9, 0, 0})));
     const auto half = static_cast<Index>(soups::sphere(16, 32).points.size());
     std::string vertices;
@@ -138,7 +138,7 @@ TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
     const double off = 100 * std::abs(measured - at_rest) / at_rest;
     EXPECT_NEAR(*result.constraints[0].deviations[0].value, off, 1e-6);
     EXPECT_LT(off, result.constraints[0].before_values[0]);
-    // As the annotations of the result say, with their pins where they are now.
+    // As in the annotations of the result, with their pins at the new positions.
     AnnotationSet set = hand.set;
     move_extents(hand.synthetic.mesh, hand.set, now, set);
     refresh_measures(now, set);
@@ -149,7 +149,7 @@ TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
 }
 
 TEST(DeformVerdict, LevelsStayAsAtRest) {
-    // Feet that stand 0.3 % of the diagonal apart stay so, whatever the back does.
+    // Feet whose heights differ by 0.3 % of the diagonal keep this difference, regardless of the back.
     Annotated chair("chair");
     const double diagonal = box_diagonal(chair.synthetic.mesh);
     for (const Index v : vertices_of(chair.synthetic.mesh, chair.tagged("front left leg"))) {

@@ -1,4 +1,4 @@
-// Edits through cages and without.
+// Edits with and without cages.
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/coords/nested.h"
@@ -40,7 +40,7 @@ TEST(Edit, SelectsByInfluence) {
     std::vector<Index> everything(object.synthetic.mesh.number_of_vertices());
     for (Index v = 0; v < everything.size(); ++v) everything[v] = v;
     EXPECT_EQ(influential(object.coordinates, everything, columns).size(), object.cage.number_of_vertices());
-    // A part's own handles move it more than the rest.
+    // A part's own handles move it more than other handles.
     const auto states = follow_edit(edit(R"({"select": {"annotation": "spout", "threshold": 0.2}, "translate": [0, 0, 5]})"),
                                     object.handles(), "e");
     EXPECT_EQ(states.front().selected,
@@ -89,7 +89,7 @@ TEST(Edit, InvalidEditsAreRefused) {
 
 namespace {
 
-/// The teapot in a cage, with one of its own around the spout within it.
+/// The teapot in a cage, with a nested cage around the spout.
 struct Nested {
     const Caged& whole = teapot();
     std::size_t spout = 0;
@@ -128,7 +128,7 @@ TEST(NestedEdit, APartIsMovedByItsOwnCage) {
     EXPECT_FALSE(states[0].selected.empty());
     const auto outer = n.follow(R"({"select": {"annotation": "spout", "level": 0}, "translate": [1, 2, 3]})");
     for (const Index v : outer[0].selected) EXPECT_LT(v, first);
-    // As in the cage of the whole alone.
+    // As with the outer cage alone.
     const HandleSpace alone = n.whole.handles();
     EXPECT_EQ(outer[0].selected,
               follow_edit(edit(R"({"select": {"annotation": "spout"}, "translate": [1, 2, 3]})"), alone, "e")[0].selected);
@@ -136,7 +136,7 @@ TEST(NestedEdit, APartIsMovedByItsOwnCage) {
 
 TEST(NestedEdit, InnerCagesFollowOuterCages) {
     const Nested& n = nested();
-    // All of the outer cage: the inner goes with it, and so does the whole object.
+    // The whole outer cage: the inner cage follows, and so does the whole object.
     const auto states = n.follow(R"({"select": {"all": true, "level": 0}, "translate": [5, 0, 0]},
         {"select": {"all": true, "level": 1}, "translate": [0, 7, 0]})");
     const std::vector<Point> first = deformed(n.coordinates, n.cage, states[0].handles);
@@ -144,7 +144,7 @@ TEST(NestedEdit, InnerCagesFollowOuterCages) {
         ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.synthetic.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
     for (const Vertex v : n.cage.vertices())
         ASSERT_LT(std::sqrt(CGAL::squared_distance(states[0].handles[v], n.cage.point(v) + Vector(5, 0, 0))), 1e-9);
-    // Both levels in one edit; what is carried does not count as touched.
+    // Both levels in one edit; handles that follow do not count as selected.
     const Index inner = n.levels[1].cage.vertices.front();
     EXPECT_FALSE(states[0].touched[inner]);
     EXPECT_TRUE(states[1].touched[inner]);
@@ -195,7 +195,7 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
     }
     EXPECT_TRUE(cages[0].check.valid());
     EXPECT_TRUE(cages[1].check.valid());
-    // Without the plane it is found.
+    // Without a given plane it is estimated.
     graph.relationships[0].parameters.plane.reset();
     const auto plane = symmetry_plane(mesh, set, graph, {1, 2}, "graph");
     ASSERT_TRUE(plane);
@@ -204,7 +204,8 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
 }
 
 TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
-    // The spout is turned and is to keep its direction: through one cage that moves the body as well, through its own hardly.
+    // The spout is rotated and must keep its direction: with a single cage this moves the body as well, with the spout's own cage
+    // hardly.
     const Nested& n = nested();
     RelationGraph graph;
     int spout = 0;

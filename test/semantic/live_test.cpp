@@ -1,4 +1,4 @@
-// Handles of a cage that are dragged while constraints hold.
+// Dragging of cage handles under constraints.
 #include "caged.h"
 
 #include "ostraka/geom/with_points.h"
@@ -19,7 +19,7 @@ double farthest(const std::vector<Point>& a, const std::vector<Point>& b) {
     return far;
 }
 
-/// The handles that an annotation means.
+/// The handles of an annotation.
 std::vector<Index> handles_of(const Caged& object, int annotation) {
     const std::vector<Index> rows = vertices_of(object.synthetic.mesh, *object.set.find(annotation));
     return influential(object.coordinates, rows, influence_threshold(object.coordinates.vertex, "auto-mesh", rows));
@@ -72,7 +72,7 @@ TEST(LiveDeformation, ConvergesToTheExactSolution) {
                            std::to_string(way.x()) + ",0," + std::to_string(way.z()) + "]}");
     const DeformResult exact = deform(object.handles(), graph, step, "e", options);
     EXPECT_LT(farthest(shape, exact.points), 0.01 * diagonal);
-    // It is something else than the edit alone.
+    // It differs from the edit alone.
     EXPECT_GT(farthest(exact.points, exact.edited), 0.01 * diagonal);
 }
 

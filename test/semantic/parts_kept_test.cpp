@@ -1,4 +1,4 @@
-// Relations of parts that a deformation keeps, and where and which way single parts are.
+// Relations that a deformation preserves, and positions and directions of single parts.
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/geom/eigen.h"
@@ -101,7 +101,7 @@ void expect_kept(const Column& column, const Relationship& relationship, const s
     EXPECT_GT(report.cost_before, 0) << relationship.type;
 }
 
-/// Parameters of a hard constraint whose parts follow one.
+/// Parameters of a hard constraint with a leading part.
 std::string follows(const std::string& leader) { return R"({"hard": true, "follow": )" + leader + "}"; }
 
 void measure_heights(Column& column) {
@@ -139,7 +139,7 @@ TEST(PartsKept, ASupportStaysLevel) {
 TEST(PartsKept, ADirectionStaysUpright) {
     expect_kept(Column(), constraint(0, "keep direction", {top}, "{}", 1000), tilt_top);
     expect_kept(Column(), constraint(0, "keep direction", {top}, R"({"angle": 0})", 1000), tilt_top);
-    // By itself the top is where the edit puts it: it leans by 40 degrees.
+    // Without a constraint the top follows the edit: it leans by 40 degrees.
     const Column column;
     const DeformResult result = solved(column, constraint(0, "keep direction", {top}, R"({"angle": 40})", 1000), tilt_top);
     EXPECT_EQ(result.constraints[0].before, Verdict::holds) << *result.constraints[0].deviations[0].value;
@@ -193,7 +193,7 @@ TEST(PartsThatFollow, GrowAsMuchAsTheEditedPart) {
         EXPECT_NEAR(area_of(deformed, column.set.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
         EXPECT_NEAR(area_of(deformed, column.set.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
     }
-    // Without it all go to what they are in the mean; led by the part that is not edited nothing grows.
+    // Without it all parts change to their mean; if the unedited part leads, nothing grows.
     const Mesh alike =
         with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, R"({"hard": true})"), grow).points);
     EXPECT_LT(area_of(alike, column.set.find(top)->faces) / top_area, 1.7);
@@ -217,7 +217,7 @@ TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
     DeformResult still;
     still.points = rest;
     const double top_height = 1.5 * height(still, top);
-    // Of a proportion the first part changes, unless it is the one that leads.
+    // In a proportion the first part changes, unless it is the leader.
     for (const auto& relationship :
          {constraint(0, "same measure", {foot, top}, R"({"measure": "height", "hard": true, "follow": true})"),
           constraint(
@@ -290,7 +290,7 @@ TEST(PartsKept, InvalidConstraintsAreRefused) {
 }
 
 TEST(PartsKept, PositionAndShapeOrDirectionTogether) {
-    // Each holds with the part as it was; neither must pull the other half of the way.
+    // Each constraint holds for the original part; neither must move the other halfway.
     const Column column;
     const std::string bend = R"({"select": {"annotation": "shaft"}, "rotate": {"axis": [0, 1, 0], "angle": 8}})";
     const Eigen::Vector3d place = column.mean(top, points_of(column.mesh));
@@ -309,7 +309,7 @@ TEST(PartsKept, PositionAndShapeOrDirectionTogether) {
 }
 
 TEST(PartsKept, TheBaseConsistsOfTheCurrentlyLowestVertices) {
-    // The parts are tilted, so that other vertices are lowest than at rest: the level is that of these.
+    // The parts are tilted, so that the lowest vertices differ from those at rest; these define the level.
     Column column;
     for (const bool hard : {true, false}) {
         RelationGraph graph;
@@ -350,7 +350,7 @@ TEST(PartsKept, OnOneLevelFollowersGrowWithTheirLeader) {
 }
 
 TEST(PartsKept, AreasOfFreePartsAreMeasuredByTheirCurves) {
-    // Caps of the same size on a coarse sphere: the triangles nearest to them differ by far more than they do.
+    // Caps of the same size on a coarse sphere: their nearest triangles differ by far more than the caps.
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const auto deviation = [&](const std::string& outline) {
         const std::string head = R"(", "type": "region", "outline": ")" + outline + R"(", "select": {"sphere": {"centre": )";

@@ -1,4 +1,4 @@
-// Several measures of one object that must hold at once, measured on the points that come back.
+// Several simultaneous measures of one object, measured on the result.
 #include "caged.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
@@ -15,14 +15,14 @@ namespace {
 using Direction = std::array<double, 3>;
 constexpr Direction x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
-/// A measure of a part that is asked for, as a share of what it is at rest.
+/// A requested measure of a part, relative to its rest value.
 struct Asked {
     std::string tag;
     Direction direction;
     double share;
 };
 
-/// A synthetic object without a cage, and what its parts measure.
+/// A synthetic object without a cage, and the extents of its parts.
 struct Object {
     SyntheticMesh synthetic;
     AnnotationSet set;
@@ -45,7 +45,7 @@ struct Object {
         const auto [low, high] = span(tag, d, points);
         return high - low;
     }
-    /// Hard constraints that the measures come to their shares.
+    /// Hard constraints for the requested measures.
     [[nodiscard]] RelationGraph ask(const std::vector<Asked>& list) {
         RelationGraph graph;
         for (std::size_t i = 0; i < list.size(); ++i) {
@@ -114,7 +114,7 @@ TEST(Sizes, APartCannotBeLongerThanItsContainer) {
     EXPECT_TRUE(result.constraints[0].verdict == Verdict::fails || result.constraints[1].verdict == Verdict::fails);
     ASSERT_FALSE(result.conflicts.empty());
     for (const ConstraintConflict& conflict : result.conflicts) EXPECT_NE(conflict.id, 2) << "the cap fights with neither";
-    // What fails is told by two vertices and how far they are off, as they stand in the result.
+    // A failing measure is reported with two vertices and their deviation in the result.
     for (std::size_t i = 0; i < 2; ++i) {
         if (result.constraints[i].verdict != Verdict::fails) continue;
         EXPECT_NE(result.constraints[i].text.find("vertices"), std::string::npos) << result.constraints[i].text;
@@ -129,7 +129,7 @@ TEST(Sizes, ASatisfiedMeasureIsNotSolvedFor) {
         deform({object.synthetic.mesh, object.set}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
     EXPECT_TRUE(result.acceptable);
     EXPECT_EQ(result.points, result.edited);
-    // One that others take away is not.
+    // A measure that others would violate is solved for.
     const DeformResult pulled =
         deform({object.synthetic.mesh, object.set}, object.ask({{"cap", z, 1}, {"statuette", z, 1.2}}), edit(""), "e");
     EXPECT_TRUE(pulled.constraints[0].verdict == Verdict::holds && pulled.constraints[1].verdict == Verdict::holds);

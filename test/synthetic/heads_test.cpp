@@ -142,7 +142,7 @@ TEST(Heads, StandOnTheirOwnBodies) {
     const auto of_head = [](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; };
     EXPECT_NEAR(area_where(complete, of_head) / area_where(head, of_head), 1, 0.05);
     EXPECT_GT(area_where(complete, [](HeadPart part) { return part == HeadPart::body; }), area_where(head, of_head));
-    // Up goes from the body to the head.
+    // The upward direction points from the body to the head.
     const Vector up(complete.up[0], complete.up[1], complete.up[2]);
     double low = 1e300, high = -1e300;  // of the body's faces, of the head's
     for (const Face f : complete.mesh.faces()) {

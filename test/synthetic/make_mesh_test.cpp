@@ -114,7 +114,7 @@ TEST_P(EveryObject, VerticesLieOnTheSurfaceAndPartsAreWhole) {
 }
 
 TEST_P(EveryObject, SlopeKeepsItsBound) {
-    // What lets the mesher skip blocks: no surface within |value| - slack of a point.
+    // The condition for skipping blocks: no surface within |value| - slack of a point.
     const SyntheticObject& object = synthetic_object(GetParam());
     const SyntheticMesh m = object_mesh(object.name, object.minimum_vertices);
     std::vector<Point> surface;

@@ -48,7 +48,7 @@ TEST(VocabularyCommand, ShowIsATree) {
     EXPECT_TRUE(holds(under.out, "\neye ")) << under.out;
     EXPECT_TRUE(holds(under.out, "\n  left eye ")) << under.out;
     EXPECT_FALSE(holds(under.out, "vase"));
-    // English, and a word about it, where the language is none of the vocabulary's.
+    // English, with a note, if the vocabulary does not have the language.
     const auto unknown_language = run_command("vocabulary show --language xx " + words);
     EXPECT_EQ(unknown_language.code, 0);
     EXPECT_TRUE(holds(unknown_language.err, "no label is in the language 'xx'; there are de, en, it")) << unknown_language.err;
@@ -69,7 +69,7 @@ TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectSatisfyTheVocabulary) {
         EXPECT_EQ(result.code, 0) << result.out << result.err;
         EXPECT_FALSE(holds(result.out, "not among those")) << result.out;
     }
-    // A chair is no part of it.
+    // A chair is not in the vocabulary.
     const auto chair = run_command("annotation check " + data + "chair.ply " + data + "chair.ant.json --vocabulary " + words);
     EXPECT_EQ(chair.code, 3) << chair.err;
     EXPECT_TRUE(holds(chair.out, "the tag 'armchair' is not in the vocabulary") ||

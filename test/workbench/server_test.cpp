@@ -1,4 +1,4 @@
-// The server against those who should not talk to it, and those who talk nonsense.
+// The server against unauthorised clients and invalid requests.
 #include "meshes.h"
 #include "scratch.h"
 
@@ -26,7 +26,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A server on a folder with one mesh, on a thread of its own.
+/// A server on a folder with one mesh, on a separate thread.
 struct Served {
     Scratch scratch;
     std::unique_ptr<Workbench> workbench;
@@ -45,7 +45,7 @@ struct Served {
     [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server->port()); }
 };
 
-/// A connection of bare bytes.
+/// A connection that sends and receives bytes.
 class Wire {
 public:
     explicit Wire(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -67,7 +67,7 @@ public:
         }
         return true;
     }
-    /// What comes until the other side closes, there is as much as wanted, or nothing came for some seconds.
+    /// Received bytes until the other side closes, the requested number has arrived, or nothing arrives for some seconds.
     std::string receive(std::size_t wanted = 1U << 30U, int patience = 10000) {
         std::string all;
         char part[65536];
@@ -118,7 +118,7 @@ public:
         return message;
     }
 
-    /// The next answer; events are passed over.
+    /// The next answer; events are skipped.
     std::string answer() {
         std::string message = hear();
         while (message.starts_with("{\"event\"")) message = hear();
@@ -145,7 +145,7 @@ int ask(const Served& served, const std::string& request) {
     wire.send(request);
     return status(wire.receive());
 }
-/// A page that may talk.
+/// An authorised page.
 std::unique_ptr<Wire> page(const Served& served) {
     auto wire = std::make_unique<Wire>(served.server->port());
     wire->send(upgrade(served, "http://" + served.host(), served.server->token()));
@@ -181,7 +181,7 @@ TEST(WorkbenchServer, ServesThePageToClientsWithTheToken) {
 }
 
 TEST(WorkbenchServer, SetsAndAcceptsNoCookie) {
-    // Browsers send the cookies of one port of a machine to every other port of it.
+    // Browsers send the cookies of one port of a machine to all its ports.
     const Served served;
     const std::string token = served.server->token(), origin = "http://" + served.host();
     const std::string cookie =
@@ -272,7 +272,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
         wire->receive();
         EXPECT_TRUE(wire->closed());
     }
-    {  // bytes that are no message, and binary messages
+    {  // bytes that are not a message, and binary messages
         const auto wire = page(served);
         wire->send(std::string(4000, '\xff'));
         wire->receive();
@@ -282,7 +282,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
         other->receive();
         EXPECT_TRUE(other->closed());
     }
-    {  // text that is no request is answered
+    {  // text that is not a request is answered
         const auto wire = page(served);
         for (const char* text :
              {"", "{", "null", "[]", "{\"do\":7}", "{\"id\":\"x\",\"do\":\"hello\",\"do\":\"\"}", "\xff\xfe"}) {
@@ -296,10 +296,10 @@ TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
             EXPECT_NE(wire->answer().find("\"ok\":false"), std::string::npos) << text;
         }
     }
-    {  // who asks and goes
+    {  // clients that disconnect after a request
         for (int i = 0; i < 5; ++i) page(served)->say(R"({"id":1,"do":"open","name":"ball.ply"})");
     }
-    {  // more requests than may wait
+    {  // more requests than the limit of waiting ones
         const auto wire = page(served);
         for (int i = 0; i < 2000; ++i)
             if (!wire->say(R"({"id":1,"do":"hello"})")) break;
@@ -307,7 +307,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
         EXPECT_TRUE(wire->closed());
     }
     EXPECT_TRUE(answers(served));
-    // What was asked before its page was gone is done.
+    // Requests sent before the page disconnected are completed.
     for (int i = 0; i < 100 && served.workbench->session().steps().size() < 5; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_EQ(served.workbench->session().steps().size(), 5U);
@@ -323,14 +323,14 @@ TEST(WorkbenchServer, NoClientCanOccupyAllConnections) {
         many.push_back(std::make_unique<Wire>(served.server->port()));
         if (i % 2 == 0) many.back()->send("GET / HT");  // and no more
     }
-    // Nobody has to wait until they are let go, and who talked before still does.
+    // Other clients do not wait until they are dropped, and connected pages are still served.
     const auto began = std::chrono::steady_clock::now();
     EXPECT_EQ(ask(served, get(served, "/?token=" + served.server->token())), 200);
     EXPECT_TRUE(answers(served));
     before->say(R"({"id":1,"do":"go","place":0})");
     EXPECT_NE(before->answer().find("\"ok\":true"), std::string::npos);
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
-    // The oldest were dropped at once, the others are when their time for a head is over.
+    // The oldest were dropped at once; the others are dropped after the time limit for the header.
     many.front()->receive(1, 0);
     EXPECT_TRUE(many.front()->closed());
     many.back()->receive(1, 10000);
@@ -375,7 +375,7 @@ TEST(WorkbenchServer, BoundsTheMemoryForAPageThatDoesNotRead) {
     other->say(R"({"id":1,"do":"open","name":"ball.ply"})");
     EXPECT_NE(other->answer().find("\"ok\":true"), std::string::npos);
     const double before = resident_memory();
-    // Two megabytes each: 120 MB that nobody reads.
+    // Two megabytes each: 120 MB of unread answers.
     for (int i = 0; i < 60; ++i) EXPECT_TRUE(slow->say(R"({"id":2,"do":"scene","known":[]})"));
     double most = 0;
     for (int i = 0; i < 20; ++i) {
@@ -385,7 +385,7 @@ TEST(WorkbenchServer, BoundsTheMemoryForAPageThatDoesNotRead) {
         most = std::max(most, resident_memory() - before);
     }
     EXPECT_LT(most, 40e6);
-    // It is dropped for good, without waiting for what it says to that.
+    // It is dropped, without waiting for its close message.
     bool gone = false;
     for (int i = 0; i < 100 && !gone; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));

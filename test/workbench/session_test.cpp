@@ -1,4 +1,4 @@
-// Sessions: what was done can be undone to the bit, is repeated to the bit by the command, and survives what a page can send.
+// Sessions: steps are undone to the bit, repeated to the bit by the command, and unaffected by damaged messages of a page.
 #include "meshes.h"
 #include "mutate.h"
 #include "scratch.h"
@@ -29,14 +29,14 @@ struct Bench {
         workbench = std::make_unique<Workbench>(scratch / "session", scratch.path());
     }
 
-    /// The answer to a message; it has to be in order.
+    /// The answer to a message, which must succeed.
     Json ask(const std::string& message) const {
         const Workbench::Reply reply = workbench->answer(message);
         Json answer = parse_json(reply.json, "the answer");
         EXPECT_TRUE(answer["ok"].GetBool()) << message << "\n" << reply.json;
         return answer;
     }
-    /// What is wrong with a message.
+    /// The error of a message.
     [[nodiscard]] std::string refused(const std::string& message) const {
         const Json answer = parse_json(workbench->answer(message).json, "the answer");
         EXPECT_FALSE(answer["ok"].GetBool()) << message;
@@ -84,7 +84,7 @@ TEST(Session, OpensAnnotatesAndKeepsTheSteps) {
     ASSERT_EQ(bench.state().objects.size(), 1U);
     const std::string annotations = bench.state().objects[0].part("annotations");
     EXPECT_EQ(annotations, "steps/s003/ball.ant.json");
-    // Another process goes on with it.
+    // Another process continues the session.
     bench.start();
     EXPECT_EQ(bench.workbench->session().place(), 3U);
     EXPECT_EQ(bench.state().objects[0].part("annotations"), annotations);
@@ -154,7 +154,7 @@ TEST(Session, UndoRestoresEveryStateToTheBit) {
                 R"({"id":1,"do":"run","operation":"annotation edit","with":{"mesh":{"part":"mesh"},"annotations":{"part":"annotations"},"set-class":"ball )" +
                 std::to_string(i) + R"("}})");
         }
-        // A state that was left is what it was; new ones take the place of those that were undone.
+        // Earlier states are unchanged; new states replace those that were undone.
         if (session.place() == session.steps().size() && states.size() != session.steps().size() + 1) {
             states.resize(session.place());
             states.push_back(checksums(session));
@@ -233,7 +233,7 @@ TEST(Session, SurvivesDamagedMessages) {
         const Json answer = parse_json(bench.workbench->answer(damaged).json, "the answer");
         EXPECT_TRUE(answer.HasMember("ok"));
     }
-    bench.start();  // what it holds is in order
+    bench.start();  // its contents are valid
 }
 
 TEST(Session, IsRefusedIfDamagedOrIfFilesAreMissing) {
@@ -360,7 +360,7 @@ TEST(Session, AMapIsShownWithItsOwnObject) {
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(R"({"id":1,"do":"run","operation":"measure map","with":{"mesh":{"part":"mesh"},"of":"mean-curvature"}})");
     EXPECT_EQ(maps(), std::vector<std::size_t>{1});
-    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");  // as many vertices, but another object
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");  // the same number of vertices, but another object
     EXPECT_EQ(maps(), (std::vector<std::size_t>{0, 0}));
 }
 
