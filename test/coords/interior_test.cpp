@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kinds{"harmonic", "local", "positive-mean-value"};
 
-/// Enough to see what holds, in little time.
+/// Sufficient to test the properties quickly.
 CoordinateOptions quick(std::uint64_t nodes = 1500) {
     CoordinateOptions options;
     options.nodes = nodes;
@@ -116,7 +116,7 @@ TEST(InteriorCoordinates, InAnOctahedronAreEqualForItsCorners) {
     const std::vector<Point> middle{{0, 0, 0}};
     for (const std::string& kind : kinds) {
         const Coordinates c = compute_coordinates(kind, cage, middle, quick(4000));
-        // Of tetrahedra that are no mirror images of each other: the harmonic ones to their discretisation.
+        // The tetrahedra are not mirror images of each other: harmonic weights agree up to the discretisation.
         if (kind == "local") continue;
         for (Eigen::Index j = 0; j < 6; ++j) EXPECT_NEAR(c.vertex(0, j), 1.0 / 6, 0.02) << kind;
     }

@@ -1,4 +1,4 @@
-// Programs that are started: what they read, print and return, and that they end when they are told to.
+// Child processes: input, output, exit code and termination.
 #include "ostraka/execution/child_process.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/stopwatch.h"
@@ -41,7 +41,7 @@ TEST(ChildProcess, EndsWithAllThatItStarted) {
     }
     const pid_t started = std::stoi(read_file(scratch / "started"));
     while (::kill(started, 0) == 0 && clock.seconds() < 30) {
-        // A killed process that nobody has waited for is still known: it is none that runs.
+        // A killed process without a wait still exists as a zombie: it does not count as running.
         const std::string state = read_file("/proc/" + std::to_string(started) + "/stat");
         if (state.find(") Z") != std::string::npos) break;
     }

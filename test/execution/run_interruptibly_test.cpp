@@ -54,7 +54,7 @@ TEST(RunApart, AbandonsCancelledWork) {
             watch.cancel();
             ready->wait();
             try {
-                check_cancelled();  // its own watch says so too
+                check_cancelled();  // its own watch reports it too
             } catch (const Error& error) {
                 is_told = error.kind() == ErrorKind::cancelled;
             }
@@ -64,7 +64,7 @@ TEST(RunApart, AbandonsCancelledWork) {
         EXPECT_EQ(error.kind(), ErrorKind::cancelled);
     }
     may_end.set_value();
-    has_ended->get_future().wait();  // what it held is freed
+    has_ended->get_future().wait();  // its resources are released
     EXPECT_TRUE(is_told);
 }
 

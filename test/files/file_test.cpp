@@ -158,7 +158,7 @@ TEST(ReplaceOutputs, KeepsFilesOfTheLastRunAndOfOthers) {
         EXPECT_TRUE(std::filesystem::exists(scratch / name)) << name;
     EXPECT_EQ(read_file(scratch / "c.csv"), "5");
     EXPECT_EQ(read_file(scratch / ".test.outputs"), sha256("1") + "  a.png\n" + sha256("5") + "  c.csv\n");
-    // What was changed once is the user's from then on.
+    // A file that was changed once belongs to the user from then on.
     write_outputs(scratch.path(), {});
     EXPECT_TRUE(std::filesystem::exists(scratch / "edited.csv"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "a.png"));
@@ -173,7 +173,7 @@ TEST(ReplaceOutputs, LeavesInputs) {
     }
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "b.ply"));
-    // What was an input once is the user's from then on.
+    // A file that was an input once belongs to the user from then on.
     write_outputs(scratch.path(), {});
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "c.ply"));
@@ -189,7 +189,7 @@ TEST(ReplaceOutputs, RemovesNothingBeforeAllFilesAreWritten) {
     }
     EXPECT_EQ(read_file(scratch / "a.svg"), "1");
     EXPECT_FALSE(std::filesystem::exists(scratch / "b.svg"));
-    // A run that was killed between the two is made good by the next one.
+    // The next run completes one that was killed between the two.
     (void)scratch.file("b.svg", "2");
     (void)scratch.file(".test.outputs", sha256("2") + "  b.svg\n" + sha256("1") + "  a.svg\n");
     write_outputs(scratch.path(), {{"b.svg", "2"}});
@@ -236,7 +236,7 @@ TEST(RemoveStaleTemporaries, RemovesFilesOfKilledProcessesImmediately) {
             if (name.starts_with(".ostraka-")) list.push_back(name);
         return list;
     };
-    // One that is being written, and one that waits for its transaction, are left alone.
+    // A file that is being written, and one that waits for its transaction, are kept.
     {
         OutputTransaction waiting;
         write_file(scratch / "waits.txt", "x");
@@ -250,7 +250,7 @@ TEST(RemoveStaleTemporaries, RemovesFilesOfKilledProcessesImmediately) {
     }
     EXPECT_EQ(read_file(scratch / "waits.txt") + read_file(scratch / "open.txt"), "xx");
     EXPECT_TRUE(names().empty());
-    // A process that is killed in the middle leaves two.
+    // A process that is killed during the work leaves two files.
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

@@ -1,4 +1,4 @@
-// Schemas of doc/schema: what they refer to is there, and no document makes a check end in anything but words.
+// Schemas of doc/schema: all references resolve, and any document is accepted or refused with a message.
 #include "ostraka/core/error.h"
 #include "ostraka/files/json.h"
 
@@ -21,7 +21,7 @@ std::vector<std::string> schema_names() {
     return names;
 }
 
-/// All that "$ref" says, with its place.
+/// All values of "$ref", with their locations.
 void list_references(const JsonValue& value, const std::string& pointer,
                      std::vector<std::pair<std::string, std::string>>& references) {
     if (value.IsArray())
@@ -34,7 +34,7 @@ void list_references(const JsonValue& value, const std::string& pointer,
     }
 }
 
-/// A document that has every member that the schema knows, at least nearly right.
+/// A document that has every member that the schema knows, approximately valid.
 class Sample {
 public:
     explicit Sample(const JsonValue& schema) : schema_(schema) {}
@@ -90,7 +90,7 @@ private:
     JsonAllocator* allocator_ = nullptr;
 };
 
-/// Whatever the document: it is right, or an Error says where it is not.
+/// Any document is valid, or an Error gives the location of the problem.
 void expect_words(const JsonValue& document, const std::string& schema) {
     try {
         validate(document, schema, "document");
@@ -100,7 +100,7 @@ void expect_words(const JsonValue& document, const std::string& schema) {
     }
 }
 
-/// Puts values of all types in the place of each value, one after the other. Returns how many documents that makes.
+/// Replaces each value by values of all types in turn. Returns the number of documents.
 std::size_t with_wrong_types(Json& document, JsonValue& value, const std::string& schema) {
     static const Json others = parse_json(R"([null, true, 5, -1, 1e300, "", "x", [], {}, [5], [["a"], 5], {"a": 5}])", "others");
     auto& a = document.GetAllocator();

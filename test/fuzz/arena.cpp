@@ -26,7 +26,7 @@ std::string bytes_of(auto value) {
     return bytes;
 }
 
-/// What tells that a canary was read.
+/// Text that reveals that a canary was read.
 const std::vector<std::string>& traces() {
     static const std::vector<std::string> list{token, "271828.1875", bytes_of(number), bytes_of(static_cast<float>(number))};
     return list;
@@ -48,7 +48,7 @@ std::string read_plain(const Path& file, std::size_t most = 50'000'000) {
     return bytes;
 }
 
-/// Names, kinds, sizes and times of all that lies in a folder.
+/// Names, kinds, sizes and times of all files in a folder.
 void list_state(const Path& folder, std::ostream& text) {
     std::vector<Path> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path());
@@ -82,7 +82,7 @@ Arena::Arena(const Path& project) {
     std::string pattern = (std::filesystem::temp_directory_path() / "ostraka-fuzz-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) fail_work(pattern, "cannot be made", "is there space?");
     root_ = pattern;
-    above_ = root_ / "a" / "b" / "c";  // names that climb shall find something
+    above_ = root_ / "a" / "b" / "c";  // names with .. must find something
     home_ = above_ / "home";
     std::filesystem::create_directories(seeds());
     for (const char* name : {"work", "canaries", "tmp"}) std::filesystem::create_directories(home_ / name);
@@ -129,7 +129,7 @@ std::string Arena::look_at_canaries() const {
     return text.str();
 }
 
-/// Returns how many bytes there are.
+/// Returns the number of bytes.
 double Arena::lay_out(const Subject& subject, const std::vector<Change>& changes) const {
     const Path work = home_ / "work";
     clear(work);
@@ -171,7 +171,7 @@ void Arena::apply(const Change& change) const {
     }
 }
 
-/// Of which file of the run, or of what it said, a canary's contents are a part; empty: none.
+/// The file or output of the run that contains a canary's contents; empty: none.
 std::string Arena::betrayed_in() const {
     std::vector<Path> files{above_ / "said"};
     for (const char* folder : {"work", "tmp"})

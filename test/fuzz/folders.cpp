@@ -1,4 +1,4 @@
-// What names other files and programs as subjects: studies, folders of runs, sessions, messages, kits.
+// Files that name other files and programs as subjects: studies, run folders, sessions, messages, kits.
 #include "subjects.h"
 
 #include "ostraka/conformance/kit.h"
@@ -30,7 +30,7 @@ constexpr const char* rich_study =
  "plots": {"area": {"title": "Area", "table": "areas", "x": "vertices", "y": "area", "logarithmic": ["x"]}},
  "page": [{"title": "All", "text": "Areas", "show": ["areas", "area"]}]})";
 
-/// Steps that lead elsewhere or start programs.
+/// Steps that leave the folder or start programs.
 const std::vector<Plant>& hostile_steps() {
     static const std::vector<Plant> plants{
         {"/steps", R"({"program": ["sh", "-c", "echo > @CANARIES@/made"]})"},
@@ -73,7 +73,7 @@ const std::vector<Plant>& hostile_steps() {
     return plants;
 }
 
-/// Steps, parts and files of a session that lead elsewhere.
+/// Steps, parts and files of a session that leave the folder.
 const std::vector<Plant>& hostile_session() {
     static const std::vector<Plant> plants{
         {"/steps/0/state/objects/0/parts", R"("@CANARIES@/secret.txt")"},
@@ -208,7 +208,7 @@ const std::vector<std::string>& further_messages() {
     return messages;
 }
 
-/// What the workbench answers, its bytes as well.
+/// The workbench's answer, including its bytes.
 std::string ask(Workbench& workbench, const std::string& message) {
     const Workbench::Reply reply = workbench.answer(message);
     return reply.json + "\n" + reply.bytes + "\n";

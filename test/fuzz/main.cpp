@@ -1,5 +1,5 @@
-// Mutated files of all kinds, given to what reads them: nothing may crash, hang, take memory without bound, or touch what lies
-// outside. doc/building.md says how it is used.
+// Runs the readers on mutated files of all kinds: they must not crash, hang, use unbounded memory, or access files outside the
+// folder. doc/building.md describes its use.
 #include "arena.h"
 #include "findings.h"
 
@@ -23,7 +23,7 @@ ostraka_fuzz [--say] [--expected] FILE...   what was kept (or folders of it), on
 ostraka_fuzz --kinds           kinds of files
 )";
 
-constexpr int left_out = 77;  ///< exit code, which ctest understands
+constexpr int left_out = 77;  ///< exit code, as expected by ctest
 
 struct Words {
     std::uint64_t seed = 1, runs = 0, first = 0;
@@ -65,7 +65,7 @@ Words words_of_call(const std::vector<std::string>& given) {
     return words;
 }
 
-/// What can be mutated, by kind: a subject, and one of its targets.
+/// The possible mutations by kind: a subject and one of its targets.
 using Kinds = std::map<std::string, std::vector<std::pair<const Subject*, const Target*>>>;
 
 Kinds kinds_of(const std::vector<Subject>& subjects) {
@@ -116,7 +116,7 @@ Trial trial_of(const Kinds& kinds, const std::string& kind, Dice& dice) {
     return trial;
 }
 
-/// How often which outcome, and what took most.
+/// The number of runs by outcome, and the maximum cost.
 struct Tally {
     std::map<Outcome, std::size_t> outcomes;
     std::map<std::string, std::size_t> findings;

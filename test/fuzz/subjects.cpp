@@ -1,4 +1,4 @@
-// Cases of the conformance kit as subjects, and what all subjects share.
+// Cases of the conformance kit as subjects, and functions shared by all subjects.
 #include "subjects.h"
 
 #include "ostraka/files/json_build.h"
@@ -11,7 +11,7 @@ namespace ostraka::fuzz {
 
 namespace {
 
-/// Those that run others have subjects of their own; the others take more than a second for a case.
+/// Operations that run others have separate subjects; the others take more than a second per case.
 bool is_left_out(const std::string& operation) {
     static const std::set<std::string> names{"run",
                                              "replay",
@@ -26,14 +26,14 @@ bool is_left_out(const std::string& operation) {
     return names.contains(operation);
 }
 
-/// The kind of file of an input: of meshes their format, since each has its reader.
+/// The kind of file of an input: for meshes the format, since each format has its own reader.
 std::string kind_of(const Slot& slot, const std::string& file) {
     const bool is_mesh = slot.kind == Kind::mesh || slot.kind == Kind::cage || slot.kind == Kind::collection;
     if (is_mesh && Path(file).has_extension()) return extension(file).substr(1);
     return slot.kind == Kind::mesh ? "mesh" : to_string(slot.kind);
 }
 
-/// Files that a run needs: those named, what lies beside them under their names, and what JSON files name in turn.
+/// Files that a run needs: the named ones, files of the same name next to them, and files named by JSON files.
 class Closure {
 public:
     explicit Closure(Path kit) : kit_(std::move(kit)) {}

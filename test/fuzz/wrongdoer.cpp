@@ -1,4 +1,4 @@
-// Does wrong on purpose.
+// Misbehaves on purpose.
 #include "subjects.h"
 
 #include "ostraka/core/error.h"

@@ -1,4 +1,4 @@
-// Circles, lines, hulls and rectangles that are known.
+// Known circles, lines, hulls and rectangles.
 #include "ostraka/geom/circle.h"
 #include "ostraka/geom/line.h"
 #include "ostraka/geom/planar.h"
@@ -33,7 +33,7 @@ TEST(CircleFit, OfArcsForAnySubdivisionAndPosition) {
             EXPECT_NEAR((circle.centre - centre).norm() / scale, 0, 2e-4) << to;
             EXPECT_NEAR(circle.radius / scale, 2, 2e-4) << to;
         }
-    // Cutting every piece in two changes nothing.
+    // Halving every piece changes nothing.
     const auto coarse = arc(0, 2.5, 3, {1, 2}, 12);
     PlaneSegments fine;
     for (const auto& [a, b] : coarse) fine.emplace_back(a, a + 0.3 * (b - a)), fine.emplace_back(a + 0.3 * (b - a), b);
@@ -43,7 +43,7 @@ TEST(CircleFit, OfArcsForAnySubdivisionAndPosition) {
 }
 
 TEST(CircleFit, IsTheLeastSquares) {
-    // No circle nearby does better, for a figure that is no circle.
+    // No nearby circle fits better, for a figure that is not a circle.
     const PlaneSegments egg{{{2, 0}, {0, 1.5}}, {{0, 1.5}, {-1.6, 0}}, {{-1.6, 0}, {0, -1.4}}, {{0, -1.4}, {2, 0}}};
     const Circle best = fit_circle(egg);
     const double minimum = circle_deviation(egg, best).square;
@@ -62,15 +62,15 @@ TEST(ArcFit, RadiusUncertaintyMatchesTheArc) {
     }
     EXPECT_FALSE(fit_arc(PlaneSegments{}).is_round());
     EXPECT_FALSE(fit_arc(PlaneSegments{{{0, 0}, {1, 1}}}).is_round());
-    // Sides of a square: no arc, however well a circle goes through.
+    // Sides of a square: not an arc, however well a circle fits.
     const PlaneSegments corner{{{1, 0}, {0, 0}}, {{0, 0}, {0, 1}}};
     EXPECT_FALSE(fit_arc(corner).is_round());
     EXPECT_GT(fit_arc(corner).uncertainty(), 0.3);
 }
 
 TEST(ArcFit, IntervalsHaveTheNominalCoverage) {
-    // Of 200 points with noise s along an arc of length L the curvature has the standard error s sqrt(720 / n) / L^2 where the
-    // arc is short; for any arc the intervals hold the radius in 95 of 100 cases, give or take what 200 draws leave open.
+    // For 200 points with noise s along a short arc of length L the curvature has the standard error s sqrt(720 / n) / L^2; for
+    // any arc the intervals contain the radius in 95 of 100 cases, up to the error of 200 draws.
     const int n = 200, draws = 200;
     for (const double degrees : {5.0, 20.0, 90.0, 180.0}) {
         const double noise = degrees < 10 ? 0.02 : 0.3, length = 100 * degrees * M_PI / 180;
@@ -102,7 +102,7 @@ TEST(AngleCovered, ByPoints) {
         return angle_covered(list) * 180 / M_PI;
     };
     EXPECT_NEAR(degrees({0, 120, 240}), 360, 1e-9);
-    EXPECT_NEAR(degrees({0, 5, 10}), 10, 1e-9);  // three points on a short arc are no circle
+    EXPECT_NEAR(degrees({0, 5, 10}), 10, 1e-9);  // three points on a short arc are not a circle
     EXPECT_NEAR(degrees({0, 90, 180}), 180, 1e-9);
     std::vector<double> ring, arcs;
     for (int k = 0; k < 90; ++k) ring.push_back(4 * k), arcs.push_back(k < 45 ? k : k + 135);

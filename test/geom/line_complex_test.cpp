@@ -1,4 +1,4 @@
-// Axes that normals meet, of surfaces whose axis is known.
+// Axes that normals intersect, for surfaces with known axis.
 #include "ostraka/geom/line_complex.h"
 #include "ostraka/stats/random.h"
 
@@ -18,7 +18,7 @@ Motion some_motion() {
     return motion;
 }
 
-/// Places and normals of a cone about z with this slope.
+/// Points and normals of a cone about z with this slope.
 std::vector<std::pair<Vector3d, Vector3d>> cone(double slope, double from, double to) {
     std::vector<std::pair<Vector3d, Vector3d>> list;
     for (int i = 0; i < 20; ++i)

@@ -1,4 +1,4 @@
-// Every answer of the tree against looking at all points.
+// Every answer of the tree against brute force.
 #include "ostraka/geom/point_tree.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ double squared(const Point& p, const Point& q) {
     return x * x + y * y + z * z;
 }
 
-/// Nearest first, of equally near ones the lower index.
+/// Nearest first; in case of a tie, the lower index.
 std::vector<std::pair<double, Index>> ranked(const std::vector<Point>& points, const Point& place) {
     std::vector<std::pair<double, Index>> list;
     for (Index i = 0; i < points.size(); ++i) list.emplace_back(squared(points[i], place), i);
@@ -136,7 +136,7 @@ TEST(PointTree, IsMoved) {
 TEST(PointTree, ManyCoincidentPointsAreNotSearchedRepeatedly) {
     const std::vector<Point> heap(200'000, Point(1, 2, 3));
     const PointTree tree(heap);
-    for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, not of the heap
+    for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, independent of the number of coincident points
         EXPECT_EQ(tree.nearest(Point(1, 2, 3)).index, 0U);
         const auto two = tree.neighbours(Point(1, 2, 3), 2);
         EXPECT_EQ(std::pair(two[0].index, two[1].index), std::pair(Index{0}, Index{1}));

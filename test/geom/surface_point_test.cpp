@@ -13,7 +13,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Two points on each vertex, edge and face of a mesh, given from both ends of edges.
+/// Two points on each vertex, edge and face of a mesh, specified from both ends of edges.
 std::vector<SurfacePoint> points_everywhere(const Mesh& mesh) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> fraction(0.01, 0.99);

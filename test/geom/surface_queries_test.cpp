@@ -37,7 +37,7 @@ TEST(SurfaceSearch, LineThroughASphereIntersectsItTwice) {
         direction = direction / std::sqrt(direction.squared_length());
         const auto hits = search.line_hits(origin, direction, 3);
         ASSERT_EQ(hits.size(), 2U);
-        EXPECT_LT(hits[0].distance * hits[1].distance, 0);  // one each way
+        EXPECT_LT(hits[0].distance * hits[1].distance, 0);  // one in each direction
         EXPECT_LE(std::abs(hits[0].distance), std::abs(hits[1].distance));
         for (const SurfaceHit& hit : hits) {
             EXPECT_NEAR(distance(hit.point, origin + hit.distance * direction), 0, 1e-9);

@@ -12,7 +12,7 @@ using namespace ostraka::example;
 
 namespace {
 
-/// A few random edits of a set: what a person might do.
+/// A few random edits of a set, as a user might make.
 AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     AnnotationSet copy = copy_of(set);
@@ -51,7 +51,7 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
                 break;
             }
             case 8:
-                for (Attribute& attribute : annotation.attributes) {  // what else may differ, one at a time
+                for (Attribute& attribute : annotation.attributes) {  // other possible differences, one at a time
                     Measure& measure = attribute.measure;
                     if (attribute.type == AttributeType::semantic) {
                         attribute.origin += "rule";
@@ -232,7 +232,7 @@ TEST(Merge, NamesEachKindOfConflict) {
     EXPECT_EQ(lid->colour, (std::array<int, 3>{1, 1, 1})) << "what one side alone changed is kept";
     EXPECT_EQ(settled.set.find(std::stoi(removed_id)), nullptr);
     EXPECT_EQ(settled.set.find(900)->tag, "yours");
-    // Faces one by one, and both new annotations.
+    // Merged face by face, with both new annotations.
     options = {};
     options.merge_faces = true;
     options.renumber = true;

@@ -1,4 +1,4 @@
-// Damaged files end in a mesh or in an error with words; never in a crash, a hang or a memory bill (run under sanitizers).
+// Damaged files give a mesh or an error with a message; never a crash, a hang or excessive memory (run under sanitizers).
 #include "io_examples.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
@@ -25,7 +25,7 @@ std::string big_endian_ply() {
     return bytes;
 }
 
-/// One file of each kind, small enough that a mutation hits something that matters.
+/// One file of each kind, small enough that a mutation affects relevant bytes.
 std::vector<std::pair<std::string, std::string>> base_files() {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();

@@ -1,4 +1,4 @@
-// What is written is read back to the bit, as far as the format holds it; what it does not hold is said.
+// Written data are read back to the bit if the format stores them; a note reports other data.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
 #include "scratch.h"
@@ -11,7 +11,7 @@ namespace {
 
 TriangulatedSoup reread(const Path& file) { return triangulate(read_polygons(file)); }
 
-/// Texture coordinates of every corner, wherever they are kept: where each vertex has one corner the two are the same.
+/// Texture coordinates of every corner, per vertex or per corner: if each vertex has one corner the two are equivalent.
 std::vector<std::array<float, 2>> texture_of_corners(const TriangleSoup& soup, const MeshExtras& extras) {
     if (extras.vertex_texture.empty()) return extras.corner_texture;
     std::vector<std::array<float, 2>> list;

@@ -1,4 +1,4 @@
-// Operations that are cancelled at any moment end with that error, leave no file behind, and spoil nothing that is kept.
+// Operations cancelled at any time end with that error, leave no file behind, and damage no cached object.
 #include "ostraka/cage/cage.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/point_tree.h"
@@ -32,7 +32,7 @@ struct Step {
     const char* settings;
 };
 
-/// Each works on a mesh, and the later ones on what the earlier ones make.
+/// Each works on a mesh, the later ones on outputs of earlier ones.
 const std::vector<Step>& steps() {
     static const std::vector<Step> list{
         {"mesh make", R"({"object": "teapot", "output": "pot.ply", "vertices": 2500, "labels": "pot.labels.txt"})"},
@@ -98,7 +98,7 @@ std::map<std::string, std::string> files_below(const Path& folder) {
     return files;
 }
 
-/// The kind of error that a call ends with when it is cancelled after so long; none where it was done before.
+/// The kind of error of a call that is cancelled after the given time; nullopt if it had finished.
 std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const Path& folder, Context& cache) {
     Context context;
     context.share_objects(cache);
@@ -133,7 +133,7 @@ TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
         const auto before = files_below(scratch.path());
         const auto begin = std::chrono::steady_clock::now();
         {
-            Context first;  // what the others keep is not known yet
+            Context first;  // the cache does not yet contain objects of the others
             static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(first));
         }
         const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -149,7 +149,7 @@ TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
                     if (!before.contains(name)) std::filesystem::remove(scratch / name);
             }
         }
-        // With what the cancelled ones have kept it makes the same.
+        // With the cache of the cancelled calls it gives the same result.
         Context last;
         last.share_objects(cache);
         static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(last));

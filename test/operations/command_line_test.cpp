@@ -1,4 +1,4 @@
-// What stands on the command line, right and wrong, whatever the operation.
+// Valid and invalid command lines, for any operation.
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/execution/child_process.h"
 #include "ostraka/files/json.h"
@@ -186,7 +186,7 @@ TEST(CommandLine, WorkBeyondTheMemoryLimitIsRefusedWithAMessage) {
     EXPECT_NE(small.err.find("GB of memory"), std::string::npos) << small.err;
     EXPECT_NE(small.err.find("--memory"), std::string::npos) << small.err;
     EXPECT_EQ(run_command("mesh info " + mesh + " --memory -1").code, 2);
-    // What no estimate foresees ends in words too.
+    // Allocations beyond any estimate also end with a message.
     const Scratch scratch;
     const auto large = run_command("mesh make vase " + (scratch / "v.ply").string() + " --vertices 2000000 --memory 0.1");
     EXPECT_EQ(large.code, 1) << large.out;

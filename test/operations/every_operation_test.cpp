@@ -1,5 +1,5 @@
-// Laws of the whole table: every operation is declared soundly, its report keeps its schema, and from objects in memory it gives
-// the same bytes as from files.
+// Properties of the whole table: every operation has a valid declaration, its report satisfies its schema, and objects in memory
+// give the same bytes as files.
 #include "calls.h"
 #include "ostraka/files/json.h"
 #include "ostraka/operations/pages.h"
@@ -20,7 +20,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Empty if the value keeps the schema; else where not.
+/// Empty if the value satisfies the schema, else the location of the violation.
 std::string against(const JsonValue& value, const JsonValue& schema) {
     const rapidjson::GenericSchemaDocument<JsonValue> document(schema);
     rapidjson::GenericSchemaValidator<rapidjson::GenericSchemaDocument<JsonValue>> validator(document);
@@ -161,7 +161,7 @@ const std::vector<Step>& steps() {
     return list;
 }
 
-/// A folder with what the steps begin with.
+/// A folder with the initial inputs of the steps.
 void furnish(const Scratch& scratch) {
     const Path data = Path(OSTRAKA_SOURCE_DIR) / "data";
     for (const char* name :
@@ -171,7 +171,7 @@ void furnish(const Scratch& scratch) {
                R"({"format": "ostraka-edit", "version": 1, "steps": [{"select": {"all": true}, "translate": [0, 0, 1]}]})");
 }
 
-/// Every file below a folder, with its bytes; without what remembers earlier runs.
+/// Every file below a folder, with its bytes; without the records of earlier runs.
 std::map<std::string, std::string> files_below(const Path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
@@ -241,7 +241,7 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
 }
 
 TEST_F(EveryOperation, RunsHereOrHasItsOwnTest) {
-    // What asks for data that takes long to make is run by the tests of its module.
+    // Operations with inputs that take long to make are run by the tests of their modules.
     std::set<std::string> run{"study landmarks", "template turn",   "pair", "assemble", "run", "replay",
                               "conformance run", "conformance self"};
     for (const Step& step : steps()) run.insert(step.operation);
@@ -284,7 +284,7 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                         call.want(name, file);
                         outputs.emplace_back(name, file);
                     } else {
-                        // What no step made is handed over as bytes.
+                        // Inputs that no step made are passed as bytes.
                         if (!objects.contains(file)) objects[file] = Object::of(read_file(other / file), file);
                         call.set_object(name, objects.at(file));
                     }
@@ -297,7 +297,7 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
             EXPECT_EQ(files_below(other.path()).size(), before) << "a file was touched";
             EXPECT_EQ(to_text(report.to_json()["provenance"]), to_text(expected["provenance"]));
             for (const auto& [slot, file] : outputs) {
-                if (!std::filesystem::exists(on_disk / file)) continue;  // not written where the answer is no
+                if (!std::filesystem::exists(on_disk / file)) continue;  // not written if the answer is no
                 Object object = call.object(slot);
                 object.name = file;
                 if (const auto folder = object.as<Path>()) {

@@ -1,4 +1,4 @@
-// Axes that turn no farther than they must, and partners that mirror.
+// Axes that rotate by the minimum angle, and mirrored partners.
 #include "outcome.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace ostraka {
 namespace {
 
-/// The least squared distance of turned rows with the axis at an angle to a direction, by trying all turns.
+/// The minimum squared distance of rotated rows with the axis at an angle to a direction, by trying all rotations.
 double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
     double minimum = std::numeric_limits<double>::infinity();
     constexpr int steps = 120;
@@ -50,7 +50,7 @@ TEST(Constraint, AxesDoNotCollapseToAPoint) {
 }
 
 TEST(Constraint, AxesRotateByTheMinimumAngle) {
-    // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
+    // Rods, plates and blocks with known axis, rotated arbitrarily, and exactly parallel and perpendicular to the direction.
     const Vector3d d = Vector3d(1, -2, 3).normalized();
     for (const Vector3d& size :
          {Vector3d(1, 1, 4), Vector3d(1, 2, 4), Vector3d(1, 0, 3), Vector3d(3, 3, 0.5), Vector3d(2, 2, 2)}) {
@@ -85,7 +85,7 @@ TEST(Constraint, AxesRotateByTheMinimumAngle) {
 
 TEST(Constraint, AxesInRangeAreUnchanged) {
     const Points rest = random_points(9, 12);
-    const auto residual = [&](const kinds::Interval& range) {  // of an axis at pi / 4
+    const auto residual = [&](const kinds::Interval& range) {  // for an axis at pi / 4
         const kinds::AxisDirection kind{{0, 0, 1}, range, Vector3d(1, 0, 1)};
         return make_constraint(kind, first_ids(9), 1, rest)->residual(rest);
     };
@@ -96,7 +96,7 @@ TEST(Constraint, AxesInRangeAreUnchanged) {
 }
 
 TEST(Constraint, PartnersInTrianglesMirror) {
-    // A point and a triangle on the other side of x = 1, whose mirror image of the point is at (3, 0.25, 0.25) but for a bump.
+    // A point and a triangle on the other side of x = 1, with the mirror image of the point at (3, 0.25, 0.25), up to a bump.
     Points rest(3, 4);
     rest.col(0) << -1, 0.25, 0.25;
     rest.col(1) << 3, 0, 0;
@@ -107,11 +107,11 @@ TEST(Constraint, PartnersInTrianglesMirror) {
     EXPECT_LT(exact->residual(rest), 1e-15);
     Points bumped = rest;
     bumped.col(0) += Vector3d(-0.4, 0.2, 0.6);
-    // Each side takes half of it.
+    // Each side moves by half of it.
     const Outcome o = outcome(*exact, bumped);
     EXPECT_LT((o.projected.col(0) - Vector3d(-1.2, 0.35, 0.55)).norm(), 1e-15);
     EXPECT_LT((o.projected.col(1) - Vector3d(3.2, 0.35, 0.55)).norm(), 1e-15);
-    // What is off at rest stays so.
+    // Deviations at rest are preserved.
     const Points off = Vector3d(0.4, 0.2, 0.6);
     kind.discrepancies = off;
     const auto nearly = make_constraint(kind, first_ids(4), 1, bumped);

@@ -1,4 +1,4 @@
-// Laws that every kind of constraint obeys, and what is refused.
+// Properties of every kind of constraint, and invalid arguments.
 #include "outcome.h"
 
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@ namespace {
 
 using List = std::vector<std::unique_ptr<Constraint>>;
 
-/// A closed chain of points, each of which keeps its place against its neighbours.
+/// A closed chain of points with Laplacian displacements.
 struct Chain {
     static constexpr int n = 30;
     Points rest{3, n};
@@ -32,7 +32,7 @@ TEST(Hard, PositionsGiveTheConstrainedMinimum) {
     Chain chain;
     chain.pin(true, 0, {0, 0, 1});
     chain.pin(true, 11, {0.5, 0, 0});
-    // The same by Lagrange multipliers.
+    // The same with Lagrange multipliers.
     const int n = Chain::n;
     Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n + 2, n + 2), right = Eigen::MatrixXd::Zero(n + 2, 3);
     for (int i = 0; i < n; ++i) {
@@ -60,7 +60,8 @@ TEST(Hard, PositionsGiveTheConstrainedMinimum) {
 }
 
 TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
-    // Means of threes on two lines; nothing is lost along these. The same by Lagrange multipliers of all three coordinates.
+    // Means of three points each on two lines; motion along the lines is free. The same with Lagrange multipliers for all three
+    // coordinates.
     Chain chain;
     chain.pin(false, 0, {0, 0, 0});
     const int n = Chain::n;

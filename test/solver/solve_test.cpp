@@ -118,7 +118,7 @@ SolveOptions steps(int iterations, int window = 5) {
     return options;
 }
 
-/// As an identity: the cage is the shape.
+/// Identity weights: the cage is the shape.
 CageWeights identity(Eigen::Index n) { return CageWeights::Identity(n, n); }
 
 TEST(CageSpace, EqualsMeshSpaceIfTheCageIsTheShape) {
@@ -304,7 +304,7 @@ TEST(MeshSpace, UnconstrainedPartsKeepTheirMean) {
 }
 
 TEST(MeshSpace, SingularSystemsAreRegularisedTowardsRest) {
-    // Two Laplacians over six points leave much open.
+    // Two Laplacians over six points leave many degrees of freedom.
     const Points rest = grid(4);
     List list;
     list.push_back(make_constraint(kinds::Laplacian{}, ring(4, 1, 1), 1, rest));
@@ -321,8 +321,8 @@ TEST(MeshSpace, SingularSystemsAreRegularisedTowardsRest) {
 }
 
 TEST(MeshSpace, StationsWithSharedPointsLeaveNoWaves) {
-    // A tube of 41 rings whose points want to stay, its axis on a line that leaves it: what holds it there must grow along the
-    // tube.
+    // A tube of 41 rings with closeness, whose axis is constrained to a line that diverges from it: the force must increase along
+    // the tube.
     constexpr int rings = 41, sides = 8, step = 10;
     Points rest(3, rings * sides);
     for (int k = 0; k < rings; ++k)
@@ -408,7 +408,7 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
     MeshSpaceSolver solver(mixed(n, rest), rest);
     Points warm = rest;
     solver.solve(warm, steps(2));
-    // A few rows, another few, back, many, none, again: each time as if made anew.
+    // A few rows, a few others, back, many, none, again: each time as if newly constructed.
     List now = mixed(n, rest);
     const auto expect_same = [&](const std::string& name, int updated) {
         List copy = mixed(n, rest);

@@ -1,4 +1,4 @@
-// README.md and the pages in doc/: what they link to and the files they name exist.
+// README.md and the pages in doc/: their link targets and named files exist.
 #include "scratch.h"
 
 #include <regex>
@@ -15,7 +15,7 @@ std::vector<Path> pages() {
     return result;
 }
 
-/// What the first group of the pattern matches in the text.
+/// Matches of the first group of the pattern in the text.
 std::vector<std::string> all_matches(const std::string& text, const std::string& pattern) {
     std::vector<std::string> matches;
     const std::regex expression(pattern);

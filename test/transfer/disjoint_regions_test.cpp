@@ -25,7 +25,7 @@ Annotation region(int id, std::vector<Index> faces) {
     return annotation;
 }
 
-/// Faces of the mesh that so many regions have.
+/// Number of faces that belong to the given number of regions.
 std::size_t claimed(const Mesh& mesh, const AnnotationSet& set, std::size_t times) {
     std::vector<std::size_t> count(mesh.number_of_faces(), 0);
     for (const Annotation& annotation : set.annotations)
@@ -52,23 +52,23 @@ TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     const std::vector<bool> none(8, false), all(8, true);
     std::vector<std::vector<bool>> selected{all, all, all};
     keep_disjoint(source, set, source_search, target, selected);
-    // Of the cells at the left, three quarters of which are left of 0.8, both faces; the third region overlaps both.
+    // Both faces of the left cells, three quarters of which are left of 0.8; the third region overlaps both.
     EXPECT_EQ(selected[0], (std::vector<bool>{false, false, true, true, false, false, true, true}));
     EXPECT_EQ(selected[1], (std::vector<bool>{true, true, false, false, true, true, false, false}));
     EXPECT_EQ(selected[2], all);
-    // Equal parts: to the first.
+    // In case of a tie: to the first.
     set.annotations = {region(0, low), region(1, {})};
     for (const Face f : source.faces())
         if (centroid(source, f).y() >= 0.5) set.annotations[1].faces.push_back(f);
     queries = 0;
-    // What nobody took is found a region where the regions part the whole.
+    // Unassigned faces are assigned if the regions partition the whole.
     selected = {none, {}};
     keep_disjoint(source, set, source_search, target, selected);
     ASSERT_EQ(selected[1].size(), 8U);
     for (std::size_t f = 0; f < 8; ++f) EXPECT_NE(selected[0][f], selected[1][f]) << f;
     EXPECT_TRUE(selected[1][4] && selected[1][7]);
     EXPECT_GT(queries, 0U);
-    // Where they do not part it, it stays nobody's, and nothing is asked.
+    // If they do not, the faces stay unassigned, and no query is made.
     set.annotations.pop_back();
     queries = 0;
     selected = {none};

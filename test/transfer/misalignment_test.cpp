@@ -24,7 +24,7 @@ Misalignment between(const Mesh& source, const Mesh& target) {
     return find_misalignment(source, search);
 }
 
-/// Turned about an axis through the middle of its box, then scaled about it, then moved by a share of the diagonal.
+/// Rotated about an axis through the middle of its box, then scaled about it, then moved by a share of the diagonal.
 Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const Vector& shift) {
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const double diagonal = box_diagonal(mesh), angle = degrees * CGAL_PI / 180;

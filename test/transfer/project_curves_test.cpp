@@ -25,7 +25,7 @@ Mesh object_mesh(const std::string& object, std::size_t vertices, std::uint64_t 
     return make_mesh(synthetic_object(object), options).mesh;
 }
 
-/// The mesh parted along a direction into `count` slabs with fair outlines.
+/// The mesh partitioned along a direction into `count` slabs with fair outlines.
 AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
     double low = 1e300, high = -1e300;
     for (const Vertex v : mesh.vertices()) {
@@ -52,7 +52,7 @@ double area_sum(const Mesh& mesh, const AnnotationSet& set) {
     return sum;
 }
 
-/// Each face to the nearest of some places, spread over the mesh by a fixed rule: a partition with junctions.
+/// Each face is assigned to the nearest of some points, spread over the mesh by a fixed rule: a partition with junctions.
 AnnotationSet cells(const Mesh& mesh, std::size_t count) {
     AnnotationSet set;
     set.annotations.resize(count);
@@ -104,7 +104,7 @@ TEST(ProjectCurves, APartitionStaysAPartition) {
     const SurfaceSearch on_coarse(coarse);
     const TransferResult transferred = transfer(fine, set, on_coarse);
     EXPECT_NEAR(area_sum(coarse, transferred.annotations) / surface_area(coarse), 1, 1e-6);
-    // On the cut mesh no piece of any size is in two regions or in none.
+    // On the cut mesh every piece of significant size is in exactly one region.
     const CutMesh cut = cut_along_curves(coarse, transferred.annotations);
     std::vector<int> holders(cut.mesh.number_of_faces(), 0);
     for (const Annotation& annotation : cut.annotations.annotations)
@@ -156,7 +156,7 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
         EXPECT_TRUE(is_free(annotation));
     const double free = worst_perimeter();
     EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
-    // Others stay as they are: what is asked for, and what leaves a gap.
+    // Other regions stay along edges: if requested, and if they leave a gap.
     options.outlines = TransferOptions::Outlines::kept;
     for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
         EXPECT_FALSE(is_free(annotation));
@@ -180,7 +180,7 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     RefineOptions refining;
     refining.levels = 1;
     bound.refine(refining);
-    // Cutting faces into four does not change the surface: nor the curves.
+    // Splitting faces into four changes neither the surface nor the curves.
     for (const Annotation& annotation : bound.annotations->annotations) {
         const RegionMeasures before = measure_region(mesh, *set.find(annotation.id)),
                              after = measure_region(bound.mesh, annotation);
@@ -219,8 +219,8 @@ TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
 
 namespace {
 
-/// A plane of 10 by 10 units, or a surface on it with waves that hang over: what lies below their crests a line along the normal
-/// of the plane meets more than once.
+/// A plane of 10 by 10 units, or a surface on it with overhanging waves: below their crests a line along the normal of the plane
+/// intersects it more than once.
 Mesh waves(Index n, double over, double height) {
     TriangleSoup soup;
     for (Index i = 0; i <= n; ++i)
@@ -336,7 +336,7 @@ TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
 }
 
 TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
-    // Of two discs, one lies on a piece that the target does not have.
+    // One of two discs lies on a component that the target does not have.
     const Mesh whole = waves(20, 0, 0);
     TriangleSoup half = to_soup(whole);
     std::erase_if(half.triangles, [&](const auto& t) { return half.points[t[0]][0] > 5.4; });

@@ -118,7 +118,7 @@ TEST(Transfer, RefinedTargetHoldsTheOutlineExactly) {
         EXPECT_NEAR(surface_area(refined), surface_area(target), 1e-9);
         for (Index v = 0; v < target.number_of_vertices(); ++v) EXPECT_EQ(refined.point(Vertex(v)), target.point(Vertex(v)));
         for (const TransferScore& score : result.scores) {
-            // The surfaces differ by h^2 / 8 from the sphere, and lengths and areas by as much.
+            // The surfaces differ by h^2 / 8 from the sphere, and lengths and areas accordingly.
             const double h = std::max(mean_edge_length(source), mean_edge_length(target));
             EXPECT_NEAR(score.target_length / score.source_length, 1, h * h / 2) << level;
             EXPECT_NEAR(score.target_area / score.source_area, 1, h * h) << level;
