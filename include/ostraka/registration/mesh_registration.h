@@ -13,7 +13,7 @@ namespace ostraka {
 
 struct MeshRegistrationOptions {
     bool scale = true;     ///< estimate the scale, as for meshes in different units; else the meshes have the same size
-    double tolerance = 0;  ///< of equal surfaces, share of the target's diagonal; 0: from the resolution of the meshes
+    double tolerance = 0;  ///< tolerance for equal surfaces, share of the target's diagonal; 0: from the resolution of the meshes
     int samples = 4000;    ///< number of registration points on both meshes together, and number of evaluation points on each
 
     void describe(OptionList& visit);

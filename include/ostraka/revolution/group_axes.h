@@ -29,7 +29,7 @@ struct GroupAxis {
     double direction_error = 0, place_error = 0;
     double diameter = 0;  ///< largest diameter from a fragment's own profile about its axis; 0: none
     double round = 0;     ///< share of the area (without fractures) on fragments that are rotationally symmetric about the axis
-    double diagonal = 0;  ///< of the group
+    double diagonal = 0;  ///< diagonal of the group
     std::vector<SherdOnProfile> fragments;  ///< own axis, lean, aside, weight, use; only members that depend on the axis
     std::vector<JoinAxes> joins;
 };

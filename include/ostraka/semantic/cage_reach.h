@@ -23,9 +23,9 @@ struct ConstraintReach {
     /// Root mean square distance of the rows from their projection, after the edit (`asked`) and after the solve through the
     /// cage (`left`). For the group of rows (for example, the shape of one part) that is worst relative to its tolerance.
     double asked = 0, left = 0;
-    double tolerance = 0;                ///< for `left`: the distance tolerance relative to that group's own diagonal
+    double tolerance = 0;                ///< tolerance of `left`: the distance tolerance relative to that group's own diagonal
     std::optional<int> lacking;          ///< the annotation of that group, if it is a single one
-    Verdict verdict = Verdict::unknown;  ///< of the constraint in its own quantities, after the solve
+    Verdict verdict = Verdict::unknown;  ///< verdict on the constraint in its own quantities, after the solve
     std::vector<Deviation> deviations;
     bool reached = false;  ///< the rank equals the number of rows; or the constraint holds and `left` is within its tolerance
 };

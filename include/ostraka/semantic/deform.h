@@ -44,13 +44,13 @@ inline RelationOptions deform_tolerances() {
 
 /// Outcome of one constraint.
 struct ConstraintReport {
-    int id = 0;  ///< of the relationship
+    int id = 0;  ///< id of the relationship
     std::vector<int> annotations;
     std::string type, text;  ///< text: why it is left out, or its violation
     bool used = false;       ///< whether it was part of the solve
     bool hard = false;
     double weight = 1;
-    Verdict before = Verdict::unknown, verdict = Verdict::unknown;  ///< on the edited shape, and after solving
+    Verdict before = Verdict::unknown, verdict = Verdict::unknown;  ///< verdicts on the edited shape, and after solving
     std::vector<Deviation> deviations;                              ///< each with its unit and tolerance
     std::vector<double> before_values;                              ///< the same quantities on the edited shape
     /// Normalised residuals of its low-level constraints, in the mesh's unit (section 4.2.3 with its erratum).
@@ -108,7 +108,7 @@ struct SurfaceChange {
 };
 
 struct DeformResult {
-    std::vector<Point> points;  ///< of the mesh
+    std::vector<Point> points;  ///< points of the mesh
     std::vector<Point> edited;  ///< positions after the edit alone
     EditFollowed followed;
     SurfaceChange surface;

@@ -75,7 +75,7 @@ struct Completeness {
 struct Slice {
     double height = 0;
     std::vector<Contour> contours;
-    Completeness completeness;  ///< of a slice without contours: all 1, although it encloses nothing
+    Completeness completeness;  ///< for a slice without contours all 1, although it encloses nothing
 };
 
 struct SliceStack {
