@@ -90,9 +90,10 @@ Arena::Arena(const Path& project) {
     ::setenv("HOME", (home_ / "tmp").c_str(), 1);
     plant_canaries();
     const Verdict verdict =
-        run_child([&](Stopper&) { return make_seeds(project), std::string(); }, seeds(), above_, above_ / "said", {120, 0});
+        run_child([&](Stopper&) { return make_seeds(project), std::string(); }, seeds(), above_, above_ / "output", {120, 0});
     if (verdict.outcome != Outcome::accepted)
-        fail_work("the seeds", "cannot be made: " + verdict.detail + " " + said(), "mend test/fuzz, or what they are made with");
+        fail_work("the seeds", "cannot be made: " + verdict.detail + " " + output(),
+                  "repair test/fuzz, or the operations that make them");
 }
 
 Arena::~Arena() {
@@ -173,7 +174,7 @@ void Arena::apply(const Change& change) const {
 
 /// The file or output of the run that contains a canary's contents; empty: none.
 std::string Arena::betrayed_in() const {
-    std::vector<Path> files{above_ / "said"};
+    std::vector<Path> files{above_ / "output"};
     for (const char* folder : {"work", "tmp"})
         for (auto entry = std::filesystem::recursive_directory_iterator(home_ / folder); entry != decltype(entry)(); ++entry)
             if (!entry->is_symlink() && entry->is_regular_file()) files.push_back(entry->path());
@@ -190,7 +191,7 @@ void Arena::judge(Verdict& verdict) {
         verdict.outcome = outcome;
         verdict.detail = detail;
     };
-    if (!is_finding(verdict.outcome) && said().find("internal error") != std::string::npos)
+    if (!is_finding(verdict.outcome) && output().find("internal error") != std::string::npos)
         report(Outcome::crash, "an exception that is no Error");
     if (const std::string file = betrayed_in(); !file.empty()) report(Outcome::betrayed, "what a canary holds is in " + file);
     if (look_at_canaries() == canaries_) return;
@@ -209,11 +210,11 @@ Verdict Arena::run(const Subject& subject, const std::vector<Change>& changes, d
     if (idle_ == 0) idle_ = idle_memory();
     const double input = lay_out(subject, changes);
     const Limits limits{seconds, idle_ + times_input * input + beside_input};
-    Verdict verdict = run_child(subject.act, home_ / "work", home_, above_ / "said", limits);
+    Verdict verdict = run_child(subject.act, home_ / "work", home_, above_ / "output", limits);
     judge(verdict);
     return verdict;
 }
 
-std::string Arena::said() const { return read_plain(above_ / "said", 4'000'000); }
+std::string Arena::output() const { return read_plain(above_ / "output", 4'000'000); }
 
 }  // namespace ostraka::fuzz

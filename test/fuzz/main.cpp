@@ -167,7 +167,7 @@ int fuzz(Arena& arena, const Kinds& kinds, const Words& words) {
         tally.add(verdict, trial.kind);
         if (verdict.outcome < Outcome::stopped) continue;
         const std::string which = "seed " + std::to_string(words.seed) + ", run " + std::to_string(run);
-        tell(which, trial, verdict, arena.said());
+        tell(which, trial, verdict, arena.output());
         if (words.keep.empty()) continue;
         make_folder(words.keep);
         const std::string name =
@@ -196,9 +196,9 @@ int repeat(Arena& arena, const std::vector<Subject>& subjects, const Words& word
             fail_input(file.string(), "is of a subject '" + finding.subject + "' that there is none of", "take it away");
         const Verdict verdict = arena.run(*subject, finding.changes, words.limit);
         tally.add(verdict, finding.kind);
-        tell(file.filename().string(), {&*subject, finding.kind, finding.changes}, verdict, arena.said());
+        tell(file.filename().string(), {&*subject, finding.kind, finding.changes}, verdict, arena.output());
         as_expected = as_expected && file.filename().string().starts_with(to_string(verdict.outcome));
-        if (words.say) std::cout << arena.said() << std::endl;
+        if (words.say) std::cout << arena.output() << std::endl;
     }
     tally.print(0);
     return (words.expected ? as_expected && !files.empty() : tally.is_clean()) ? 0 : 1;
