@@ -18,7 +18,7 @@ inline Call call_in(const Path& folder, const std::string& operation, const std:
         if (call.parameters().slot(name) == nullptr)
             add_member(options, name, JsonValue(member.value, options.GetAllocator()), options.GetAllocator());
         else if (member.value.IsArray())
-            for (const auto& one : member.value.GetArray()) call.set_file(name, folder / text_of(one));
+            for (const auto& file_name : member.value.GetArray()) call.set_file(name, folder / text_of(file_name));
         else call.set_file(name, folder / text_of(member.value));
     }
     call.set(options);

@@ -77,9 +77,9 @@ inline TriangleSoup tube(Index columns, Index rows) {
 /// A cube with n x n quads per side, welded.
 inline TriangleSoup box(int n) {
     TriangleSoup soup;
-    std::map<std::array<int, 3>, Index> known;
+    std::map<std::array<int, 3>, Index> index_of;
     const auto vertex = [&](const std::array<int, 3>& p) {
-        const auto [it, added] = known.try_emplace(p, static_cast<Index>(soup.points.size()));
+        const auto [it, added] = index_of.try_emplace(p, static_cast<Index>(soup.points.size()));
         if (added) soup.points.push_back({double(p[0]) / n, double(p[1]) / n, double(p[2]) / n});
         return it->second;
     };

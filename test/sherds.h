@@ -19,9 +19,9 @@ struct SyntheticSherd {
 inline TriangleSoup box_grid(const std::array<int, 3>& count,
                              const std::function<std::array<double, 3>(double, double, double)>& at, std::vector<int>& side) {
     TriangleSoup soup;
-    std::map<std::array<int, 3>, Index> known;
+    std::map<std::array<int, 3>, Index> index_of;
     const auto vertex = [&](const std::array<int, 3>& p) {
-        const auto [it, added] = known.try_emplace(p, static_cast<Index>(soup.points.size()));
+        const auto [it, added] = index_of.try_emplace(p, static_cast<Index>(soup.points.size()));
         if (added) soup.points.push_back(at(double(p[0]) / count[0], double(p[1]) / count[1], double(p[2]) / count[2]));
         return it->second;
     };

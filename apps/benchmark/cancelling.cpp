@@ -144,7 +144,7 @@ int run_cancelling(const std::string& folder, const std::string& only) {
         write_file(work_folder / name, read_file(data / name));
     for (const char* ending : {".ply", ".ant.json"})
         write_file(work_folder / (std::string("small") + ending), read_file(data / (std::string("statuette") + ending)));
-    std::cout << "| operation, a million faces | seconds in all | longest of the stops, seconds |\n|---|---|---|\n";
+    std::cout << "| operation, a million faces | total, seconds | slowest stop, seconds |\n|---|---|---|\n";
     int code = 0;
     for (const Step& step : steps) {
         if (std::string(step.operation).find(only) == std::string::npos) continue;

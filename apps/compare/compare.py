@@ -158,7 +158,7 @@ def main():
         return mean_and_maximum
 
     target_count = max(300, n // 20)
-    simplify = Task(f"{counts} simplified to {target_count:,}", "Off: distance of the original's vertices from what is left.")
+    simplify = Task(f"{counts} simplified to {target_count:,}", "Off: distance of the original's vertices from the simplified surface.")
     simplify.peer("Ostraka", [ostraka, "mesh", "simplify", large, "so.ply", "--vertices", str(target_count), "--quiet"], error_of("so.ply"))
     simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(target_count)], error_of("sc.ply"))
     simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(target_count)], error_of("sm.ply"))
@@ -173,13 +173,13 @@ def main():
     def distances(document):
         return f"mean {document['mean']:.6g}, maximum {document['maximum']:.6g} mm"
 
-    closest = Task(f"Nearest places on {counts} to the vertices of {max(300, n // 10):,}",
-                   "Work alone: tree and queries. VTK is queried from Python one by one.")
+    closest = Task(f"Nearest points on {counts} to the vertices of {max(300, n // 10):,}",
+                   "Work alone: tree and queries. VTK is queried from Python, one query per call.")
     closest.peer("Ostraka (library, 2 threads)", [peers, "closest", "ours", large, middle], distances)
     closest.peer("CGAL 5.5 (1 thread)", [peers, "closest", "cgal", large, middle], distances)
     closest.peer("VTK 9.1", [*vtk, "closest", large, middle], distances)
 
-    farthest = Task(f"Farthest place of {target_count:,} vertices from {max(300, n // 10):,} (one-sided Hausdorff distance)",
+    farthest = Task(f"Farthest point of {target_count:,} vertices from {max(300, n // 10):,} (one-sided Hausdorff distance)",
                     "Ostraka and VTK query from vertices; CGAL bounds the distance of whole surfaces to 0.1 % of the diagonal.")
     largest = lambda document: f"{document['maximum']:.5g} mm"
     farthest.peer("Ostraka (library, from vertices)", [peers, "closest", "ours", middle, small], largest)
@@ -203,7 +203,7 @@ def main():
         return largest_error
 
     weights = Task(f"Mean value coordinates of {target_count:,} vertices in a cage of 200",
-                   "Off: distance of W c from the vertex. VTK is called from Python one by one.")
+                   "Off: distance of W c from the vertex. VTK is called from Python, one point per call.")
     weights.peer("Ostraka (2 threads)", [ostraka, "cage", "weights", small, "cage.ply", "wo.npy", "--quiet"], reproduction("wo.npy"))
     weights.peer("VTK 9.1 (1 thread)", [*vtk, "weights", small, "cage.ply", "wv.npy"], reproduction("wv.npy"))
 
@@ -218,9 +218,9 @@ def main():
             return f"edges stretched by {numpy.sqrt((strain**2).mean()):.2%} rms"
         return rms_strain
 
-    raising = Task(f"The head of {target_count:,} vertices raised, its base held",
+    raising = Task(f"The head of {target_count:,} vertices raised, its base fixed",
                    "CGAL: as rigid as possible (spokes and rims), 10 iterations. Ostraka: Laplacian displacements to convergence, "
-                   "with its checks of what moved and of the constraints.")
+                   "with its checks of moved parts and of constraints.")
     raising.peer("Ostraka", [ostraka, "deform", small, "raise.edit.json", "do.ply", "--quiet"], strained("do.ply"))
     raising.peer("CGAL 5.5", [peers, "raise", "cgal", small, "dc.ply"], strained("dc.ply"))
 
@@ -235,7 +235,7 @@ def main():
 
     labels = Task(f"Parts of {target_count:,} vertices transferred to {counts}",
                   "Wrong: compared with the known parts of the object. Ostraka transfers outlines and scores them; VTK gives each face "
-                  "the part of the face nearest to its centroid, from Python one by one.")
+                  "the part of the face nearest to its centroid, from Python, one query per call.")
     labels.peer("Ostraka", [ostraka, "annotation", "transfer", "small.ply", "small.ant.json", "large.ply", "transferred.ant.json",
                             "--quiet"], wrong(ours))
     labels.peer("VTK 9.1", [*vtk, "labels", small, "small.labels", large, "vtk.labels"],

@@ -166,7 +166,8 @@ void figure_4_6(const Figure46Options& options) {
     std::string columns = "case | iterations | not flat, rms, % of the diagonal | % of rest | part itself";
     for (const auto& [annotation, vertices] : others) columns += " | " + annotation->tag;
     fmt::print(
-        "Figure 4.6, '{}' ({} of {} vertices) made plane, cage of {}. Parts: how far their vertices move, mean (most), % of the "
+        "Figure 4.6, '{}' ({} of {} vertices) made planar, cage of {}. Parts: displacement of their vertices, mean (max), % of "
+        "the "
         "diagonal. Unless said, with closeness of weight 1 on every vertex. Colours of the meshes: displacement from 0 to "
         "{:.4g}.\n\n",
         options.region, region.size(), mesh.number_of_vertices(), cage.number_of_vertices(), farthest);
@@ -194,7 +195,8 @@ void figure_4_6(const Figure46Options& options) {
     summary.write(folder / "summary.csv");
 }
 
-const Registration registered("figure-4-6", "a region made plane, over the mesh and through a cage: what else moves", figure_4_6);
+const Registration registered("figure-4-6", "a region made planar, over the mesh and through a cage: motion of other parts",
+                              figure_4_6);
 
 }  // namespace
 

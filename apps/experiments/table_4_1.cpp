@@ -161,7 +161,7 @@ std::string convergence_tables(const Mesh& mesh, const std::vector<Index>& regio
 }
 
 void write_seconds(const Path& file, const std::string& name, std::map<std::string, PlotSeries>& lines) {
-    Plot plot{"A region made plane, " + name + ": set-up and iterations, processor time",
+    Plot plot{"A region made planar, " + name + ": set-up and iterations, processor time",
               {"vertices", true, {}, {}},
               {"processor seconds", true, {}, {}},
               {}};
@@ -237,7 +237,7 @@ void table_4_1(const Table41Options& options) {
     fmt::print("{}", text);
 }
 
-const Registration registered("table-4-1", "a region made plane, over the mesh and through a cage: time and memory", table_4_1);
+const Registration registered("table-4-1", "a region made planar, over the mesh and through a cage: time and memory", table_4_1);
 
 }  // namespace
 

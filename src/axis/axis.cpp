@@ -172,8 +172,8 @@ std::string to_obj(const Axis& axis) {
 
 void AxisOptions::describe(OptionList& visit) {
     visit("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
-    visit("tolerance", tolerance, "rotation: maximum distance from the revolved profile of what lies on it", Range{0, 1},
-          "share of its largest diameter");
+    visit("tolerance", tolerance, "rotation: maximum distance from the revolved profile of points that count as on it",
+          Range{0, 1}, "share of its largest diameter");
     visit("min-quality", min_quality, "rotation: minimum share of the surface that lies on the revolved profile", Range{0, 1});
     visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
     visit("trials", trials, "rotation: number of random sets of normals (RANSAC)", Range{0, 1000000});

@@ -168,13 +168,13 @@ EpsilonRule epsilon_rule(const std::string& word, double& value) {
 
 void GroupOptions::describe(OptionList& visit) {
     visit("method", method,
-          "linkage: tree of mean distances, cut at epsilon; dbscan: steps of at most epsilon connect; embedding: the same in "
-          "the spectral embedding (thesis, 3.3.2)",
+          "linkage: average linkage, cut at epsilon; dbscan: DBSCAN with radius epsilon; embedding: DBSCAN in the spectral "
+          "embedding (thesis, 3.3.2)",
           Choices{"linkage", "dbscan", "embedding"});
     visit("epsilon", epsilon,
-          "distance within groups (shares of the largest distance for embedding); knn: mean distance to the nearest "
-          "neighbours; volume: evenly spread points; knee: bend of the curve of nearest distances; silhouette: groups that "
-          "stand out best; nested: these, and again within each as long as parts stand out",
+          "distance within groups (shares of the largest distance for embedding); knn: mean distance to the nearest neighbours; "
+          "volume: from the volume of evenly spread points; knee: bend of the curve of nearest distances; silhouette: largest "
+          "mean silhouette; nested: these groups, divided recursively as long as their parts are distinct",
           Words{{"knn", "volume", "knee", "silhouette", "nested"}, "a number from 0 up", [](const std::string& word) {
                     double number = 0;
                     static_cast<void>(epsilon_rule(word, number));

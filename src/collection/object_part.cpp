@@ -106,8 +106,8 @@ void PartOptions::describe(OptionList& visit) {
         .words();
     visit("without", without, "regions to leave out, by id or tag, such as beard; objects need not have them").words();
     visit("proposed", proposed,
-          "a part that is detected instead: the tubular part or the top above the neck, from slices across the upward direction, "
-          "or the largest thickness segment",
+          "a part that is detected instead: the tubular part or the top above the neck, from slices perpendicular to the upward "
+          "direction, or the largest thickness segment",
           Choices{"none", "tube", "top", "segment"});
 }
 

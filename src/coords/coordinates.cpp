@@ -190,7 +190,7 @@ void CoordinateOptions::describe(OptionList& visit) {
     visit("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
     visit("tolerance", tolerance, "local: stop when ten iterations lower the total variation by less than this share",
           Range{0, 0.1});
-    visit("fade", fade, "nested cages: length over which the influence of an inner cage rises from its border", Range{0, 1},
+    visit("fade", fade, "nested cages: length over which the influence of an inner cage increases from its border", Range{0, 1},
           "share of its diagonal");
 }
 

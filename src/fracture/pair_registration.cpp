@@ -426,7 +426,7 @@ JsonValue pair_to_json(const PairRegistration& pair, const std::string& a, const
 }
 
 void PairOptions::describe(OptionList& visit) {
-    visit("frames", frames, "number of places along the rim of each fracture surface that are registered", Range{4, 2000});
+    visit("frames", frames, "number of frames along the rim of each fracture surface that are registered", Range{4, 2000});
     visit("samples", samples, "number of points on the fracture surface, and on the rest of the surface", Range{50, 1e6});
     visit("starts", starts, "number of best initial poses that are refined coarsely", Range{1, 10000});
     visit("refined", refined, "number of poses that are refined fully", Range{1, 1000});

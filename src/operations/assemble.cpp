@@ -27,10 +27,9 @@ namespace {
 
 struct Assemble final : Operation {
     void describe(Parameters& p) override {
-        p.input(
-             "fragments", Kind::collection, files,
-             "mesh files, or points without faces, and folders of such files; NAME.ant.json beside one with regions \"outer\", "
-             "\"inner\", \"fracture\" overrides what is found of its facets")
+        p.input("fragments", Kind::collection, files,
+                "mesh files, or points without faces, and folders of such files; NAME.ant.json next to one with regions "
+                "\"outer\", \"inner\", \"fracture\" overrides the classification of its facets")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
@@ -42,7 +41,7 @@ struct Assemble final : Operation {
                        "template of the objects' class: each group is completed with it");
         p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "draw no pictures");
-        p.options("fresh", fresh, "register all pairs again, whatever an earlier run found").unrecorded();
+        p.options("fresh", fresh, "register all pairs again, without the results of an earlier run").unrecorded();
         options.describe(p.options);
         reading.describe(p.options);
         p.report.schema = "reassembly";

@@ -16,7 +16,7 @@ struct Deform final : Operation {
             .optional();
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.input("edit", Kind::edit, edit, "the edit (.edit.json); or say it in words: --stretch, --raise, --rotate").optional();
+        p.input("edit", Kind::edit, edit, "the edit (.edit.json); or specify it with --stretch, --raise, --rotate").optional();
         p.output("output", Kind::mesh, output, "the deformed mesh to write, acceptable or not");
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"mesh", "annotations", "output"});
@@ -25,13 +25,13 @@ struct Deform final : Operation {
         p.order({"template", "edit", "output"});
         p.order({"template", "output"});
         p.input_option("graph", Kind::graph, graph,
-                       "relationships (.graph.json): those that are constraints are kept; instead of the template's");
-        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's own are");
+                       "relationships (.graph.json), whose constraints are solved for; instead of the template's");
+        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's vertices are");
         p.input_option("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
         p.input_option("deformed-cage", Kind::cage, deformed_cage,
                        "the cage in another shape, a mesh with the same vertices: the first step of the edit moves them there");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "annotations of the deformed mesh, measures taken anew");
+                        "annotations of the deformed mesh, with recomputed measures");
         p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
         p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
         words.describe(p.options);

@@ -22,10 +22,9 @@ namespace {
 struct Fit final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, object_template, "template of the object's class (.template.json)");
-        p.input(
-             "fragments", Kind::mesh, files,
-             "a mesh file, or points without faces, for each fragment; NAME.ant.json beside it are its annotations: points with "
-             "the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
+        p.input("fragments", Kind::mesh, files,
+                "a mesh file, or points without faces, for each fragment; NAME.ant.json next to it contains its annotations: "
+                "points with the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
@@ -37,7 +36,7 @@ struct Fit final : Operation {
             "class", Kind::shape_class, class_file,
             "a class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is "
             "completed from its members that resemble the fragments; thresholds that are not specified are those of its members");
-        p.options("fresh", fresh, "search poses again, whatever an earlier fit in the folder found").unrecorded();
+        p.options("fresh", fresh, "search poses again, without the results of an earlier fit in the folder").unrecorded();
         p.options("placed", placed, "also write each fragment in its pose: NAME.placed.ply");
         vocabulary.describe(p, as_template_words);
         options.describe(p.options);

@@ -89,7 +89,7 @@ std::string operation_section(const OperationEntry& entry) {
     if (!report.schema.empty()) page += fmt::format(" as specified by `doc/schema/{}.schema.json`.", report.schema);
     page += "\n\n";
     add_fields(page, report.value_fields, "");
-    if (report.checks) page += "- `sound`, `defects`, `findings`: what the check found\n";
+    if (report.checks) page += "- `sound`, `defects`, `findings`: the result of the check\n";
     for (const auto& table : report.tables) {
         if (table.key.empty()) continue;
         page += fmt::format("- `{}`: a list of objects{}\n", table.key, table.title.empty() ? "" : ", " + table.title);

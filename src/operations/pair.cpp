@@ -14,9 +14,8 @@ namespace {
 struct PairFragments final : Operation {
     void describe(Parameters& p) override {
         p.input("first", Kind::mesh, first,
-                "mesh file, or points without faces; it stays where it is; NAME.ant.json beside it with regions \"outer\", "
-                "\"inner\", "
-                "\"fracture\" overrides what is found of its facets")
+                "mesh file, or points without faces; it is not moved; NAME.ant.json next to it with regions \"outer\", "
+                "\"inner\", \"fracture\" overrides the classification of its facets")
             .with_annotations_beside();
         p.input("second", Kind::mesh, second, "the fragment that is moved; the same applies to its annotations")
             .with_annotations_beside();

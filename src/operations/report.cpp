@@ -53,11 +53,11 @@ std::string address_of(const Path& path) {
 
 struct MakeReport final : Operation {
     void describe(Parameters& p) override {
-        p.input(
-             "results", Kind::text, results,
-             "what to show: meshes, each followed by its files (.ant.json, .graph.json, .cage.ply, maps .npy, slices and reports "
-             "of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other reports (.json) "
-             "and drawings (.svg); folders of such files, such as those of a run or a fit, without their cages and maps")
+        p.input("results", Kind::text, results,
+                "results to show: meshes, each followed by its files (.ant.json, .graph.json, .cage.ply, maps .npy, slices and "
+                "reports of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other "
+                "reports (.json) and drawings (.svg); folders of such files, such as those of a run or a fit, without their "
+                "cages and maps")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});

@@ -81,7 +81,8 @@ struct SliceObject final : Operation {
         p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
         up.describe(p, "upward direction; otherwise that of the annotations, otherwise 0,0,1");
-        p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
+        p.options("count", count, "number of layers of equal height, with a slice in the middle of each (default 50)",
+                  Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, from the lowest point up", Anything{}, "the mesh's unit");
         p.options("heights", heights, "heights above the lowest point, separated by commas", Anything{}, "the mesh's unit");
         p.options("range", range, "lower and upper end of the sliced range as fractions of the height, for --count and --spacing",

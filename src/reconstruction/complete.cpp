@@ -190,7 +190,8 @@ void CompleteOptions::describe(OptionList& visit) {
     visit("confidence-length", halving, "length over which the confidence halves away from the observed surface",
           Range{1e-6, 1e6}, "share of the diagonal");
     visit("join", join, "insert the fragments' own triangles into the completed mesh", Anything{});
-    visit("min-piece", min_piece, "minimum share of a fragment's area of a piece of its surface that is used", Range{0, 1});
+    visit("min-piece", min_piece, "minimum area of a used piece of a fragment's surface, as a share of the fragment's area",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -174,7 +174,7 @@ bool Fitter::matches_unchanged() const {
 }
 
 Vector3d Fitter::target_of(std::size_t i) const {
-    constexpr double slide_share = 0.95;  // the rest of the way draws it back: what nothing else holds does not drift
+    constexpr double slide_share = 0.95;  // the rest attracts it back, so that unconstrained vertices do not drift
     const VertexMatch& match = matches_[i];
     if (!slides()) return match.place;
     return match.place + slide_share * (slides_[i].free * (current_.col(static_cast<Eigen::Index>(i)) - match.place));
@@ -200,7 +200,7 @@ void Fitter::solve_once(double smoothing, double transition, bool new_level) {
     rotate_displacements();
     const bool renew = new_level || !matches_unchanged();
     if (renew && weights_ != nullptr) {
-        // So much changes that its small matrix is best rebuilt.
+        // With so many changes the small matrix is rebuilt.
         through_cage_ = std::make_unique<CageSpaceSolver>(system_.constraints(), *weights_, cage_rest_);
         solver_ = through_cage_.get();
     }

@@ -1,4 +1,4 @@
-// One fit, level by level, over one mesh of the template.
+// The levels of a fit over one mesh of the template.
 #pragma once
 
 #include "reconstruction/level_system.h"
@@ -19,7 +19,7 @@ public:
     Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
            std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options);
 
-    /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
+    /// Solves for the points of a cage instead; `weights` (one row per vertex) must outlive it.
     void use_cage(const CageWeights& weights, const Points& cage);
     [[nodiscard]] const Points& cage() const { return cage_; }
 
@@ -30,78 +30,78 @@ public:
     /// Smoothing length of a level.
     static double smoothing(const NonRigidOptions& options, int level, double diagonal);
 
-    /// The levels from `first` to before `end`, from where the vertices are now.
+    /// Solves the levels from `first` to before `end`, starting from the current positions.
     void run(int first, int end, NonRigidFit& fit);
-    /// Where the vertices are on the fragments from where they are now.
+    /// Matches of the vertices on the fragments from their current positions.
     const std::vector<VertexMatch>& match(double search_radius, NonRigidFit& fit);
 
-    /// Point-to-plane steps over the points of the cage (Chen and Medioni 1992), each as short as it can be where vertices are
-    /// matched: so the surface is met as nearly as the cage can, which levels with a smoothing do not. Vertices that are not
-    /// matched are held where the levels left them.
-    /// At most 4000 vertices are looked at, evenly over their list.
+    /// Point-to-plane steps over the points of the cage (Chen and Medioni 1992), with minimal displacement of matched vertices:
+    /// the result is as close to the surface as the cage permits, unlike that of levels with smoothing. Unmatched vertices keep
+    /// their positions after the levels. Uses at most 4000 vertices, evenly spread over their list.
     void polish(double search_radius, double smoothing, NonRigidFit& fit);
 
-    /// How the surroundings of each vertex have rotated.
+    /// Rotations of the surroundings of each vertex.
     [[nodiscard]] std::vector<Eigen::Matrix3d> rotations() const { return local_rotations(rings_, rest_, current_); }
 
 private:
-    /// False where the system has no solution.
+    /// False if the system has no solution.
     bool step_to_planes(const Points& level_points, double smoothing);
 
-    /// What a vertex adds to a point-to-plane step: to the plane of its match, and to the place where it is held.
+    /// Adds the terms of a vertex to a point-to-plane step: the plane of its match, and its anchor.
     void add_plane(Eigen::Index v, const Points& level_points, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
                    Eigen::Ref<Eigen::VectorXd> place_row, Eigen::VectorXd& right) const;
     void record_residual(NonRigidFit::Level& record) const;
     static double interpolated(const NonRigidOptions& options, int level, double first, double last);
 
-    /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
-    /// match is held where it is, who found one waits.
+    /// If only few matches appeared or disappeared since the weights were set, weights and factorisation are kept: a vertex that
+    /// lost its match keeps its position, a new match is deferred.
     [[nodiscard]] bool matches_unchanged() const;
     [[nodiscard]] bool slides() const { return options_.counterparts == NonRigidOptions::Counterparts::sliding; }
 
-    /// Where the match of a vertex draws it: to the place itself, or to the nearest one to which it may slide from there.
+    /// The target of a vertex's match: the matched point, or the nearest point to which the vertex may slide.
     [[nodiscard]] Eigen::Vector3d target_of(std::size_t i) const;
 
-    /// In units of mean areas: of its area, and where it is held by a curve of a part of a strip beside it, as outlines are.
+    /// Weight of a match in units of mean areas: that of the vertex's area, and for a vertex on a curve that of a strip along the
+    /// curve, as for outlines.
     [[nodiscard]] double weight_of_match(std::size_t i, double smoothing) const;
 
-    /// Vertices that slide take some solutions to come to rest: each solution draws them to the tangent planes from where they
-    /// are (a majorisation of the distance from the plane). In the space of a cage one is as dear as a match, and point-to-plane
-    /// steps follow at the end.
+    /// Number of solves per match. Sliding vertices need several solves to converge: each attracts them to the tangent planes
+    /// from their current positions (a majorisation of the distance from the plane). In the space of a cage a solve is as
+    /// expensive as a match, and point-to-plane steps follow at the end.
     void solve(double smoothing, double transition, bool new_level);
     void solve_once(double smoothing, double transition, bool new_level);
 
-    /// What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length. Where
-    /// vertices slide, positions along outlines guide coarse levels alone: they say which place of a part belongs to which, to
-    /// about the distance of landmarks from their true places, and from there each slides.
+    /// Weight of a patch of the smoothing's size: for a landmark all of it, for an outline the share of its length. If vertices
+    /// slide, positions along outlines are used in coarse levels only: they determine correspondences of parts to within the
+    /// distance of landmarks from their true positions, from which vertices slide.
     [[nodiscard]] double weight_of(const CorrespondenceConstraint& correspondence, double smoothing) const;
     [[nodiscard]] double correspondence_weight(std::size_t vertex, double smoothing) const;
-    /// Where a vertex's match and its correspondences draw it together: sums of squares about several places are one about their
-    /// mean.
+    /// The common target of a vertex's match and correspondences: the weighted mean of the targets, which minimises the sum of
+    /// squares.
     [[nodiscard]] Eigen::Vector3d combined_target(std::size_t vertex, double smoothing, const Eigen::Vector3d& match) const;
 
-    /// Rest displacements rotated with the surroundings of each vertex, and where vertices slide, scaled with what of them was
-    /// observed; what was not, with all that was.
+    /// Rest displacements rotated with the surroundings of each vertex, and if vertices slide, scaled with their observed
+    /// surroundings; unobserved vertices with the mean over all observed ones.
     void rotate_displacements();
 
     LevelSystem& system_;
     const Mesh& mesh_;
     const MatchSearch& search_;
     MatchSearch::Labels labels_;
-    std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< of each vertex
+    std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< correspondence constraints of each vertex
     double diagonal_;
     const NonRigidOptions& options_;
     const Points& rest_;
-    Points current_, start_, displacement_;  ///< start: of the level
+    Points current_, start_, displacement_;  ///< start: positions at the start of the level
     const Rings& rings_;
     Solver* solver_ = nullptr;
     const CageWeights* weights_ = nullptr;  ///< in cage space
     Points cage_rest_, cage_;
     std::unique_ptr<CageSpaceSolver> through_cage_;
     std::vector<VertexMatch> matches_;
-    std::vector<Slide> slides_;         ///< of each match
-    std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
-    std::vector<double> match_weight_;  ///< and how much
+    std::vector<Slide> slides_;         ///< slide of each match
+    std::vector<bool> weighted_;        ///< whether the match of a vertex has a weight in the factorisation
+    std::vector<double> match_weight_;  ///< weight of each match
 };
 
 }  // namespace ostraka

@@ -160,8 +160,8 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
 
 void FragmentFileOptions::describe(OptionList& visit) {
     visit("facets", facets,
-          "outer, inner and fracture surface: as annotated; auto: from the shape, annotations override; either: as "
-          "annotated where there are such annotations, else from the shape if it is closed; none: all outer",
+          "outer, inner and fracture surface: annotated: from annotations; auto: from the shape, overridden by annotations; "
+          "either: from annotations if there are any, else from the shape if it is closed; none: all outer",
           Choices{"either", "annotated", "auto", "none"});
     finding.describe(visit);
     cloud.describe(visit);

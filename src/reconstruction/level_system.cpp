@@ -50,10 +50,10 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
     return rings;
 }
 
-/// The rotation nearest to a matrix: its polar factor by Newton's iteration (Higham 1986), or where it all but mirrors or is all
-/// but flat, by its singular values.
+/// The rotation nearest to a matrix: its polar factor by Newton's iteration (Higham 1986), or, if the matrix is nearly a
+/// reflection or nearly singular, by its singular values.
 Matrix3d nearest_rotation(const Matrix3d& matrix) {
-    constexpr double flat = 1e-8, max_change = 1e-9;  // the iteration converges quadratically: what is left is rounding
+    constexpr double flat = 1e-8, max_change = 1e-9;  // the iteration converges quadratically: the remaining error is rounding
     constexpr int max_steps = 30;
     const double size = matrix.norm();
     Matrix3d current = size > 0 ? Matrix3d(matrix / size) : Matrix3d(matrix);

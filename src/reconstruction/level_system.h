@@ -17,12 +17,12 @@ struct Rings {
     std::vector<double> area, sum;  ///< area around each vertex; sum of its weights
 };
 
-/// How the surroundings of each vertex have rotated: the nearest rotation over two rings.
+/// Rotation of the surroundings of each vertex: the nearest rotation over two rings.
 std::vector<Eigen::Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& current);
 
-/// How many times as large the surroundings of each vertex are now as at rest: root mean square of the edges within three rings,
-/// from 0.5 to 2. Edges around vertices that were not observed count as if they had grown as all that was observed did: a size
-/// that the solution gave to them says nothing of them, and would be carried on from there.
+/// Scale of the surroundings of each vertex relative to rest: root mean square of the edges within three rings, from 0.5 to 2.
+/// Edges around unobserved vertices have the mean scale of all observed ones: their size in the solution is not evidence, and
+/// would propagate.
 std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& current,
                                  const std::vector<bool>& observed);
 

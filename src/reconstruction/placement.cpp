@@ -335,7 +335,7 @@ void PlacementOptions::describe(OptionList& visit) {
     visit("outlier", outlier,
           "a landmark whose residual exceeds this share of the spread of the template's landmarks is a possible outlier",
           Range{0, 1});
-    visit("unit-ratio", unit_ratio, "fragments whose scales differ by more than this factor are taken to have different units",
+    visit("unit-ratio", unit_ratio, "fragments whose scales differ by more than this factor are assumed to have different units",
           Range{1, 1e6});
     visit("collinear", collinear, "landmarks are collinear if their second extent is below this share of the first", Range{0, 1});
 }

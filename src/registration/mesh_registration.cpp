@@ -526,7 +526,7 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
 void MeshRegistrationOptions::describe(OptionList& visit) {
     visit("scale", scale, "find the scale as well: the meshes may be in different units", Anything{});
     visit("tolerance", tolerance,
-          "maximum distance between places of the same surface; 0: estimated from the resolutions of the meshes", Range{0, 1},
+          "maximum distance between points of the same surface; 0: estimated from the resolutions of the meshes", Range{0, 1},
           "share of the target's diagonal");
     visit("samples", samples, "number of points by which the meshes are registered and compared", Range{100, 1e6});
 }

@@ -288,7 +288,7 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
 }
 
 void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length of which scales are shares; 0: the square root of the area", Range{0, 1e60},
+    visit("feature-size", size, "length to which scales are relative; 0: the square root of the area", Range{0, 1e60},
           "the mesh's unit");
     visit("first-scale", first_scale, "standard deviation of the first smoothing", Range{1e-4, 0.5}, "share of the size");
     visit("scales", scales, "number of smoothing levels", Range{4, 20});

@@ -400,7 +400,7 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
 void PoseSearchOptions::describe(OptionList& visit) {
     visit("search-min-scale", min_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
     visit("search-max-scale", max_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
-    visit("search-tolerance", tolerance, "maximum distance from the template of points that lie on it", Range{1e-6, 1},
+    visit("search-tolerance", tolerance, "maximum distance from the template of points that count as on it", Range{1e-6, 1},
           "share of the fragment's size");
     visit("min-confidence", min_confidence, "minimum confidence of a searched pose; below it the fragment is not placed",
           Range{0, 1});

@@ -78,12 +78,12 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
 }
 
 void RefineOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices (met exactly)", Range{0, 5e8});
-    visit("levels", levels, "number of times each triangle is cut into four", Range{0, 12});
+    visit("vertices", vertices, "target number of vertices (reached exactly)", Range{0, 5e8});
+    visit("levels", levels, "number of times each triangle is split into four", Range{0, 12});
     visit("scheme", scheme,
-          "midpoint (each triangle is cut into four, the shape stays; the rest of the target number comes from halving the "
-          "longest edges), loop (the same with Loop's smoothing) or longest-edge (edges are halved in the order of their "
-          "length, the shape stays)",
+          "midpoint (each triangle is split into four without a change of shape; halving the longest edges gives the rest of the "
+          "target number), loop (the same with Loop's smoothing) or longest-edge (edges are halved in the order of their length "
+          "without a change of shape)",
           Choices{"midpoint", "loop", "longest-edge"});
 }
 

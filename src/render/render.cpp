@@ -468,7 +468,7 @@ void RenderOptions::describe(OptionList& visit) {
           "points",
           Choices{"surface", "lines", "wire", "points"});
     visit("contours", contours, "draw contours, creases and borders over the surface");
-    visit("labels", labels, "write names beside the object with leader lines, instead of a legend");
+    visit("labels", labels, "write names next to the object with leader lines, instead of a legend");
     visit("axes", axes, "draw the directions of the mesh's axes");
     visit("supersample", supersample,
           "samples per pixel in each direction: averaged in a PNG, kept in SVG and PDF; 0: 1 in a PNG, 2 in the others",

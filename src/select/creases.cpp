@@ -340,7 +340,7 @@ AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions,
 
 void CreaseOptions::describe(OptionList& visit) {
     visit("kind", kind, "ridges (clay that stands out), hollows (where parts meet), or both", Choices{"ridge", "hollow", "both"});
-    visit("scale", scale, "radius over which curvature is averaged; about the width looked for", Range{1e-6, 0.5},
+    visit("scale", scale, "radius over which curvature is averaged; about the width of the creases", Range{1e-6, 0.5},
           "share of the box diagonal");
     visit("wide", wide, "radius of the neighbourhood used for comparison, in multiples of the scale", Range{1.1, 20});
     visit("weak", weak, "lower hysteresis threshold of the response, in robust deviations over the surface", Range{0, 1000});

@@ -31,7 +31,7 @@ public:
     [[nodiscard]] std::vector<int> all_vertices() const;
     [[nodiscard]] const std::vector<Index>& faces(std::size_t i) const;
 
-    /// Throw Error (input) for another number of members (maximum 0: any), and for a member that is no region.
+    /// Throw Error (input) for another number of members (maximum 0: any), and for a member that is not a region.
     void need(std::size_t minimum, std::size_t maximum) const;
     void need_region(std::size_t i) const;
 
@@ -43,9 +43,9 @@ public:
     /// The tolerance stated for a quantity, otherwise the default.
     [[nodiscard]] double tolerance(const std::string& quantity, double for_all) const;
 
-    /// The member that the others follow: the named one, otherwise that of which the edit moves the largest share of vertices (of
-    /// equals, the first). Nothing if they follow none, or if the edit moves none of them. Throws Error (input) if the name is
-    /// none of a member.
+    /// The member that the others follow: the named one, otherwise the one with the largest share of vertices moved by the edit
+    /// (of equals, the first). Nothing if they follow none, or if the edit moves none of them. Throws Error (input) if the name
+    /// is none of a member.
     [[nodiscard]] std::optional<std::size_t> leader(const Leader& stated, const State& edited) const;
     void check_leader(const Leader& stated) const { static_cast<void>(leader(stated, State(shape_.mesh))); }
 

@@ -14,7 +14,7 @@ struct AxisSegment {
     std::vector<double> shares;  ///< for each vertex its position between that station and the next, 0 to 1
     int count = 0;               ///< number of stations
     std::string reason;          ///< reason if there is no segment
-    bool turned = false;         ///< there is no segment because the part leaves the axis at once
+    bool turned = false;         ///< no segment, since the part leaves the axis immediately
 };
 
 /// Positions of the stations on deformed points: means of the vertices around each, weighted by hat functions along the axis.

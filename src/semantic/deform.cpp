@@ -135,21 +135,19 @@ void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relation
 }
 
 void DeformOptions::describe(OptionList& visit) {
-    visit(
-        "space", space,
-        "the unknowns: mesh (constraints hold as well as weights let them), cage (interactive; as well as the cage can) or auto "
-        "(ornaments are seated, all else is solved over the mesh; where that is not acceptable, the best of these)",
-        Choices{"mesh", "cage", "auto"});
+    visit("space", space,
+          "unknowns: mesh (constraints hold as far as weights permit), cage (interactive; as far as the cage permits) or auto "
+          "(ornaments are seated, everything else is solved over the mesh; if that is not acceptable, the best of these)",
+          Choices{"mesh", "cage", "auto"});
     visit("details", details,
-          "Laplacian displacements that the surface tends to: edited (those of the shape as the edit alone leaves it) or "
-          "rest (those of the "
-          "shape before it, as in the thesis)",
+          "Laplacian displacements that the surface approaches: edited (those of the edited shape) or rest (those of the shape "
+          "before the edit, as in the thesis)",
           Choices{"edited", "rest"});
     visit("spread", spread, "length over which a constraint's displacement fades out", Range{1e-4, 1e4}, "share of the diagonal");
     visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
     visit("handles", handles,
-          "weight of the positions of the handles that the edit moves, and of joints that parts stretch from; handles that a "
-          "constraint moves as well give way",
+          "weight of the positions of the handles that the edit moves, and of the joints of stretched parts; lower for handles "
+          "that a constraint also moves",
           Range{0, 1e9});
     visit("followed", followed, "minimum share of the edit that an acceptable result follows", Range{0, 1});
     visit("distortion", distortion,
@@ -159,11 +157,11 @@ void DeformOptions::describe(OptionList& visit) {
     solve.describe(visit);
     visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
     visit("passes", passes,
-          "solutions in which constraints on axes and measures of other parts follow those; up to four times as many while hard "
-          "ones that fail come nearer",
+          "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many while "
+          "failing hard constraints improve",
           Range{1, 100});
     visit("conflicts", conflicts,
-          "maximum number of constraints that are left out in turn to find conflicts where one does not hold; 0: no search",
+          "maximum number of constraints that are omitted, one at a time, to find conflicts if one does not hold; 0: no search",
           Range{0, 1000});
 }
 

@@ -1,4 +1,4 @@
-// What an edit and a graph ask for, and the passes in which it is solved for: each follows what the one before moved.
+// The constraints of an edit and a graph, and the passes of the solve: each pass updates references that the previous one moved.
 #include "semantic/deformer.h"
 
 #include "ostraka/core/error.h"
@@ -30,7 +30,7 @@ CageSystem Deformer::begin(const Edit& edit, const std::vector<Index>& handles, 
     const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
     edited_ = columns_of(shape);
     edited_mesh_ = with_points(space_.mesh, shape);
-    EditState dragged = last_;  // somewhere: what counts is which vertices go along
+    EditState dragged = last_;  // an arbitrary position, to determine the vertices that follow
     for (const Index handle : handles)
         dragged.handles[handle] = dragged.handles[handle] + Vector(0, 0, 0.01 * box_diagonal(space_.mesh));
     asked_ = semantic::asked_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
@@ -57,7 +57,7 @@ std::vector<std::size_t> Deformer::follow_steps(const Edit& edit) {
 
 void Deformer::understand(DeformResult& result) {
     const semantic::Shape shape{space_.mesh, space_.set, rest_};
-    std::map<Index, int> reattached;  // by which feature
+    std::map<Index, int> reattached;  // vertex -> feature
     for (const Relationship& relationship : graph_.relationships) {
         if (!relationship.is_constraint) continue;
         statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
@@ -168,9 +168,9 @@ Points Deformer::make_passes(const std::vector<bool>& active, Outcome& outcome) 
         follows = follows || (active[i] && statements_[i].follows);
         gauges = gauges || (active[i] && statements_[i].until_it_holds);
     }
-    // Measures are held to a thousandth of a part.
+    // Measures are met to a thousandth.
     const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
-    // What must hold and does not yet is followed on as long as it comes nearer; the nearest counts.
+    // Failing hard constraints get further passes as long as they improve; the best result is used.
     const int usual = follows ? options_.passes : 1, most = follows ? 4 * usual : 1;
     constexpr int patience = 5;
     double least = std::numeric_limits<double>::infinity();
@@ -193,7 +193,7 @@ Points Deformer::make_passes(const std::vector<bool>& active, Outcome& outcome) 
 }
 
 Points Deformer::search_sizes(const std::vector<bool>& active, Outcome& outcome) {
-    constexpr double near = 1e-4;  // a tenth of what a measure may be off
+    constexpr double near = 1e-4;  // a tenth of the tolerance of a measure
     constexpr int patience = 5, most = 40;
     double least = std::numeric_limits<double>::infinity();
     int since = 0;

@@ -1,4 +1,4 @@
-// The linear system of one pass: constraints, what holds positions, and what the surface tends to; over the mesh or the cage.
+// The linear system of one pass: constraints, closeness of positions, and Laplacian displacements; over the mesh or the cage.
 #include "semantic/deformer.h"
 
 #include "ostraka/coords/nested.h"
@@ -71,7 +71,7 @@ bool Deformer::lower(const std::vector<bool>& active, Outcome& outcome) {
         }
         if (statements_[i].prepare && outcome.passes == 0 && options_.space == DeformOptions::Space::mesh)
             statements_[i].prepare(now, outcome.points);
-        if (statements_[i].support && options_.space == DeformOptions::Space::mesh)  // a cage is stiff by itself
+        if (statements_[i].support && options_.space == DeformOptions::Space::mesh)  // a cage is stiff without it
             for (auto& constraint : statements_[i].support(edited, now)) support_.push_back(std::move(constraint));
     }
     add_sizes();
@@ -148,7 +148,7 @@ void Deformer::solve_mesh(Outcome& outcome) {
     DeformOptions near = options_;
     if (!neighbours_give_) near.spread /= 3;
     add_closeness(beside, closeness(near, space_.mesh, edge), edited_, 0, rest_, list);
-    // Moved parts are as firm in relation to the surroundings of other parts, whether these are held nearer or not.
+    // The stiffness of moved parts relative to the surroundings of other parts does not depend on the weight of the latter.
     const double firmness = closeness(beside.empty() ? options_ : near, space_.mesh, edge);
     add_closeness(yielding, std::min(options_.handles, 81 * firmness), edited_, 0, rest_, list);
     add_closeness(held, options_.handles, edited_, 0, rest_, list);
@@ -199,7 +199,7 @@ CageSystem Deformer::cage_system() {
     Points rest(3, n + c);
     rest << rest_, rest_cage;
     std::vector<std::unique_ptr<Constraint>> list;
-    // A point of the cage stands for as many of the mesh.
+    // A point of the cage represents several points of the mesh.
     const double share = static_cast<double>(n) / static_cast<double>(c);
     const std::vector<bool> asked = handles_asked();
     std::vector<int> stiff;
@@ -214,7 +214,7 @@ CageSystem Deformer::cage_system() {
                       static_cast<int>(n), rest, list);
     }
     add_closeness(stiff, share * options_.handles, edited_cage, static_cast<int>(n), rest, list);
-    // What the cage tends to between constraints; else its points fly off for little.
+    // Regularisation of the cage between constraints; otherwise its points would move far for small gains.
     Points shape = rest;
     shape.rightCols(c) = options_.details == DeformOptions::Details::rest ? rest_cage : edited_cage;
     system.first_displacement = list.size();
@@ -229,8 +229,8 @@ CageSystem Deformer::cage_system() {
     system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
     for (std::size_t i = 0; i < owner_.size(); ++i) {
         const Constraint& constraint = system.solver->constraint(first_ + i);
-        // What must hold counts a thousandfold: a cage may not be able to do it. The level of a part counts as much as all of
-        // its points, whose shape a cage can keep only so far.
+        // Hard constraints have a thousandfold weight, since a cage may not be able to meet them. The level of a part weighs as
+        // much as all of its points, since a cage preserves their shape only to a limited extent.
         double factor = statements_[owner_[i]].hard ? 1e3 : 1;
         if (constraint.kind() == kinds::MeansOnLevel::kind.name)
             factor *= static_cast<double>(constraint.ids().size()) / static_cast<double>(constraint.map().rows);

@@ -1,4 +1,4 @@
-// What is said of the result: what holds, what stands against it, and which constraints fight.
+// The report on the result: verdicts, objections, and conflicts of constraints.
 #include "semantic/deformer.h"
 
 #include "ostraka/core/error.h"
@@ -67,7 +67,7 @@ semantic::Expected Deformer::expected(const DeformResult& result) const {
     if (flags.change.empty()) flags.change.assign(flags.size.size(), false);
     for (std::size_t i = 0; i < statements_.size(); ++i) {
         const ConstraintReport& report = result.constraints[i];
-        // What is enforced by its values changes its members also within its tolerance.
+        // Constraints enforced by values change their members even within the tolerance.
         const bool enforced = statements_[i].hard && !statements_[i].sized.empty();
         if (!report.used || (report.before == Verdict::holds && !enforced)) continue;
         for (const int id : report.annotations)

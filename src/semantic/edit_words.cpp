@@ -85,7 +85,7 @@ void EditWords::describe(OptionList& visit) {
     visit("rotate", rotate,
           "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (up) through their middle; repeatable");
     visit("keep", keep, "PART MEASURE or PART: keep a measure of parts as it is at rest, or their shape; repeatable");
-    visit("level", level, "PARTS: keep parts (tags with commas between, or a word like legs) on one level; repeatable");
+    visit("level", level, "PARTS: keep parts (tags separated by commas, or a word like legs) on one level; repeatable");
 }
 
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words) {

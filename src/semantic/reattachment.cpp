@@ -51,11 +51,11 @@ void smooth(const Mesh& mesh, const std::vector<Index>& free, bool to_others, Po
     for (std::size_t i = 0; i < right.size(); ++i) wanted.row(static_cast<Eigen::Index>(i)) = right[i];
     const SparseLdlt solver(rows.transpose() * rows);
     const Eigen::MatrixX3d found = solver.solve(rows.transpose() * wanted);
-    if (!found.allFinite()) return;  // a free piece without anything around it: it stays
+    if (!found.allFinite()) return;  // a component without surroundings: unchanged
     for (std::size_t i = 0; i < free.size(); ++i) values.col(free[i]) = found.row(static_cast<Eigen::Index>(i)).transpose();
 }
 
-/// Of an area by its corners' thirds: the centroid follows a rigid motion.
+/// Area weights of the corners, a third of each face: the centroid follows a rigid motion.
 Vector3d centroid_of(const Mesh& mesh, const std::vector<Index>& faces, const Points& points) {
     Vector3d sum = Vector3d::Zero();
     double area = 0;
@@ -92,7 +92,7 @@ struct Feature {
     const Annotation* annotation;
     std::vector<Index> vertices, inside, outline;
     Vector3d centroid;  ///< at rest
-    double radius = 0;  ///< greatest distance from it, at rest
+    double radius = 0;  ///< maximum distance from it, at rest
     Points rest_outline;
     FeaturePose pose;
 };
@@ -168,7 +168,7 @@ private:
         std::vector<std::vector<Index>> references;
     };
 
-    /// Moves a placed feature so that its outline lies on the base; with a target height its centroid comes there.
+    /// Moves a placed feature so that its outline lies on the base, and its centroid at the target height if given.
     void settle(Feature& feature, const SurfaceSearch& search, const std::optional<std::pair<Vector3d, double>>& height) const {
         const double enough = 1e-9 * search.diagonal();
         for (int round = 0; round < 50; ++round) {
@@ -182,7 +182,7 @@ private:
             }
             feature.pose = fit(feature.rest_outline, to);
             if (height) {
-                // Along the base, in the steepest direction of the height; straight where the base is level itself.
+                // Along the base, in the direction of steepest height; vertically if the base is level.
                 const auto& [up, wanted] = *height;
                 normal = normal.norm() > 0 ? Vector3d(normal.normalized()) : up;
                 const Vector3d slope = up - normal * normal.dot(up);
@@ -199,7 +199,7 @@ private:
         }
     }
 
-    /// The feature where it is placed, bent so that its outline lies on the base as far as it may.
+    /// The placed feature, bent so that its outline lies on the base as far as permitted.
     void bend(const Feature& feature, const SurfaceSearch& search, double maximum) {
         for (const Index v : feature.outline) {
             const Vector3d p = feature.pose(rest_.col(v));
@@ -238,9 +238,9 @@ private:
         }
     }
 
-    /// All points with the features in place and what is around them drawn along on the base.
+    /// All points with the features in place and their surroundings displaced on the base.
     Points surroundings(const SurfaceSearch& search, double radii_around) const {
-        // Displacements along the base, and what outlines stand off it, both carried smoothly to nothing.
+        // Displacements along the base, and the distances of outlines from it, both faded out smoothly.
         Points moved = Points::Zero(3, points_.cols()), off = moved, result = points_;
         for (const Feature& feature : features_)
             for (const Index v : feature.vertices) {
@@ -265,7 +265,7 @@ private:
         return result;
     }
 
-    /// Flags vertices that edges lead to from the outline within a length of the rest shape, by rising distance.
+    /// Flags vertices within an edge-path distance of the outline on the rest shape, in order of increasing distance.
     void grow(const Feature& feature, double length, std::vector<bool>& ring) const {
         std::set<std::pair<double, Index>> open;
         std::map<Index, double> known;
@@ -286,7 +286,7 @@ private:
         }
     }
 
-    /// Faces outside the features that turned over against the surface as it was.
+    /// Number of faces outside the features that are flipped relative to the previous surface.
     [[nodiscard]] std::size_t folded(const Points& result) const {
         std::size_t count = 0;
         for (const Face f : mesh_.faces()) {

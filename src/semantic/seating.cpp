@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether the outline is one closed line that meets itself nowhere.
+/// Whether the outline is one simple closed line.
 bool is_one_loop(const Mesh& mesh, const std::vector<Halfedge>& outline) {
     std::map<Index, Index> next;
     for (const Halfedge h : outline)
@@ -52,7 +52,7 @@ bool is_ornament(const Mesh& mesh, const Annotation& part) {
     return height <= 0.5 * std::sqrt(squared);
 }
 
-/// How the constraint says that its parts are seated, or none where it says something else.
+/// The parameters with which the constraint seats its parts; nothing if it specifies otherwise.
 std::optional<Json> seated_parameters(const Relationship& relationship) {
     if (relationship.type != "same level" && relationship.type != "keep shape") return {};
     Json parameters =
@@ -66,7 +66,7 @@ std::optional<Json> seated_parameters(const Relationship& relationship) {
     if (parameters.HasMember(name) && !says(name, same)) return {};
     if (parameters.HasMember("heights") && !says("heights", "equal")) return {};
     parameters.RemoveMember("heights");
-    parameters.RemoveMember("hard");  // what is seated holds exactly
+    parameters.RemoveMember("hard");  // seated parts hold exactly
     parameters.RemoveMember(name);
     add_members(parameters, parameters.GetAllocator(), name, "seat");
     return parameters;
@@ -76,7 +76,7 @@ std::optional<Json> seated_parameters(const Relationship& relationship) {
 
 Seating seat_ornaments(const HandleSpace& space, const RelationGraph& graph) {
     Seating result;
-    std::map<Index, int> constraints_at;  // vertex -> constraints on parts that hold it
+    std::map<Index, int> constraints_at;  // vertex -> constraints on parts that contain it
     for (const Relationship& relationship : graph.relationships) {
         if (!relationship.is_constraint) continue;
         result.graph.relationships.push_back(relationship);

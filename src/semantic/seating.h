@@ -1,4 +1,4 @@
-// Which constraints on features of a surface can be met by seating them, chosen without being asked.
+// Automatic choice of constraints on features that are met by seating.
 #pragma once
 
 #include "ostraka/relation/graph.h"
@@ -8,15 +8,15 @@
 
 namespace ostraka::semantic {
 
-/// A graph in which constraints that say nothing of how their parts keep their shape seat them, where that can be.
+/// A graph in which constraints that do not specify how parts keep their shape seat them, if possible.
 struct Seating {
-    RelationGraph graph;      ///< the constraints alone
-    std::vector<int> seated;  ///< ids of those that were changed
+    RelationGraph graph;      ///< only the constraints
+    std::vector<int> seated;  ///< ids of the changed constraints
 };
 
 /// Seats the parts of "same level" and of "keep shape" that are ornaments: regions with one outline that rise above the plane of
-/// it by at most half of its radius. They must not touch each other, and no other constraint may be about them, but one on the
-/// whole. Constraints that state `shapes` or `mode`, a leader, or that heights stay as they are at rest, are left as they are.
+/// it by at most half of its radius. They must not touch each other, and be in no other constraint except one on the whole.
+/// Constraints that specify `shapes` or `mode`, a leader, or heights as at rest, are unchanged.
 Seating seat_ornaments(const HandleSpace& space, const RelationGraph& graph);
 
 }  // namespace ostraka::semantic

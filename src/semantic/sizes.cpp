@@ -94,7 +94,7 @@ void Sizes::follow(const State& now) {
 bool Sizes::allow_whole_ranges() {
     if (std::all_of(side_.begin(), side_.end(), [](int side) { return side == 0; })) return false;
     std::fill(side_.begin(), side_.end(), 0);
-    errors_.resize(0);  // others than those that the slopes would be told from
+    errors_.resize(0);  // not the errors from which slopes would be estimated
     return true;
 }
 

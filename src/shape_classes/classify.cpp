@@ -296,10 +296,9 @@ void ClassifyOptions::describe(OptionList& visit) {
     visit("correspondence", correspondence,
           "an object with the template's triangles is used as given (auto, given); the template is fitted to it (fitted)",
           Choices{"auto", "given", "fitted"});
-    visit(
-        "strict", strict,
-        "whether the template lies on an object is decided by --max-off alone; otherwise also by how well it lies on the members",
-        Anything{});
+    visit("strict", strict,
+          "decide by --max-off alone whether the template lies on an object; otherwise also by its distance from the members",
+          Anything{});
     visit("attributes", attributes, "also reject objects by attribute values out of range", Anything{});
     visit("close", close, "classes are not distinguished if their scores differ by less than this share of the better one",
           Range{0, 1});

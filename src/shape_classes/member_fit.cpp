@@ -344,8 +344,8 @@ void MemberFitOptions::describe(OptionList& visit) {
     fit.describe(visit);
     visit("ignore-landmarks", ignore_landmarks, "register the template onto objects by their surfaces alone", Anything{});
     visit("tries", tries,
-          "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
-          "it; the best fit is kept",
+          "without landmarks: number of initial poses that are fitted, the nearest ones of those from the principal axes and of "
+          "that in the files; the best fit is kept",
           Range{1, 5});
     visit("observed", observed, "maximum distance between surfaces that lie on each other", Range{0, 1}, "share of the diagonal");
     visit("max-off", max_off,

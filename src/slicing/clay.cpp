@@ -149,7 +149,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
 void ClayOptions::describe(OptionList& visit) {
     visit("slices", slices, "number of layers", Range{2, 1000000});
     visit("wall", wall,
-          "minimum wall thickness assumed where the inside is not seen; 0: the 5 % quantile of the walls that are seen",
+          "minimum wall thickness assumed where the interior is not visible; 0: the 5 % quantile of the visible walls",
           Range{0, 1e60}, "the mesh's unit");
 }
 

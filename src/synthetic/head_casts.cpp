@@ -223,8 +223,8 @@ void CastOptions::describe(OptionList& visit) {
     visit("beard", beard, "share of the casts with a beard added by hand", Range{0, 1});
     visit("chunk", chunk, "share of the casts of which a piece of the face is missing", Range{0, 1});
     visit("dents", dents, "maximum number of small dents in the front", Range{0, 20});
-    visit("body", body, "make whole statuettes: each head on a body of its own, unrelated to the mould");
-    visit("keep-pose", keep_pose, "leave heads upright, looking along x, instead of turned and moved at random", Anything{});
+    visit("body", body, "make whole statuettes: each head on its own body, which is independent of the mould");
+    visit("keep-pose", keep_pose, "keep heads upright, facing x, instead of rotating and translating them at random", Anything{});
     visit("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
     visit("cast-seed", seed, "random seed of the cast and of its mesh", Range{0, 9007199254740992.0});
 }
@@ -234,7 +234,7 @@ void MouldPopulationOptions::describe(OptionList& visit) {
     visit("moulds", moulds, "number of moulds; every other one has long hair", Range{1, 1000});
     visit("hand-made", hand_made, "number of hand-made heads", Range{0, 100000});
     visit("difference", difference, "difference between archetypes: 1 means that proportions vary by about 8 %", Range{0, 3});
-    visit("seed", seed, "random seed of all that is drawn", Range{0, 9007199254740992.0});
+    visit("seed", seed, "random seed of the whole population", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

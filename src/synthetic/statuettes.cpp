@@ -332,7 +332,7 @@ void StatuetteParameters::describe(OptionList& visit) {
 
 void PopulationOptions::describe(OptionList& visit) {
     visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
-    visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
+    visit("level", level, "difficulty: from 1, clearly different techniques, to 5, nearly identical ones", Range{1, 5});
     visit("seed", seed, "random seed of the whole population", Range{0, 1e9});
     visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
     visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");

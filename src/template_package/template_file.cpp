@@ -101,7 +101,7 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
 }
 
 void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "allow parts outside the folder of the template", Anything{});
+    visit("allow-outside", allow_outside, "allow files outside the folder of the template", Anything{});
     visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
 }
 

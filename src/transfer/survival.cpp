@@ -54,8 +54,8 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
 }
 
 void SurvivalOptions::describe(OptionList& visit) {
-    visit("ratio", ratio, "number of vertices of each resolution relative to the one before", Range{0.1, 0.95});
-    visit("area-error", area_error, "a region survives while its area changes by less than this share", Range{0.001, 1});
+    visit("ratio", ratio, "number of vertices of each resolution relative to the previous one", Range{0.1, 0.95});
+    visit("area-error", area_error, "a region survives as long as its area changes by less than this share", Range{0.001, 1});
     visit("least", minimum, "minimum number of vertices tried", Range{4, 1e9});
 }
 

@@ -265,18 +265,18 @@ std::string to_string(TransferOutcome outcome) {
 
 void TransferOptions::describe(OptionList& visit) {
     correspondence.describe(visit);
-    visit("metric", metric, "what paths between corresponding vertices minimise", Choices{"euclidean", "segment", "combined"});
+    visit("metric", metric, "quantity that paths between corresponding vertices minimise",
+          Choices{"euclidean", "segment", "combined"});
     visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
           Choices{"prune", "avoid", "keep"});
     visit("outlines", outlines,
-          "outlines and lines stay what they are, but regions that part the whole surface, such as labels, become free, through "
-          "the "
-          "triangles of the target (partitions); all stay what they are (kept); all become free; or all run along the target's "
-          "edges",
+          "outlines and lines keep their kind, but regions that partition the whole surface, such as labels, become free, "
+          "through the triangles of the target (partitions); all keep their kind (kept); all become free (free); or all run "
+          "along the target's edges (edges)",
           Choices{"partitions", "kept", "free", "edges"});
     visit("rounding", rounding,
-          "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them "
-          "(area), or so that area and perimeter are met as well (balanced)",
+          "faces that the true outline crosses: assigned by the edge paths (path), to the side that contains most of their area "
+          "(area), or so that area and perimeter are preserved as well (balanced)",
           Choices{"path", "area", "balanced"});
     visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
           Choices{"overlapping", "enclosing", "enclosed"});

@@ -27,7 +27,7 @@ TEST(SymmetricEigen2, KnownMatrices) {
     EXPECT_FALSE(SymmetricEigen2(symmetric(1, std::numeric_limits<double>::quiet_NaN(), 1)).found());
 }
 
-/// Of any size the vectors are orthonormal, the values ascend, and both make the matrix again: as of the dynamic solver.
+/// For any size the vectors are orthonormal, the values ascend, and both reproduce the matrix, as with the dynamic solver.
 TEST(SymmetricEigen2, AgreesWithTheDynamicSolver) {
     for (const double size : {1e-150, 1e-8, 1.0, 1e8, 1e150})
         for (const auto& m : {symmetric(1, 2, 3), symmetric(3, -2, 1), symmetric(1, 1e-9, 1), symmetric(-1, 0.5, -1e-7)}) {

@@ -61,14 +61,14 @@ TEST(AnnotationCommand, ListAndCheck) {
     const auto check = run_command("annotation check " + pair);
     EXPECT_EQ(check.code, 0) << check.out;
     EXPECT_NE(check.out.find("no defects"), std::string::npos);
-    // A value that is no longer true.
+    // An outdated value.
     std::string text = read_file(folder / "out.ant.json");
     text.replace(text.find("\"value\": 4"), 10, "\"value\": 5");
     write_file(folder / "bad.ant.json", text);
     const auto bad = run_command("annotation check " + folder.at("tile.ply") + " " + folder.at("bad.ant.json"));
     EXPECT_EQ(bad.code, 3);
     EXPECT_NE(bad.out.find("is 5 but measures 4"), std::string::npos) << bad.out;
-    // Another mesh: the answer is no, and with --force-mesh the indices are looked at.
+    // Another mesh: the answer is no, and with --force-mesh the indices are checked.
     write_mesh(folder / "other.ply", grid(4, 2));
     const std::string other = folder.at("other.ply") + " " + folder.at("out.ant.json");
     EXPECT_EQ(run_command("annotation check " + other).code, 3);
@@ -90,7 +90,7 @@ TEST(AnnotationCommand, LabelsInAndOut) {
     EXPECT_NE(result.out.find("arm"), std::string::npos);
     EXPECT_NE(result.out.find("part 3"), std::string::npos);
     EXPECT_EQ(read_file(folder / "back.seg"), labels);
-    // The same through the labels of a PLY file.
+    // The same with the labels of a PLY file.
     MeshExtras extras;
     for (int i = 0; i < 32; ++i) extras.face_labels.push_back(i / 10);
     write_mesh(folder / "labelled.ply", grid(4), extras);
@@ -139,10 +139,10 @@ TEST(AnnotationCommand, WrongInputLeavesNothingBehind) {
     const std::string recipe = folder.file("r.recipe.json", simple_recipe).string(), mesh = folder.at("tile.ply"),
                       out = folder.at("o.ant.json");
     const std::size_t before = test::count_files(folder.path());
-    const auto expect = [&](const std::string& arguments, int code, const std::string& what) {
+    const auto expect = [&](const std::string& arguments, int code, const std::string& message) {
         const auto result = run_command("annotation " + arguments);
         EXPECT_EQ(result.code, code) << arguments << "\n" << result.err;
-        EXPECT_NE((result.err + result.out).find(what), std::string::npos) << arguments << "\n" << result.err << result.out;
+        EXPECT_NE((result.err + result.out).find(message), std::string::npos) << arguments << "\n" << result.err << result.out;
         EXPECT_EQ(test::count_files(folder.path()), before) << arguments;
     };
     expect("apply " + mesh, 2, "give mesh recipe output, or mesh output");

@@ -29,11 +29,11 @@ std::string error_of(const std::string& text, const Mesh& mesh) {
     return "no error";
 }
 
-void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& what) {
+void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& expected) {
     const std::string message = error_of(text, mesh);
     EXPECT_NE(message.find("a.ant.json"), std::string::npos) << message;
     EXPECT_NE(message.find(pointer), std::string::npos) << message << "\n  for " << text;
-    EXPECT_NE(message.find(what), std::string::npos) << message << "\n  for " << text;
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  for " << text;
 }
 
 std::string with(const std::string& annotation) { return R"({"annotations": [)" + annotation + "]}"; }
@@ -135,8 +135,8 @@ TEST(AnnotationFile, TheThesisFormatIsReadExactly) {
     EXPECT_EQ(set.annotations[0].attributes[3].measure.direction, (std::array<double, 3>{0, 1.5, 0}));
     EXPECT_EQ(set.annotations[1].polylines, (std::vector<std::vector<Index>>{{0, 1, 2}, {4, 5}}));
     EXPECT_EQ(set.annotations[2].points, std::vector<Index>{15});
-    ASSERT_EQ(set.notes.size(), 1U);  // it does not say which mesh it is for
-    // What is written of it holds the same members.
+    ASSERT_EQ(set.notes.size(), 1U);  // it does not identify its mesh
+    // The written file has the same members.
     const Json out = annotations_to_json(set, mesh, "m.ply", {});
     const JsonValue& region = out["annotations"][0];
     for (const char* member : {"id", "tag", "colour", "attributes", "type", "boundaries"})
@@ -215,7 +215,7 @@ TEST(AnnotationFile, AnEmptySetAndAnEmptyRegion) {
     EXPECT_TRUE(parse(written(set, mesh), mesh).annotations[0].faces.empty());
 }
 
-TEST(AnnotationFile, FacesMayStandInsteadOfBoundaries) {
+TEST(AnnotationFile, FacesMayReplaceBoundaries) {
     const Mesh mesh = grid(3);
     EXPECT_EQ(parse(with(R"({"id": 0, "tag": "", "type": "region", "faces": [7, 2, 7]})"), mesh).annotations[0].faces,
               (std::vector<Index>{2, 7}));

@@ -61,7 +61,7 @@ TEST(AnnotationMaps, AttachAndCollectIsTheIdentity) {
     EXPECT_FALSE(table.contains(map[Face(0)], 2));
 }
 
-TEST(AnnotationMaps, WithoutAVertexMapElementsTellWhereTheyAre) {
+TEST(AnnotationMaps, WithoutAVertexMapElementsAreReadFromTheMaps) {
     Mesh mesh = grid(4);
     const AnnotationSet set = overlapping();
     const AnnotationTable table = attach_annotations(mesh, set);
@@ -70,7 +70,7 @@ TEST(AnnotationMaps, WithoutAVertexMapElementsTellWhereTheyAre) {
     EXPECT_EQ(back.annotations[2].polylines, set.annotations[2].polylines);
 }
 
-TEST(AnnotationMaps, ACollapseCarriesThemThrough) {
+TEST(AnnotationMaps, ACollapsePreservesAnnotations) {
     Mesh mesh = spheres(2);
     AnnotationSet set;
     set.annotations.resize(2);
@@ -87,8 +87,8 @@ TEST(AnnotationMaps, ACollapseCarriesThemThrough) {
     auto old_index = mesh.add_property_map<Vertex, Index>("v:old").first;
     for (const Vertex v : mesh.vertices()) old_index[v] = v;
     std::vector<Index> now = identity(mesh);
-    const Vertex kept = CGAL::Euler::collapse_edge(mesh.edge(first), mesh);
-    now[a] = now[b] = kept;
+    const Vertex remaining = CGAL::Euler::collapse_edge(mesh.edge(first), mesh);
+    now[a] = now[b] = remaining;
     mesh.collect_garbage();
     std::vector<Index> place(now.size(), no_index);
     for (const Vertex v : mesh.vertices()) place[old_index[v]] = v;
@@ -118,7 +118,7 @@ TEST(AnnotationMaps, ASplitEdgeIsFollowed) {
     EXPECT_EQ(collect_annotations(mesh, table, set).annotations[0].polylines, expected);
 }
 
-TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointAndSaysSo) {
+TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointWithANote) {
     Mesh mesh = grid(4);
     AnnotationSet set;
     set.annotations.emplace_back().faces = {0};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The closed curve through the nearest places of points, counter-clockwise seen from outside.
+/// The closed curve through the nearest surface points of given points, counter-clockwise seen from outside.
 std::vector<SurfacePoint> drawn(const Mesh& mesh, const SurfaceSearch& search, const std::vector<Point>& points) {
     std::vector<SurfacePoint> places;
     const auto node_of = [&](const Point& p) {
@@ -38,7 +38,7 @@ std::vector<SurfacePoint> drawn(const Mesh& mesh, const SurfaceSearch& search, c
     return places;
 }
 
-/// A circle on the unit sphere at an angle from an axis that is none of the mesh's.
+/// A circle on the unit sphere at an angle from an axis not aligned with the mesh.
 std::vector<Point> circle(double angle, int n, const Point& centre = Point(0, 0, 0)) {
     const Vector axis(0.36, 0.48, 0.8), u(0.8, -0.6, 0), v = CGAL::cross_product(axis, u);
     std::vector<Point> points;
@@ -78,7 +78,7 @@ TEST(FreeOutline, CircleOnASphereIsOfSecondOrder) {
     EXPECT_LT(off_perimeter.back(), 1e-3);
 }
 
-TEST(FreeOutline, InsideAndOutsideAreAllThereIs) {
+TEST(FreeOutline, InsideAndOutsidePartitionTheMesh) {
     for (const Vector& shift : {Vector(0, 0, 0), Vector(1e6, -2e6, 3e6)})
         for (const double size : {1.0, 1e-6, 1e6}) {
             const Mesh unit = build_mesh(octahedron_sphere(4));
@@ -101,7 +101,7 @@ TEST(FreeOutline, InsideAndOutsideAreAllThereIs) {
         }
 }
 
-TEST(FreeOutline, AlongEdgesItIsTheRegionOfTheEdges) {
+TEST(FreeOutline, AlongEdgesTheRegionEqualsThatOfTheEdges) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     std::vector<Index> faces;
     for (const Face f : mesh.faces())
@@ -119,11 +119,11 @@ TEST(FreeOutline, AlongEdgesItIsTheRegionOfTheEdges) {
     EXPECT_NEAR(measure_region(mesh, annotation).perimeter, expected.perimeter, 1e-12);
 }
 
-TEST(FreeOutline, CutAndBroughtBackItIsTheSame) {
+TEST(FreeOutline, CutAndBroughtBackIsTheIdentity) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const SurfaceSearch search(mesh);
     AnnotationSet set;
-    // Two that overlap, one inside a single face, and a plain one.
+    // Two overlapping annotations, one inside a single face, and one along edges.
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(0.7, 200))}));
     set.annotations.push_back(region(mesh, {drawn(mesh, search, circle(1.2, 150))}));
     const auto corner = corners(mesh, Face(77));
@@ -162,7 +162,7 @@ TEST(FreeOutline, CutAndBroughtBackItIsTheSame) {
     }
 }
 
-TEST(FreeOutline, FileGivesTheSameAgain) {
+TEST(FreeOutline, FileRoundTripIsExact) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const SurfaceSearch search(mesh);
     AnnotationSet set;
@@ -196,7 +196,7 @@ TEST(FreeOutline, FileGivesTheSameAgain) {
     EXPECT_EQ(to_text(annotations_to_json(read, mesh, "sphere.ply", {})), to_text(document));
 }
 
-TEST(FreeOutline, WhatCannotBeIsRefused) {
+TEST(FreeOutline, InvalidCurvesAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const SurfaceSearch search(mesh);
     const std::vector<SurfacePoint> good = drawn(mesh, search, circle(0.9, 100));
@@ -226,7 +226,7 @@ TEST(FreeOutline, WhatCannotBeIsRefused) {
     for (SurfacePoint& place : outside)
         if (place.is_on_edge()) place.weights = {-0.5, 1.5, 0};
     refused(outside, "not within the edge");
-    // Its elements are kept from saying something else.
+    // Contradictory elements are corrected.
     AnnotationSet set;
     set.annotations.push_back(region(mesh, {good}));
     set.annotations.front().faces.pop_back();
@@ -234,7 +234,7 @@ TEST(FreeOutline, WhatCannotBeIsRefused) {
 }
 
 TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
-    // A square of two triangles a cell; a curve across it from border to border.
+    // A square with two triangles per cell; a curve across it from border to border.
     TriangleSoup soup;
     const int n = 8;
     for (int j = 0; j <= n; ++j)
@@ -254,7 +254,7 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
     const auto line = trace_line(mesh, node(0.31, 0), node(0.77, 1), Vector(0, 0, 1), 10);
     ASSERT_TRUE(line);
     std::vector<SurfacePoint> curve;
-    for (const SurfacePoint& one : line->points) curve.push_back(stored_point(mesh, one));
+    for (const SurfacePoint& point : line->points) curve.push_back(stored_point(mesh, point));
     const Annotation left = region(mesh, {curve});
     const double length = std::hypot(0.46, 1.0);
     EXPECT_NEAR(area_of(mesh, left), 0.54, 1e-9);

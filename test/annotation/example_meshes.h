@@ -24,35 +24,35 @@ inline Mesh grid(Index n, double scale = 1) {
 
 /// Spheres from an octahedron subdivided `levels` times; one per centre, in this order.
 inline Mesh spheres(int levels, const std::vector<std::array<double, 3>>& centres = {{0, 0, 0}}, double radius = 1) {
-    TriangleSoup one;
-    one.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    one.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    TriangleSoup soup;
+    soup.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    soup.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<Index, Index>, Index> middles;
         const auto middle = [&](Index a, Index b) {
-            const auto [entry, added] = middles.emplace(std::minmax(a, b), static_cast<Index>(one.points.size()));
+            const auto [entry, added] = middles.emplace(std::minmax(a, b), static_cast<Index>(soup.points.size()));
             if (added) {
                 std::array<double, 3> p{};
-                for (std::size_t k = 0; k < 3; ++k) p[k] = one.points[a][k] + one.points[b][k];
+                for (std::size_t k = 0; k < 3; ++k) p[k] = soup.points[a][k] + soup.points[b][k];
                 const double length = std::hypot(p[0], p[1], p[2]);
                 for (double& x : p) x /= length;
-                one.points.push_back(p);
+                soup.points.push_back(p);
             }
             return entry->second;
         };
         std::vector<std::array<Index, 3>> triangles;
-        for (const auto& [a, b, c] : one.triangles) {
+        for (const auto& [a, b, c] : soup.triangles) {
             const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
             triangles.insert(triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
         }
-        one.triangles = std::move(triangles);
+        soup.triangles = std::move(triangles);
     }
     TriangleSoup all;
     for (const auto& centre : centres) {
         const Index shift = static_cast<Index>(all.points.size());
-        for (const auto& p : one.points)
+        for (const auto& p : soup.points)
             all.points.push_back({centre[0] + radius * p[0], centre[1] + radius * p[1], centre[2] + radius * p[2]});
-        for (const auto& [a, b, c] : one.triangles) all.triangles.push_back({a + shift, b + shift, c + shift});
+        for (const auto& [a, b, c] : soup.triangles) all.triangles.push_back({a + shift, b + shift, c + shift});
     }
     return build_mesh(all);
 }

@@ -1,4 +1,4 @@
-// Outlines in steps made fair.
+// Fairing of stepped outlines.
 #include "ostraka/annotation/fair_outlines.h"
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
@@ -15,7 +15,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// The sphere parted into a cap around an axis that is none of the mesh's, a band and the rest, by the faces' centroids.
+/// The sphere divided into a cap around an axis not aligned with the mesh, a band and the rest, by the faces' centroids.
 AnnotationSet parted(const Mesh& mesh) {
     const Vector axis(0.36, 0.48, 0.8);
     AnnotationSet set;
@@ -33,7 +33,7 @@ AnnotationSet parted(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(FairOutlines, PartsOfASphereGetTheirCircles) {
+TEST(FairOutlines, PartsOfASphereBecomeCircles) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
     AnnotationSet set = parted(mesh);
     const AnnotationSet before = set;
@@ -65,12 +65,12 @@ TEST(FairOutlines, StaysWithinTheDistance) {
         AnnotationSet set = parted(mesh);
         FairOptions options;
         options.distance = share * mean_edge_length(mesh);
-        for (const auto& one : fair_outlines(mesh, set, {}, options)) EXPECT_LE(one.moved, options.distance) << share;
+        for (const auto& faired : fair_outlines(mesh, set, {}, options)) EXPECT_LE(faired.moved, options.distance) << share;
         check_annotations(set, mesh, "faired");
     }
 }
 
-TEST(FairOutlines, OnlyThoseAskedFor) {
+TEST(FairOutlines, OnlyRequestedAnnotationsAreFaired) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     AnnotationSet set = parted(mesh);
     const auto faired = fair_outlines(mesh, set, {0});
@@ -85,7 +85,7 @@ TEST(FairOutlines, OnlyThoseAskedFor) {
     EXPECT_TRUE(fair_outlines(mesh, none, {}).empty());
 }
 
-TEST(FairOutlines, WhatIsTooSmallStaysAsItIs) {
+TEST(FairOutlines, SmallRegionsAreUnchanged) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     AnnotationSet set;
     set.annotations.resize(1);
@@ -110,9 +110,9 @@ TEST(FairOutlines, RoundingUnitAndPositionChangeNothing) {
         }
         AnnotationSet set = parted(mesh);
         std::vector<double> values;
-        for (const FairedAnnotation& one : fair_outlines(other, set, {})) {
-            values.push_back(one.length_after / scale);
-            values.push_back(one.area_after / (scale * scale));
+        for (const FairedAnnotation& faired : fair_outlines(other, set, {})) {
+            values.push_back(faired.length_after / scale);
+            values.push_back(faired.area_after / (scale * scale));
         }
         return values;
     };

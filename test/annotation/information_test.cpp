@@ -1,4 +1,4 @@
-// What annotations refer to: texts, links, images, files.
+// Information of annotations: texts, links, images, files.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
@@ -13,12 +13,12 @@ namespace {
 
 AnnotationSet with(std::vector<Information> information) {
     AnnotationSet set;
-    Annotation one;
-    one.id = 4;
-    one.tag = "spout";
-    one.faces = {0, 1};
-    one.information = std::move(information);
-    set.annotations = {one};
+    Annotation annotation;
+    annotation.id = 4;
+    annotation.tag = "spout";
+    annotation.faces = {0, 1};
+    annotation.information = std::move(information);
+    set.annotations = {annotation};
     return set;
 }
 
@@ -26,7 +26,7 @@ using Kind = Information::Kind;
 
 }  // namespace
 
-TEST(Information, IsReadAsItWasWritten) {
+TEST(Information, RoundTripIsExact) {
     const Mesh mesh = build_mesh(octahedron_sphere(1));
     const AnnotationSet set = with({{Kind::text, "mended in 1931", "", ""},
                                     {Kind::image, "photos/spout.jpg", "the spout", std::string(64, 'a')},
@@ -40,25 +40,25 @@ TEST(Information, IsReadAsItWasWritten) {
     EXPECT_TRUE(back.annotations[0].information[1].is_local());
 }
 
-TEST(Information, OfLocalFilesIsChecked) {
+TEST(Information, LocalFilesAreChecked) {
     const Scratch scratch;
     write_file(scratch / "note.txt", "broken");
     const std::string sum = sha256_of_file(scratch / "note.txt");
     const Mesh mesh = build_mesh(octahedron_sphere(1));
-    const auto said = [&](const Information& one) { return check_files(with({one}), mesh, scratch.path()); };
-    EXPECT_TRUE(said({Kind::file, "note.txt", "", sum}).empty());
-    EXPECT_TRUE(said({Kind::link, "nowhere", "", ""}).empty());
-    EXPECT_TRUE(said({Kind::image, "https://example.org/a.png", "", ""}).empty());
-    ASSERT_EQ(said({Kind::file, "note.txt", "", ""}).size(), 1U);
-    EXPECT_FALSE(said({Kind::file, "note.txt", "", ""})[0].defect);
-    ASSERT_EQ(said({Kind::file, "gone.txt", "", sum}).size(), 1U);
-    EXPECT_TRUE(said({Kind::file, "gone.txt", "", sum})[0].defect);
+    const auto findings_of = [&](const Information& item) { return check_files(with({item}), mesh, scratch.path()); };
+    EXPECT_TRUE(findings_of({Kind::file, "note.txt", "", sum}).empty());
+    EXPECT_TRUE(findings_of({Kind::link, "nowhere", "", ""}).empty());
+    EXPECT_TRUE(findings_of({Kind::image, "https://example.org/a.png", "", ""}).empty());
+    ASSERT_EQ(findings_of({Kind::file, "note.txt", "", ""}).size(), 1U);
+    EXPECT_FALSE(findings_of({Kind::file, "note.txt", "", ""})[0].defect);
+    ASSERT_EQ(findings_of({Kind::file, "gone.txt", "", sum}).size(), 1U);
+    EXPECT_TRUE(findings_of({Kind::file, "gone.txt", "", sum})[0].defect);
     write_file(scratch / "note.txt", "mended");
-    ASSERT_EQ(said({Kind::file, "note.txt", "", sum}).size(), 1U);
-    EXPECT_TRUE(said({Kind::file, "note.txt", "", sum})[0].defect);
+    ASSERT_EQ(findings_of({Kind::file, "note.txt", "", sum}).size(), 1U);
+    EXPECT_TRUE(findings_of({Kind::file, "note.txt", "", sum})[0].defect);
 }
 
-TEST(Information, OfAnotherKindOrWithAChecksumOfALinkIsRefused) {
+TEST(Information, UnknownKindsAndChecksumsOfLinksAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(1));
     for (const char* entry : {R"({"kind": "song", "value": "la"})", R"({"kind": "text"})",
                               R"({"kind": "link", "value": "https://a.b", "sha256": ")"}) {

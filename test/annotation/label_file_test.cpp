@@ -43,13 +43,13 @@ TEST(Labels, ReadAndWritten) {
     write_labels(scratch / "a.seg", labels);
     EXPECT_EQ(read_labels(scratch / "a.seg", 4), labels);
     EXPECT_EQ(read_labels(scratch.file("b.seg", "1\r\n 2 \n\n\n"), 2), (std::vector<std::int32_t>{1, 2}));
-    // One label a polygon: each triangle takes its polygon's.
+    // One label per polygon: each triangle has its polygon's label.
     EXPECT_EQ(read_labels(scratch.file("c.seg", "5\n6\n"), 3, {0, 0, 1}), (std::vector<std::int32_t>{5, 5, 6}));
     EXPECT_EQ(read_labels(scratch.file("d.seg", "5\n6\n7\n"), 3, {0, 0, 1}), (std::vector<std::int32_t>{5, 6, 7}));
-    const auto fails = [&](const std::string& text, const std::string& what) {
+    const auto fails = [&](const std::string& text, const std::string& expected) {
         const std::string message = error_of([&] { read_labels(scratch.file("x.seg", text), 3, {0, 0, 1}); });
         EXPECT_NE(message.find("x.seg"), std::string::npos) << message;
-        EXPECT_NE(message.find(what), std::string::npos) << message;
+        EXPECT_NE(message.find(expected), std::string::npos) << message;
     };
     fails("1\n2\n3\n4\n", "4 labels for a mesh of 2 polygons (3 triangles)");
     fails("", "0 labels");
@@ -94,9 +94,9 @@ TEST(Colouring, NeighboursDifferAndTheWholeIsNeutral) {
             EXPECT_NE(colours[6 * row + column] % category_hues, colours[6 * row + column + 1] % category_hues);
             EXPECT_NE(colours[6 * column + row] % category_hues, colours[6 * column + 6 + row] % category_hues);
         }
-    const AnnotationSet one = regions_from_labels(mesh, std::vector<std::int32_t>(labels.size(), 7));
-    EXPECT_EQ(one.annotations[0].colour, neutral_colour);
-    // What joins takes the first colour that is free.
+    const AnnotationSet single_label = regions_from_labels(mesh, std::vector<std::int32_t>(labels.size(), 7));
+    EXPECT_EQ(single_label.annotations[0].colour, neutral_colour);
+    // An added annotation gets the first unused colour.
     for (std::size_t f = 0; f < labels.size(); ++f) labels[f] = f < 1 ? 0 : f < 30 ? 1 : 2;
     AnnotationSet two = regions_from_labels(mesh, labels);
     two.annotations.erase(two.annotations.begin() + 1);
@@ -134,7 +134,7 @@ TEST(Colouring, SmallestRegionOnTop) {
     EXPECT_EQ(extras.vertex_colours[8], (Colour{255, 0, 0, 255}));
 }
 
-TEST(Remap, FollowsMapsAndSaysWhatIsLost) {
+TEST(Remap, FollowsMapsAndReportsLosses) {
     const Mesh before = grid(4);
     AnnotationSet set;
     set.annotations.resize(3);
@@ -179,9 +179,9 @@ TEST(Remap, MapFilesAreChecked) {
     };
     EXPECT_EQ(read_index_map(file(R"("kind": "vertex", "from": 3, "to": 2, "map": [1, -1, 0])"), "vertex", 3, 2),
               (std::vector<Index>{1, no_index, 0}));
-    const auto fails = [&](const std::string& members, const std::string& what) {
+    const auto fails = [&](const std::string& members, const std::string& expected) {
         const std::string message = error_of([&] { read_index_map(file(members), "vertex", 3, 2); });
-        EXPECT_NE(message.find(what), std::string::npos) << message;
+        EXPECT_NE(message.find(expected), std::string::npos) << message;
     };
     fails(R"("kind": "face", "from": 3, "to": 2, "map": [1, -1, 0])", "kind 'face'");
     fails(R"("kind": "vertex", "from": 4, "to": 2, "map": [1, -1, 0])", "/from");

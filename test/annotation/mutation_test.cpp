@@ -20,7 +20,7 @@ using ostraka::test::Scratch;
 
 namespace {
 
-/// Reads 200 damaged copies; every error must say something. Returns how many were still read.
+/// Reads 200 damaged copies; every error must have a message. Returns the number of readable copies.
 template <class Read>
 std::size_t survive(const std::string& text, Read&& read) {
     std::size_t successes = 0;

@@ -12,11 +12,11 @@ using namespace ostraka::test;
 namespace {
 
 Annotation region(int id, const std::string& tag, std::vector<Index> faces) {
-    Annotation one;
-    one.id = id;
-    one.tag = tag;
-    one.faces = std::move(faces);
-    return one;
+    Annotation annotation;
+    annotation.id = id;
+    annotation.tag = tag;
+    annotation.faces = std::move(faces);
+    return annotation;
 }
 
 /// A sphere with the upper half, the part of that with x > 0, the north pole, and the whole.

@@ -1,4 +1,4 @@
-// Borders for the eye: where the labels say they are, without the steps, and nothing vanishes.
+// Smoothed borders for display: close to those of the labels, without steps, and without losing regions.
 #include "ostraka/annotation/smooth_regions.h"
 #include "meshes.h"
 #include "ostraka/geom/chains.h"
@@ -13,7 +13,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Faces above a plane, as their centroids say: the border runs in steps.
+/// Faces with centroids above a plane: the border runs in steps.
 std::vector<int> halves(const Mesh& mesh, const Vector& normal) {
     std::vector<int> labels;
     for (const Face face : mesh.faces()) {
@@ -49,7 +49,7 @@ TEST(SmoothRegions, TheBorderOfAHalfSphereIsNearlyACircle) {
     EXPECT_GT(steps, 1.2 * 6.2832);
     EXPECT_NEAR(length, 6.2832, 0.05 * 6.2832);
     for (const Point& p : regions.outlines[0]) EXPECT_NEAR((p - CGAL::ORIGIN) * normal, 0.01, 0.05);
-    // What is on top in the middle of a face far from the border is its own label; weights sum to one.
+    // In the middle of a face far from the border its own label is on top; weights sum to one.
     std::set<Index> mixed;
     for (std::size_t i = 0; i < regions.patches.size(); i += 2) {
         const auto &a = regions.patches[i], &b = regions.patches[i + 1];
@@ -66,7 +66,7 @@ TEST(SmoothRegions, TheBorderOfAHalfSphereIsNearlyACircle) {
     }
 }
 
-TEST(SmoothRegions, WhatIsTooSmallKeepsItsFaces) {
+TEST(SmoothRegions, SmallRegionsKeepTheirFaces) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     std::vector<int> labels(mesh.number_of_faces(), 1);
     labels[100] = 2;
@@ -76,7 +76,7 @@ TEST(SmoothRegions, WhatIsTooSmallKeepsItsFaces) {
     EXPECT_EQ(regions.outlines[0].size(), 4U) << "its three edges, closed";
 }
 
-TEST(SmoothRegions, ThreeLabelsMeetInOnePlaceOfEachMeeting) {
+TEST(SmoothRegions, ThreeLabelsMeetInOnePointPerJunction) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     std::vector<int> labels;
     for (const Face face : mesh.faces()) {
@@ -99,21 +99,21 @@ TEST(SmoothRegions, ThreeLabelsMeetInOnePlaceOfEachMeeting) {
 
 TEST(SmoothRegions, DegenerateMeshes) {
     EXPECT_TRUE(smooth_regions(Mesh(), {}).outlines.empty());
-    TriangleSoup one;
-    one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    one.triangles = {{0, 1, 2}};
-    EXPECT_TRUE(smooth_regions(build_mesh(one), {4}).patches.empty());
+    TriangleSoup triangle;
+    triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.triangles = {{0, 1, 2}};
+    EXPECT_TRUE(smooth_regions(build_mesh(triangle), {4}).patches.empty());
     TriangleSoup flat;  // no area anywhere
     flat.points = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
     flat.triangles = {{0, 1, 2}, {0, 2, 3}};
     EXPECT_NO_THROW(smooth_regions(build_mesh(flat), {4, 5}));
 }
 
-TEST(Chains, JoinWhereTwoMeetAndStopAtBranchings) {
+TEST(Chains, JoinAtTwoNeighboursAndStopAtBranchings) {
     using Chain = std::vector<std::size_t>;
     EXPECT_TRUE(chains_of({}).empty());
     EXPECT_EQ(chains_of({{4, 7}, {7, 9}, {2, 4}}), (std::vector<Chain>{{9, 7, 4, 2}}));
     EXPECT_EQ(chains_of({{1, 2}, {2, 3}, {3, 1}}), (std::vector<Chain>{{1, 2, 3, 1}}));
-    // Three that meet: each ends there.
+    // Three regions that meet: each ends there.
     EXPECT_EQ(chains_of({{1, 0}, {2, 0}, {0, 3}}), (std::vector<Chain>{{1, 0}, {2, 0}, {0, 3}}));
 }

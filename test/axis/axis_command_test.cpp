@@ -29,7 +29,7 @@ TEST(AxisCommand, OfAPartWithFiles) {
     const auto spout = run_command("axis " + pot + "--annotation 5 --method slices --output " + obj);
     EXPECT_EQ(spout.code, 0) << spout.out;
     EXPECT_NE(read_file(scratch / "a.obj").find("\nl 1 2 3"), std::string::npos);
-    // A tag says the same as an id.
+    // A tag is equivalent to an id.
     const auto tagged = run_command("axis --json " + pot + "--annotation body");
     EXPECT_EQ(parse_json(tagged.out, "report")["result"], report["result"]) << tagged.err;
     // A line has the axis of its circle.

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 using test::grid;
 
-/// A wall about the z axis that widens upwards and bulges, over so much of the turn.
+/// A wall about the z axis that widens upwards and bulges, over the given angle.
 Mesh wall(double degrees) {
     return build_mesh(grid(80, 40, false, false, [&](double s, double t) {
         const double a = s * degrees * M_PI / 180, r = 10 + 4 * t - 3 * t * t;
@@ -50,7 +50,7 @@ TEST(AxisEvidence, AShortArcHasLessInformation) {
         const AxisEvidence evidence = evidence_at(wall(degrees), truth);
         EXPECT_GT(evidence.round, 0.99);
         EXPECT_LT(evidence.gradient.norm(), 1e-2 * std::sqrt(evidence.information.trace())) << degrees;
-        // What is known of the shift that is known least, tilts free.
+        // Smallest information on a shift, with free tilts.
         const Eigen::Matrix4d covariance =
             (evidence.information + 1e-12 * evidence.information.trace() * Eigen::Matrix4d::Identity()).inverse();
         const double information = 1 / covariance.topLeftCorner<2, 2>().trace();

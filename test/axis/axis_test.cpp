@@ -29,7 +29,7 @@ Vector unit(double x, double y, double z) {
     return v / std::sqrt(v.squared_length());
 }
 
-/// A surface of revolution about z with the given profile, turned so that z becomes `a` and moved to `at`.
+/// A surface of revolution about z with the given profile, rotated so that z becomes `a` and translated to `at`.
 Mesh revolved(const std::function<std::array<double, 2>(double)>& profile, const Vector& a, const Point& origin,
               double turn = 2 * M_PI) {
     const Vector u = std::abs(a.x()) < 0.9 ? CGAL::cross_product(a, Vector(1, 0, 0)) : CGAL::cross_product(a, Vector(0, 1, 0));
@@ -131,7 +131,7 @@ TEST(RotationAxis, OfAQuarterOfACylinder) {
         EXPECT_NEAR(axis.figure("circle preserved")->value, degrees / 3.6, 0.5);
         EXPECT_LT(axis.figure("diameter error")->value, 0.01);
     }
-    // A short arc with noise: many lines do as well.
+    // A short arc with noise: many lines fit equally well.
     Mesh strip = build_mesh(grid(60, 20, false, false, [](double s, double t) {
         const double a = s * 4.6 * M_PI / 180;
         return std::array<double, 3>{100 * std::cos(a), 100 * std::sin(a), 40 * t};
@@ -243,7 +243,7 @@ TEST(CircleAxis, OfARim) {
     EXPECT_NEAR(axis.figure("circle preserved")->value, 25, 1e-6);
     EXPECT_NEAR(axis.figure("diameter at least")->value, 6, 1e-9);
     EXPECT_NEAR(axis.figure("diameter at most")->value, 6, 1e-9);
-    // Three points of a short arc are not all of the circle.
+    // Three points on a short arc do not cover the circle.
     const Axis three = circle_axis({rim[0], rim[5], rim[10]});
     EXPECT_NEAR(three.figure("circle preserved")->value, 1000.0 / 360, 1e-6);
     EXPECT_FALSE(circle_axis({{0, 0, 0}, {1, 0, 0}}).found);
@@ -319,7 +319,7 @@ TEST(Axis, DoesNotDependOnThreads) {
 TEST(Axis, OfTheSherdsOfOneVessel) {
     const Path folder = Path(OSTRAKA_SHARED_DATA) / "fragments-vessel-sherds";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the sherds are not here: " << folder;
-    // They lie as assembled: together they are a vessel, whose axis each large sherd must come near to.
+    // In their assembled poses they form a vessel; the axis of each large sherd must be close to the vessel's.
     std::vector<Mesh> sherds;
     TriangleSoup all_sherds;
     for (int i = 1; i <= 5; ++i) {
@@ -337,7 +337,8 @@ TEST(Axis, OfTheSherdsOfOneVessel) {
         EXPECT_TRUE(axis.found) << i + 1 << ": " << axis.reason;
         if (axis.found) {
             EXPECT_LT(angle(axis, vessel_axis.direction), 2);
-            // They lie a little apart, so that the whole is wider than each of them says; among each other they agree.
+            // There are gaps between them, so that the whole is wider than each sherd indicates; the sherds agree with each
+            // other.
             diameters.push_back(axis.figure("largest diameter")->value);
             EXPECT_NEAR(diameters.back(), diameters.front(), 0.01 * diameters.front());
         }

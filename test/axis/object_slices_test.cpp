@@ -1,4 +1,4 @@
-// Objects cut along their own axes, and the axes that their slices are compared with.
+// Objects cut along their own axes, and the axes with which their slices are compared.
 #include "ostraka/axis/object_slices.h"
 
 #include "meshes.h"

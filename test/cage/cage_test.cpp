@@ -1,4 +1,4 @@
-// Cages of made and real meshes.
+// Cages of synthetic and scanned meshes.
 #include "ostraka/cage/cage.h"
 
 #include "annotation/example_meshes.h"
@@ -161,7 +161,7 @@ TEST(Cage, GoesAroundFacesOnly) {
     const Mesh mesh = build_mesh(soup);
     const CageResult result = make_cage(mesh, {.vertices = 40});
     EXPECT_EQ(to_soup(result.cage).points, to_soup(make_cage(spheres(2), {.vertices = 40}).cage).points);
-    // And the check says which vertex that leaves outside, and how far.
+    // The check reports the vertex that is then outside, and its distance.
     const CageCheck check = check_cage(result.cage, mesh);
     ASSERT_EQ(check.outside.size(), 1U);
     EXPECT_EQ(check.outside[0].vertex, mesh.number_of_vertices() - 1);
@@ -195,7 +195,7 @@ TEST(CheckCage, TheSameInEveryUnitAndFarAway) {
             EXPECT_DOUBLE_EQ(scaled.outside[i].distance, reference.outside[i].distance * unit) << exponent;
         }
     }
-    // As many units away as coordinates have digits.
+    // As far away as the precision of coordinates permits.
     const Mesh distant = in_unit(ball, 64, std::ldexp(1.0, 53));
     EXPECT_EQ(check_cage(distant, distant).touching, distant.number_of_vertices());
 }
@@ -218,7 +218,7 @@ TEST(CheckCage, ReportsDefectsWithTheirLocation) {
     const CageCheck shifted = check_cage(spheres(1, {{1, 0, 0}}, 1.5), mesh);
     EXPECT_FALSE(shifted.valid());
     ASSERT_FALSE(shifted.outside.empty());
-    // Each outside vertex lies as far from the nearest face as is said.
+    // The reported distance of each outside vertex from the nearest face is right.
     for (const OutsideVertex& o : shifted.outside) EXPECT_GT(o.distance, 0);
     EXPECT_NE(findings(shifted, "mm").front().text.find(" mm outside near face "), std::string::npos);
     EXPECT_EQ(check_cage(mesh, mesh).touching, mesh.number_of_vertices());
@@ -227,7 +227,7 @@ TEST(CheckCage, ReportsDefectsWithTheirLocation) {
     TriangleSoup inside_out = to_soup(cage);
     for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
     EXPECT_FALSE(check_cage(build_mesh(inside_out), mesh).outward);
-    // Two balls that cut each other.
+    // Two intersecting balls.
     const CageCheck intersecting = check_cage(spheres(2, {{0, 0, 0}, {1, 0, 0}}, 1.5), mesh);
     EXPECT_FALSE(intersecting.intersections.empty());
     EXPECT_EQ(intersecting.components, 2U);

@@ -81,7 +81,7 @@ TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
     ASSERT_TRUE(measures.values[0].has_value());
     EXPECT_EQ(measures.powers[0], 3);
     EXPECT_NEAR(*measures.values[0], closed_volume(ball.mesh), 1e-4 * closed_volume(ball.mesh));
-    EXPECT_FALSE(measures.values[1].has_value());  // no wall is found
+    EXPECT_FALSE(measures.values[1].has_value());  // no wall is detected
     ASSERT_EQ(measures.notes.size(), 1U);
     EXPECT_NE(measures.notes[0].find("no wall is found"), std::string::npos) << measures.notes[0];
     EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "most"})"), Error);
@@ -229,7 +229,7 @@ TEST(MeasureTable, ADecimalCommaIsReported) {
     }
 }
 
-/// A study that found the first measure in fixed proportion to the second.
+/// A study result: the first measure is in fixed proportion to the second.
 ProportionStudy fixed_ratio(double low, double high) {
     ProportionStudy study;
     RatioRow ratio;
@@ -265,7 +265,7 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     EXPECT_EQ(parameters["maxValue"].GetDouble(), 0.8);
     EXPECT_STREQ(parameters["measure1"].GetString(), "belt width");
     EXPECT_STREQ(parameters["measure2"].GetString(), "cap width");
-    // The measures are there now, with values, and a second proposal adds nothing.
+    // The measures now exist, with values, and a second proposal adds nothing.
     EXPECT_NEAR(*proposals.set.find(1)->attributes.back().measure.value, 2, 1e-12);
     Relationship copy = r;
     RelationGraph relabelled;

@@ -15,7 +15,7 @@ namespace {
 
 using test::Scratch;
 
-/// Distances of objects in groups of these sizes: 0.3 within, 0.8 between, less a little that differs.
+/// Distances of objects in groups of these sizes: 0.3 within, 0.8 between, minus small variations.
 Eigen::MatrixXd blocks(const std::vector<int>& sizes, double within = 0.3, double between = 0.8) {
     std::vector<int> group;
     for (std::size_t g = 0; g < sizes.size(); ++g)
@@ -64,7 +64,7 @@ TEST(MouldGroups, AGivenEpsilonIsUsedUnchanged) {
 }
 
 TEST(MouldGroups, GroupsWithinGroupsAreFound) {
-    // Two moulds that are near to each other and a third that is far from both.
+    // Two similar moulds and a third that differs from both.
     Eigen::MatrixXd d = blocks({6, 6, 6}, 0.3, 0.95);
     for (Eigen::Index i = 0; i < 6; ++i)
         for (Eigen::Index j = 6; j < 12; ++j) d(i, j) = d(j, i) = 0.5 + 0.01 * static_cast<double>((i + j) % 3);
@@ -178,7 +178,7 @@ TEST_F(MouldStudy, FindsTheMouldsOfWornCasts) {
         EXPECT_EQ(adjusted_rand_index(groups.labels, truth), 1) << similarity;
         EXPECT_TRUE(groups.clear) << similarity;
     }
-    // Every head is at least as much like itself as like any other.
+    // Every head is at least as similar to itself as to any other.
     for (Eigen::Index i = 0; i < 9; ++i) EXPECT_EQ(matrices.consistent.row(i).maxCoeff(), matrices.consistent(i, i));
 }
 
@@ -193,7 +193,7 @@ TEST_F(MouldStudy, GivesTheSameForAnyNumberOfThreadsAndAfterAnInterruption) {
     const MouldMatrices expected = compare(complete);
     set_threads(2);
     const ResultStore features(*scratch / "features"), pairs(*scratch / "pairs");
-    // As a run that broke off: five heads are done.
+    // As after an interrupted run: five heads are done.
     (void)compare(prepare_collection(some, options, {}, features), pairs);
     const auto resumed = prepare_collection(collection, options, {}, features);
     EXPECT_EQ(std::count_if(resumed.results.begin(), resumed.results.end(), [](const auto& r) { return r.resumed; }), 5);
@@ -207,7 +207,7 @@ TEST_F(MouldStudy, GivesTheSameForAnyNumberOfThreadsAndAfterAnInterruption) {
     set_threads(0);
 }
 
-/// When each file of a folder, and of those in it, was written.
+/// Time of writing of each file in a folder and its subfolders.
 std::map<std::string, std::filesystem::file_time_type> times(const Path& folder) {
     std::map<std::string, std::filesystem::file_time_type> result;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
@@ -219,7 +219,7 @@ TEST_F(MouldStudy, ASecondRunReadsAllResultsFromTheStore) {
     Collection collection = read_collection(*scratch / "heads");
     collection.objects.resize(4);
     const ResultStore features(*scratch / "again" / "features"), pairs(*scratch / "again" / "pairs");
-    // The size is not given: it is measured, and kept as well.
+    // The size is not given: it is measured, and stored as well.
     const MouldMatrices first = compare(prepare_collection(collection, {}, {}, features), pairs);
     const auto times_before = times(*scratch / "again");
     EXPECT_EQ(times_before.size(), 12U) << "sizes, features and pairs of four heads";
@@ -265,7 +265,7 @@ TEST_F(MouldStudy, AnAddedHeadComputesOnlyItsPairs) {
     const ResultStore pairs(*scratch / "planted");
     const auto prepared = prepare_collection(some, options, {}, ResultStore());
     (void)compare(prepared, pairs);
-    // Distances that no registration gives are put into the store: pairs that show them were not compared again.
+    // Impossible distances are written to the store: pairs with these distances were not compared again.
     for (const auto& name : prepared.names) {
         Json document = read_json(*scratch / "planted" / (name + ".json"));
         for (auto& pair : document["result"].GetObject()) pair.value[4].SetDouble(77);
@@ -327,12 +327,12 @@ TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
     EXPECT_EQ(read_file(out / "moulds.json"), first_output);
     EXPECT_EQ(report["result"]["truth"]["labelled"].GetInt(), 9);
 
-    // With answers of a part, or of one kind only, the report says of how many, and scores where there is something to score.
+    // With answers for a part, or of one kind only, the report gives their number, and a score if there is one.
     const std::string mould = moulds.begin()->second;
-    std::string some = "name,label\n", one = some;
+    std::string some = "name,label\n", single_mould = some;
     for (const auto& [name, label] : moulds) {
         if (some.size() < 60) some += name + "," + label + "\n";
-        if (label == mould) one += name + "," + label + "\n";
+        if (label == mould) single_mould += name + "," + label + "\n";
     }
     const auto study = [&](const std::string& answers, const std::string& options) {
         return test::run_command("study moulds " + (*scratch / "heads").string() + " --output " + out.string() + " --truth " +
@@ -341,7 +341,7 @@ TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
     const auto part = study(some, "");
     EXPECT_NE(part.out.find("of 9 objects"), std::string::npos) << part.out;
     EXPECT_FALSE(std::filesystem::exists(out / "choices.csv")) << "of the run before";
-    const Json of_one = parse_json(study(one, " --json --plots png").out, "report");
+    const Json of_one = parse_json(study(single_mould, " --json --plots png").out, "report");
     EXPECT_EQ(of_one["result"]["truth"]["kinds"].GetInt(), 1);
     EXPECT_FALSE(of_one["result"].HasMember("adjustedRandIndex"));
     EXPECT_FALSE(std::filesystem::exists(out / "dendrogram.svg"));

@@ -71,7 +71,7 @@ TEST(ObjectParts, AreCutAlongTheirOutlines) {
     EXPECT_NEAR(surface_area(body.mesh), expected, 1e-6 * expected);
     for (const auto label : body.face_labels) EXPECT_EQ(label, static_cast<std::int32_t>(HeadPart::body));
     ASSERT_TRUE(body.up);
-    // What an object lacks cannot be left out of it.
+    // Parts that an object does not have need not be left out.
     const ObjectPart without_beard = ObjectParts(named({"body"}, {"beard"})).read(object);
     EXPECT_EQ(without_beard.mesh.number_of_faces(), body.mesh.number_of_faces());
     const ObjectPart bald = ObjectParts(named({"Kopf"}, {"hair"})).read(object);
@@ -97,7 +97,7 @@ TEST(ObjectParts, TheTopLiesAboveTheNeck) {
     PartOptions options;
     options.proposed = PartOptions::Proposal::top;
     const ObjectPart top = ObjectParts(options).read(statuette.collection.objects.at(0));
-    // The body's area is what the head and its neck leave, and the neck is cut somewhere along its length.
+    // The body's area is that without head and neck, and the neck is cut at some height.
     const double head = statuette.area([](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; });
     EXPECT_NEAR(surface_area(top.mesh) / head, 1, 0.2);
     double of_body = 0;
@@ -145,6 +145,6 @@ TEST(ObjectParts, StudiesOfAPartMatchStudiesOfTheExtractedPart) {
     ASSERT_TRUE(on_part.at(0).problem.empty()) << on_part.at(0).problem;
     const TechniqueMeasures a = technique_from_json(on_whole[0].result), b = technique_from_json(on_part[0].result);
     ASSERT_EQ(a.slices.size(), b.slices.size());
-    // The file holds the places to single precision or double alike; both were read from one.
+    // The coordinates are equal, since both were read from one file.
     for (std::size_t i = 0; i < a.slices.size(); ++i) EXPECT_NEAR(a.slices[i].roundness, b.slices[i].roundness, 1e-6);
 }

@@ -78,15 +78,15 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
 
 struct Boxes {
     Scratch scratch;
-    SyntheticMeasures made;
+    SyntheticMeasures measures;
     std::string command;
 
     explicit Boxes(std::uint64_t seed = 3) {
         SyntheticMeasuresOptions options;
         options.objects = 24;
         options.seed = seed;
-        made = make_measures(options);
-        write_boxes(scratch, scratch / "boxes", made.table);
+        measures = make_measures(options);
+        write_boxes(scratch, scratch / "boxes", measures.table);
         command = "study proportions " + quoted(scratch / "boxes") + " --measures " + quoted(scratch / "boxes.measures.json") +
                   " --output " + quoted(scratch / "out") + " --permutations 999";
     }
@@ -99,13 +99,13 @@ TEST(StudyProportionsCommand, FindsPlantedProportionsOfAnnotatedMeshes) {
     const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     EXPECT_EQ(report["result"]["objects"].GetInt(), 24);
-    const Json kept = read_json(boxes.scratch / "out" / "proportions.json");
-    validate(kept, "proportions", "proportions.json");
-    for (const JsonValue& ratio : kept["ratios"].GetArray()) {
+    const Json study_file = read_json(boxes.scratch / "out" / "proportions.json");
+    validate(study_file, "proportions", "proportions.json");
+    for (const JsonValue& ratio : study_file["ratios"].GetArray()) {
         const auto number = [&](const char* name) {
             return static_cast<std::size_t>(std::stoi(std::string(ratio[name].GetString()).substr(8)) - 1);
         };
-        const int a = boxes.made.groups[number("numerator")], b = boxes.made.groups[number("denominator")];
+        const int a = boxes.measures.groups[number("numerator")], b = boxes.measures.groups[number("denominator")];
         if (a >= 0 && a == b) {
             EXPECT_STREQ(ratio["verdict"].GetString(), "fixed");
         }
@@ -113,21 +113,21 @@ TEST(StudyProportionsCommand, FindsPlantedProportionsOfAnnotatedMeshes) {
     for (const char* name : {"table-3-1.md", "table-3-1.csv", "table-3-1.tex", "ratios.md", "values.csv", "variation.svg",
                              "deviations.svg", "measures.svg"})
         EXPECT_TRUE(std::filesystem::exists(boxes.scratch / "out" / name)) << name;
-    // The values are those of the table the boxes were made of, and the table by itself gives the same.
+    // The values are those of the table from which the boxes were made, and the table alone gives the same result.
     const auto from_table = run_command("study proportions " + quoted(boxes.scratch / "out" / "values.csv") + " --output " +
                                         quoted(boxes.scratch / "other") + " --permutations 999 --json");
     ASSERT_EQ(from_table.code, 0) << from_table.err;
     const Json other = parse_json(from_table.out, "report");
     for (rapidjson::SizeType r = 0; r < other["result"]["ratios"].Size(); ++r)
-        EXPECT_EQ(other["result"]["ratios"][r]["q"].GetDouble(), kept["ratios"][r]["q"].GetDouble());
+        EXPECT_EQ(other["result"]["ratios"][r]["q"].GetDouble(), study_file["ratios"][r]["q"].GetDouble());
 }
 
 TEST(StudyProportionsCommand, ResumesAndGivesTheSameForAnyNumberOfThreads) {
     const Boxes boxes;
     ASSERT_EQ(run_command(boxes.command + " --threads 1").code, 0);
     const std::string first = read_file(boxes.scratch / "out" / "proportions.json");
-    const std::size_t kept = count_files(boxes.scratch / "out" / "objects");
-    EXPECT_EQ(kept, 24u);
+    const std::size_t file_count = count_files(boxes.scratch / "out" / "objects");
+    EXPECT_EQ(file_count, 24u);
     ASSERT_EQ(run_command(boxes.command + " --threads 2").code, 0);
     EXPECT_EQ(read_file(boxes.scratch / "out" / "proportions.json"), first);
     std::filesystem::remove_all(boxes.scratch / "out");
@@ -162,7 +162,7 @@ TEST(StudyProportionsCommand, RemovesOnlyItsOwnOutputs) {
     EXPECT_EQ(count_files(boxes.scratch / "out" / "objects"), 24U);
 }
 
-TEST(StudyProportionsCommand, ANameThatCannotBeKeptStopsNothing) {
+TEST(StudyProportionsCommand, AnInvalidNameDoesNotStopTheRun) {
     const Boxes boxes;
     for (const std::string name : {"new\nline", "back\\slash", "no utf-8 \xff"})
         std::filesystem::copy_file(boxes.scratch / "boxes" / "object 1.ply", boxes.scratch / "boxes" / (name + ".ply"));
@@ -199,11 +199,11 @@ TEST(StudyMakeProportionsCommand, MeasuresMatchTheDrawnValues) {
                     quoted(scratch / "made" / "statuettes.measures.json") + " --output " + quoted(scratch / "out"));
     ASSERT_EQ(study.code, 3) << "three objects tell nothing: " << study.err;
     const MeasureTable truth = read_measure_table(scratch / "made" / "truth.csv"),
-                       found = read_measure_table(scratch / "out" / "values.csv");
-    ASSERT_EQ(found.objects, truth.objects);
+                       measured = read_measure_table(scratch / "out" / "values.csv");
+    ASSERT_EQ(measured.objects, truth.objects);
     for (Eigen::Index i = 0; i < 3; ++i)
         for (Eigen::Index j = 0; j < 5; ++j)
-            EXPECT_NEAR(found.values(i, j), truth.values(i, j), (j == 0 ? 0.02 : 0.1) * truth.values(i, j))
+            EXPECT_NEAR(measured.values(i, j), truth.values(i, j), (j == 0 ? 0.02 : 0.1) * truth.values(i, j))
                 << truth.measures[static_cast<std::size_t>(j)].name;
     ASSERT_EQ(run_command(make + quoted(scratch / "again") + " --threads 1").code, 0);
     for (const char* name : {"truth.csv", "statuette-2.ply", "statuette-2.ant.json"})

@@ -141,7 +141,7 @@ TEST(Proportions, FewFalseDiscoveriesWithoutPlantedRatios) {
     EXPECT_LE(over_seeds(unequal, 10).wrong, 3) << "measures that follow the size closely are not bound to each other";
 }
 
-TEST(Proportions, ScaledCopiesGoWithTheSize) {
+TEST(Proportions, ScaledCopiesVaryWithTheSize) {
     SyntheticMeasuresOptions options;
     options.groups = 0;
     options.ratio_deviation = 0.03;
@@ -171,7 +171,7 @@ TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
         EXPECT_EQ(single_thread.ratios[r].q, three.ratios[r].q);
         EXPECT_EQ(single_thread.ratios[r].row.variation_interval->high, three.ratios[r].row.variation_interval->high);
     }
-    // Each object in a unit of its own changes sizes and nothing else.
+    // A different unit for each object changes only sizes.
     MeasureTable other = table;
     Random random(5);
     for (std::size_t i = 0; i < other.objects.size(); ++i) {
@@ -240,7 +240,7 @@ TEST(Proportions, HandlesSingleAndIdenticalObjects) {
 }
 
 TEST(Proportions, ARatioThatIsTheSameInAllObjectsIsFixed) {
-    // Two measures only, few objects, two sizes: no permutation would tell it.
+    // Two measures only, few objects, two sizes: no permutation would detect it.
     const ProportionStudy two = study_proportions(table_of({"a", "b"}, {{1, 3}, {1, 3}, {7, 21}, {7, 21}, {1, 3}}), quick());
     EXPECT_EQ(two.ratios.at(0).fixedness, Fixedness::fixed);
     EXPECT_EQ(two.ratios[0].p_others, 1.0 / 1000);
@@ -250,7 +250,7 @@ TEST(Proportions, ARatioThatIsTheSameInAllObjectsIsFixed) {
     for (int i = 0; i < 6; ++i) scaled.push_back({0.1 * (i + 1), 0.3 * (i + 1), 0.7 * (i + 1)});
     for (const RatioRow& ratio : study_proportions(table_of({"a", "b", "c"}, scaled), quick()).ratios)
         EXPECT_EQ(ratio.fixedness, Fixedness::fixed) << ratio.row.name;
-    // One that differs in the sixth digit is a matter of the tests again, and three objects tell nothing.
+    // A ratio that differs in the sixth digit is subject to the tests again, and three objects are not sufficient.
     scaled[2][0] *= 1 + 1e-6;
     EXPECT_EQ(all_notes(study_proportions(table_of({"a", "b", "c"}, scaled), quick())).find("digit: 3"), std::string::npos);
     scaled.resize(3);
@@ -281,7 +281,7 @@ TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
         EXPECT_TRUE(finite(ratio.row)) << ratio.row.name;
         EXPECT_TRUE(std::isfinite(ratio.log_deviation) && std::isfinite(ratio.low) && std::isfinite(ratio.high));
     }
-    // As far as is computed with, nothing overflows.
+    // Within the permitted range nothing overflows.
     MeasureTable distant = make_measures().table;
     distant.values.col(0) *= 1e33 / distant.values.col(0).maxCoeff();
     distant.values.col(1) *= 1e-33 / distant.values.col(1).minCoeff();

@@ -1,4 +1,4 @@
-// `ostraka study make technique` as people run it.
+// `ostraka study make technique` as users run it.
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/collection/objects.h"
 #include "ostraka/files/csv.h"

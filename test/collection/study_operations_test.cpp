@@ -109,7 +109,7 @@ TEST(LandmarkShapes, UseTheCommonLandmarks) {
     EXPECT_EQ(common_landmarks(collection, read, false, "here").unit, "cm") << "the collection's word counts";
 }
 
-/// Eight landmarks that no mirror maps onto each other, made a little different by `seed`, times `scale`, mirrored or not.
+/// Eight landmarks that no mirror maps onto each other, perturbed by `seed`, scaled by `scale`, mirrored or not.
 std::string skull(int seed, double scale = 1, bool mirrored = false, int count = 8, const std::string& unit = "mm") {
     std::string points;
     const double places[8][3] = {{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2}, {4, 3, 1}, {1, 3, 2}, {4, 1, 2}, {2, 2, 3}};

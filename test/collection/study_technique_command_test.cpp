@@ -1,4 +1,4 @@
-// `ostraka study technique` and `ostraka study segments` as people run them.
+// `ostraka study technique` and `ostraka study segments` as users run them.
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/files/csv.h"
 #include "ostraka/files/json.h"
@@ -116,7 +116,7 @@ TEST(StudyTechniqueCommand, RefusesInvalidOptions) {
     EXPECT_EQ(run_command(start + " --up 0,0,0").code, 2);
     EXPECT_EQ(run_command(start + " --positive cast").code, 2);
     EXPECT_EQ(run_command("study technique " + (scratch / "nowhere").string() + " --output " + (scratch / "o").string()).code, 1);
-    // Nothing can be used: all slices lie above the objects' lower parts.
+    // No slice is usable: all slices lie above the objects' lower parts.
     EXPECT_EQ(run_command(start + " --min-slices 101").code, 1);
 }
 
@@ -197,7 +197,7 @@ TEST(StudySegmentsCommand, WritesRegionsAndComparesThem) {
     std::size_t faces = 0;
     for (const Annotation& region : set.annotations) faces += region.faces.size();
     EXPECT_EQ(faces, file.mesh.number_of_faces());
-    // Against themselves.
+    // Compared with themselves.
     const auto same = run_command("study segments " + mesh.string() + " " + (scratch / "again.ant.json").string() +
                                   " --size --clusters 4 --json --compare " + out.string());
     ASSERT_EQ(same.code, 0) << same.err;

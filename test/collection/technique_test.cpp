@@ -1,4 +1,4 @@
-// Technique: descriptors of bodies whose deviations are known, and answers of populations whose truth is.
+// Technique: descriptors of bodies with known deviations, and answers for populations with known technique.
 #include "ostraka/collection/technique_study.h"
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
@@ -46,7 +46,7 @@ TEST(Technique, DescriptorsOfAnOvalBodyMatchTheFormula) {
     p.ovality_drift = 180;
     const TechniqueMeasures rotated = measure_technique(generate_statuette(p).mesh, up);
     EXPECT_NEAR(rotated.value("ovality"), 0.05, 0.001);
-    // Slices from 2 to 40 % of 200 mm: the second harmonic turns by twice 180 degrees over the height of the joint.
+    // Slices from 2 to 40 % of 200 mm: the second harmonic's phase rotates by twice 180 degrees over the height of the joint.
     const double joint = 200 - 44 * std::sqrt(1 - 0.04), half = 2 * std::numbers::pi * 0.38 * 200 / joint / 2;
     EXPECT_NEAR(rotated.value("coherence"), std::sin(half) / half, 0.01);
 }
@@ -181,9 +181,9 @@ TEST(TechniqueStudy, DistinctPopulationsAreClassifiedCorrectly) {
 TEST(TechniqueStudy, RandomLabelsGiveNoAnswers) {
     const TechniqueStudy study = study_technique(drawn(200, 0, true));
     for (const ClassifierResult& each : study.classifiers) {
-        EXPECT_LT(each.validation.mean_f1, 0.72) << each.classifier.name;  // all called positive: 2/3
-        // The areas of answers of chance are within four standard deviations of a half; several descriptors that learn noise lie
-        // below, as left-out objects do.
+        EXPECT_LT(each.validation.mean_f1, 0.72) << each.classifier.name;  // all classified as positive: 2/3
+        // The areas of random answers are within four standard deviations of a half; combined descriptors that learn noise are
+        // below, on held-out objects.
         EXPECT_LT(each.roc.area, 0.5 + 4 * 0.041 + 0.09) << each.classifier.name;
     }
     int doubtful = 0;
@@ -224,7 +224,7 @@ TEST(TechniqueStudy, NoAnswerIsMoreCertainThanTheClassifier) {
         if (each.agreement >= 0.95 && !each.answer.empty()) ++stable;
     }
     EXPECT_GT(stable, 50);
-    // Of 60 that are told without an error one in 62 may be wrong; of 4 one in 6.
+    // Among 60 classified without an error one in 62 may be wrong; among 4, one in 6.
     EXPECT_NEAR(study_technique(drawn(60, 8, true)).classifiers.front().error, 1.0 / 62, 1e-12);
     const TechniqueStudy few_objects = study_technique(drawn(4, 30, true));
     for (const TechniqueAnswer& each : few_objects.answers) EXPECT_NE(each.certainty, "clear");
@@ -256,14 +256,14 @@ TEST(TechniqueStudy, OutOfClassObjectsAreNotAnswered) {
 }
 
 TEST(TechniqueStudy, FewInClassObjectsAreCalledOutOfClass) {
-    int unlike = 0, asked = 0;
+    int unlike = 0, classified = 0;
     for (const int count : {8, 16, 40, 100})
         for (std::uint64_t seed = 1; seed <= 5; ++seed)
             for (const TechniqueAnswer& each : study_technique(drawn(count, 2, true, seed)).answers) {
-                ++asked;
+                ++classified;
                 unlike += each.unlike ? 1 : 0;
             }
-    EXPECT_LT(unlike, 0.01 * asked);
+    EXPECT_LT(unlike, 0.01 * classified);
 }
 
 TEST(TechniqueStudy, ReasonsGiveDeviationsInPerCentOfTheRadius) {
@@ -318,7 +318,7 @@ TEST(TechniqueStudy, FewOrEqualObjectsAreNoFailure) {
     const TechniqueStudy two = study_technique(objects);
     for (const ClassifierResult& each : two.classifiers) EXPECT_FALSE(each.validated);
     for (const TechniqueAnswer& each : two.answers) EXPECT_TRUE(each.answer.empty());
-    // All the same, labels at random.
+    // All equal, labels at random.
     objects = drawn(20, 0, true);
     for (auto& object : objects)
         for (auto& each : object.measures.descriptors) each.value = 0.01;

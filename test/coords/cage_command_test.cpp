@@ -131,7 +131,7 @@ TEST_F(CageCommand, ReportsImpossibleRequests) {
         {"select": {"all": true}, "translate": [1, 0, 0]}, {"select": {"annotation": "top"}, "translate": [1, 0, 0]}]})");
     refused("edit " + box + " " + edit + " " + generated_cage, 1, "/steps/1: selects by annotation");
     EXPECT_FALSE(std::filesystem::exists(generated_cage));
-    // A cage that is closed but flat is an answer, not a failure.
+    // A closed but flat cage gives a report, not a failure.
     const std::string flat = (scratch / "flat.off").string();
     write_file(flat, "OFF\n4 4 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n");
     const auto result = run_command("cage check " + ball + " " + flat);

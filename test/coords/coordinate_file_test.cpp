@@ -42,7 +42,7 @@ TEST(CoordinateFile, RoundTripIsExact) {
         if (c.has_normals()) {
             EXPECT_EQ(reread.normal, c.normal);
         }
-        // And by anybody else: a plain array.
+        // Other programs can read it too: a plain array.
         const auto array = read_npy(saved.file);
         EXPECT_EQ(array.shape, (std::vector<std::size_t>{saved.mesh.number_of_vertices(), 8}));
         EXPECT_EQ(array.values[9], c.vertex(1, 1));
@@ -179,7 +179,7 @@ TEST(CoordinateFile, DamagedFilesAreRejectedOrUnchanged) {
             write_file(saved / name, test::mutate(original, seed));
             try {
                 const Coordinates reread = read_coordinates(saved.file, saved.mesh, saved.cage);
-                // The header may be hurt where it binds nothing (its certificate), the kind is text.
+                // Damage to the certificate in the header is permitted; the kind is text.
                 EXPECT_EQ(reread.vertex, c.vertex) << name << ' ' << seed;
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();

@@ -1,4 +1,4 @@
-// What is common to all kinds: bad input, degenerate input, threads, the list of kinds, deformation.
+// Properties common to all kinds: bad input, degenerate input, threads, the list of kinds, deformation.
 #include "cages.h"
 #include "ostraka/coords/certificate.h"
 #include "ostraka/coords/influence.h"

@@ -1,4 +1,4 @@
-// Green coordinates against the integrals that define them, and what they promise.
+// Green coordinates against their defining integrals, and their properties.
 #include "cages.h"
 #include "ostraka/core/error.h"
 
@@ -69,7 +69,7 @@ TEST(Green, FollowSimilaritiesOfTheCageWithTheirNormals) {
     for (const Vertex v : cage.vertices()) moved.push_back(move(cage.point(v)));
     const auto result = deformed(c, cage, moved);
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT(std::sqrt((result[i] - move(points[i])).squared_length()), 1e-13);
-    // A stretch is followed only roughly: that is what keeps angles. The normals do count.
+    // A stretch is followed only approximately, which preserves angles. The normals have an influence.
     Coordinates without = c;
     without.normal.resize(0, 0);
     EXPECT_GT(std::sqrt((deformed(without, cage, moved)[0] - move(points[0])).squared_length()), 0.1);

@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kinds{"harmonic", "local", "positive-mean-value"};
 
-/// Enough to see what holds, in little time.
+/// Sufficient to test the properties quickly.
 CoordinateOptions quick(std::uint64_t nodes = 1500) {
     CoordinateOptions options;
     options.nodes = nodes;
@@ -70,16 +70,16 @@ std::vector<Point> grid_in(const std::array<double, 3>& low, const std::array<do
     return points;
 }
 
-void expect_promises(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, const std::string& what) {
+void expect_promises(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, const std::string& kind_name) {
     const CoordinateCertificate certificate = certify(c, cage, points, quick());
-    EXPECT_LE(certificate.partition, 1e-11) << what;
-    EXPECT_LE(certificate.linear, 1e-11) << what;
-    EXPECT_EQ(certificate.negative, 0) << what;
-    ASSERT_TRUE(certificate.lagrange) << what;
-    EXPECT_LE(*certificate.lagrange, 1e-9) << what;
-    EXPECT_LE(*certificate.edges, 1e-9) << what;
-    EXPECT_LE(*certificate.on_faces, 1e-9) << what;
-    EXPECT_EQ(Eigen::MatrixXd(c.sparse), Eigen::MatrixXd(c.vertex)) << what;
+    EXPECT_LE(certificate.partition, 1e-11) << kind_name;
+    EXPECT_LE(certificate.linear, 1e-11) << kind_name;
+    EXPECT_EQ(certificate.negative, 0) << kind_name;
+    ASSERT_TRUE(certificate.lagrange) << kind_name;
+    EXPECT_LE(*certificate.lagrange, 1e-9) << kind_name;
+    EXPECT_LE(*certificate.edges, 1e-9) << kind_name;
+    EXPECT_LE(*certificate.on_faces, 1e-9) << kind_name;
+    EXPECT_EQ(Eigen::MatrixXd(c.sparse), Eigen::MatrixXd(c.vertex)) << kind_name;
 }
 
 TEST(InteriorCoordinates, InATetrahedronAreBarycentric) {
@@ -116,7 +116,7 @@ TEST(InteriorCoordinates, InAnOctahedronAreEqualForItsCorners) {
     const std::vector<Point> middle{{0, 0, 0}};
     for (const std::string& kind : kinds) {
         const Coordinates c = compute_coordinates(kind, cage, middle, quick(4000));
-        // Of tetrahedra that are no mirror images of each other: the harmonic ones to their discretisation.
+        // The tetrahedra are not mirror images of each other: harmonic weights agree up to the discretisation.
         if (kind == "local") continue;
         for (Eigen::Index j = 0; j < 6; ++j) EXPECT_NEAR(c.vertex(0, j), 1.0 / 6, 0.02) << kind;
     }

@@ -1,4 +1,4 @@
-// What holds for every cage and every point.
+// Properties that hold for every cage and every point.
 #include "cages.h"
 
 namespace ostraka {

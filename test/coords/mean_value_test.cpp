@@ -17,7 +17,7 @@ Real3 cross(const Real3& a, const Real3& b) {
 Real dot(const Real3& a, const Real3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Real length(const Real3& a) { return std::sqrt(dot(a, a)); }
 
-/// The definition, w_i = sum over the faces of m . c_i / det, without any care for digits, in long double.
+/// The definition, w_i = sum over the faces of m . c_i / det, without stabilisation, in long double.
 std::vector<double> by_definition(const Mesh& cage, const Point& x) {
     std::vector<Real> w(cage.number_of_vertices(), 0);
     for (const Face f : cage.faces()) {
@@ -70,7 +70,7 @@ TEST(MeanValue, InARegularSolidTheCentreGivesEqualWeights) {
         const Mesh cage = build_mesh(soup);
         const double half = soup.points.size() == 8 ? 0.5 : 0;
         const Coordinates c = compute_coordinates("mean-value", cage, std::vector<Point>{{half, half, half}});
-        // The box's diagonals favour the corners they meet at, but opposite corners stay equal.
+        // The box's diagonals favour the corners where they meet, but opposite corners stay equal.
         if (half == 0) {
             EXPECT_LT(difference(c, 0, std::vector<double>(6, 1.0 / 6)), 1e-15);
         }
@@ -99,7 +99,8 @@ TEST(MeanValue, AgreeWithTheDefinitionInLongerArithmetic) {
     }
 }
 
-/// Where the plane of a far face passes through the point, or close by, its weights vanish with the distance: no jump, no noise.
+/// If the plane of a distant face passes through the point, or near it, the face's weights vanish with the distance: no jump, no
+/// noise.
 TEST(MeanValue, AreContinuousAcrossThePlaneOfADistantFace) {
     // An L whose inner corner lies at (1, 1): the plane x = 1 of one wall runs through the inside.
     const Mesh cage = build_mesh(

@@ -1,4 +1,4 @@
-// Cages within a cage: how they are told apart, and what they do together.
+// Cages within a cage: detection of their nesting, and their combined deformation.
 #include "ostraka/coords/nested.h"
 #include "meshes.h"
 #include "ostraka/cage/cage.h"
@@ -93,7 +93,7 @@ TEST(NestedCages, CoordinatesSatisfyTheirPropertiesAndAreLocal) {
                 ASSERT_EQ(c.vertex(row, post.levels[0].cage.vertices[j]), outer.vertex(row, static_cast<Eigen::Index>(j)));
         }
         EXPECT_GT(outside, 100U);
-        // What the levels say by themselves can be had back.
+        // The weights of each level can be recovered.
         const auto carrying = carrying_weights(post.levels);
         const WeightMatrix recovered = weights_of_level(c.vertex, post.levels, carrying, 0);
         EXPECT_LT((recovered - outer.vertex).cwiseAbs().maxCoeff(), 1e-12) << kind;
@@ -121,7 +121,7 @@ TEST(NestedCages, TheInnerCageMovesOnlyItsPart) {
         largest = std::max(largest, norm(displacement));
     }
     EXPECT_NEAR(largest, std::sqrt(0.25 + 0.0625), 1e-12);
-    // Without a fade it takes hold at once.
+    // Without a fade the influence begins at the border.
     options.fade = 0;
     const std::vector<Point> unfaded =
         deformed(compute_coordinates("mean-value", post.cage, post.mesh, options), post.cage, handles);
@@ -132,7 +132,7 @@ TEST(NestedCages, TheInnerCageMovesOnlyItsPart) {
 }
 
 TEST(NestedCages, OtherPartsThatReachInAreNotInfluenced) {
-    // Two posts side by side, and a cage around one that takes in a corner of the other.
+    // Two posts side by side, and a cage around one that also contains a corner of the other.
     const Post post;
     TriangleSoup both = joined(to_soup(post.mesh), moved(to_soup(post.mesh), 1, {2.2, 0, 0}));
     TriangleSoup outer_cage = moved(to_soup(post.levels[0].cage.mesh), 3, {0, 0, 0});
@@ -177,10 +177,11 @@ TEST(NestedCages, EachCageIsCheckedSeparately) {
     EXPECT_TRUE(check.valid());
     EXPECT_EQ(check.nested, 1U);
     EXPECT_EQ(check.components, 2U);
-    // Crossing the outer one is no fault of its own, being inside out is.
+    // An intersection with the outer cage is not a defect of the inner one; being inside out is.
     TriangleSoup crossing = joined(to_soup(post.levels[0].cage.mesh), moved(to_soup(post.levels[1].cage.mesh), 1, {0, 0, 0.8}));
     EXPECT_TRUE(check_cage(build_mesh(crossing), post.mesh).valid());
-    // A corner of the inner one pushed out through the opposite corner: its own faces meet, and are told by their numbers.
+    // A corner of the inner one pushed out through the opposite corner: its own faces intersect, and are reported by their
+    // numbers.
     Mesh folded = post.cage;
     for (const Index v : post.levels[1].cage.vertices)
         if (const Point& p = folded.point(Vertex(v)); p.x() < -1.4 && p.y() < -1.4 && p.z() < 2.1)

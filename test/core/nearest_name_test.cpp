@@ -13,7 +13,7 @@ TEST(EditDistance, IsTheFewestEdits) {
     EXPECT_EQ(edit_distance("", "abc", 9), 3U);
     EXPECT_EQ(edit_distance("\xC3\xA4hre", "ahre", 9), 1U) << "letters, not bytes";
     EXPECT_EQ(edit_distance("ca", "abc", 9), 3U) << "optimal string alignment";
-    // The band changes nothing below the limit: a law over random words.
+    // The band does not affect distances below the limit: tested on random words.
     std::uint64_t state = 1;
     const auto random_word = [&state] {
         std::string text;

@@ -1,4 +1,4 @@
-// Programs that are started: what they read, print and return, and that they end when they are told to.
+// Child processes: input, output, exit code and termination.
 #include "ostraka/execution/child_process.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/stopwatch.h"
@@ -20,11 +20,11 @@ const auto never = [] { return false; };
 
 TEST(ChildProcess, PrintsToFilesAndReportsHowItEnded) {
     const Scratch scratch;
-    ChildProcess one(shell("pwd; echo $OMP_NUM_THREADS; echo wrong >&2; exit 3"),
-                     {.folder = scratch.path(), .output = scratch / "out", .errors = scratch / "err", .threads = 7});
-    EXPECT_TRUE(one.wait(never));
-    EXPECT_EQ(one.code(), 3);
-    EXPECT_EQ(one.ending(), "ended with code 3");
+    ChildProcess process(shell("pwd; echo $OMP_NUM_THREADS; echo wrong >&2; exit 3"),
+                         {.folder = scratch.path(), .output = scratch / "out", .errors = scratch / "err", .threads = 7});
+    EXPECT_TRUE(process.wait(never));
+    EXPECT_EQ(process.code(), 3);
+    EXPECT_EQ(process.ending(), "ended with code 3");
     EXPECT_EQ(read_file(scratch / "out"), std::filesystem::canonical(scratch.path()).string() + "\n7\n");
     EXPECT_EQ(read_file(scratch / "err"), "wrong\n");
     ChildProcess both(shell("echo 1; echo 2 >&2; echo 3"), {.output = scratch / "both", .errors = scratch / "both"});
@@ -36,12 +36,12 @@ TEST(ChildProcess, EndsWithAllThatItStarted) {
     const Scratch scratch;
     const Stopwatch clock;
     {
-        ChildProcess one(shell("sleep 60 & echo $! > started; wait"), {.folder = scratch.path()});
-        EXPECT_FALSE(one.wait([&] { return file_exists(scratch / "started") && !read_file(scratch / "started").empty(); }));
+        ChildProcess process(shell("sleep 60 & echo $! > started; wait"), {.folder = scratch.path()});
+        EXPECT_FALSE(process.wait([&] { return file_exists(scratch / "started") && !read_file(scratch / "started").empty(); }));
     }
     const pid_t started = std::stoi(read_file(scratch / "started"));
     while (::kill(started, 0) == 0 && clock.seconds() < 30) {
-        // A killed process that nobody has waited for is still known: it is none that runs.
+        // A killed process without a wait still exists as a zombie: it does not count as running.
         const std::string state = read_file("/proc/" + std::to_string(started) + "/stat");
         if (state.find(") Z") != std::string::npos) break;
     }
@@ -53,21 +53,21 @@ TEST(ChildProcess, EndsWithAllThatItStarted) {
 }
 
 TEST(ChildProcess, ReadsAndPrintsThroughPipes) {
-    ChildProcess one({"cat"}, {.pipes = true});
-    ASSERT_EQ(::write(one.to(), "pot\n", 4), 4);
-    one.close_input();
+    ChildProcess process({"cat"}, {.pipes = true});
+    ASSERT_EQ(::write(process.to(), "pot\n", 4), 4);
+    process.close_input();
     char text[8] = {};
-    EXPECT_EQ(::read(one.from(), text, sizeof text), 4);
+    EXPECT_EQ(::read(process.from(), text, sizeof text), 4);
     EXPECT_STREQ(text, "pot\n");
-    EXPECT_TRUE(one.wait(never));
-    EXPECT_EQ(one.code(), 0);
+    EXPECT_TRUE(process.wait(never));
+    EXPECT_EQ(process.code(), 0);
 }
 
 TEST(ChildProcess, ProgramsThatCannotBeStartedAreRefused) {
     const Scratch scratch;
     const auto refuse = [](const std::vector<std::string>& words, const ChildOptions& options) {
         try {
-            ChildProcess one(words, options);
+            ChildProcess process(words, options);
             ADD_FAILURE() << words.front();
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::failure);

@@ -41,7 +41,7 @@ TEST(RunApart, AbandonsCancelledWork) {
     const auto has_ended = std::make_shared<std::promise<void>>();
     struct Held {
         std::shared_ptr<std::promise<void>> ended;
-        explicit Held(std::shared_ptr<std::promise<void>> told) : ended(std::move(told)) {}
+        explicit Held(std::shared_ptr<std::promise<void>> promise) : ended(std::move(promise)) {}
         ~Held() { ended->set_value(); }
         Held(const Held&) = delete;
         Held& operator=(const Held&) = delete;
@@ -54,7 +54,7 @@ TEST(RunApart, AbandonsCancelledWork) {
             watch.cancel();
             ready->wait();
             try {
-                check_cancelled();  // its own watch says so too
+                check_cancelled();  // its own watch reports it too
             } catch (const Error& error) {
                 is_told = error.kind() == ErrorKind::cancelled;
             }
@@ -64,7 +64,7 @@ TEST(RunApart, AbandonsCancelledWork) {
         EXPECT_EQ(error.kind(), ErrorKind::cancelled);
     }
     may_end.set_value();
-    has_ended->get_future().wait();  // what it held is freed
+    has_ended->get_future().wait();  // its resources are released
     EXPECT_TRUE(is_told);
 }
 

@@ -106,7 +106,7 @@ TEST(Curvature, IntegralsOfGaussianCurvatureAreGaussBonnet) {
     EXPECT_NEAR(gaussian_integral(sphere(3)), 4 * pi, 1e-10);
     EXPECT_NEAR(gaussian_integral(box(4, 1, 2, 3)), 4 * pi, 1e-10);
     EXPECT_NEAR(gaussian_integral(torus(1, 3, 1)), 0, 1e-10);
-    // Shifted far away and scaled, the same but for rounding.
+    // Translated far away and scaled, the same up to rounding.
     TriangleSoup soup = to_soup(torus(1, 3, 1));
     for (auto& p : soup.points)
         for (double& c : p) c = 1e-3 * c + 1e3;
@@ -149,7 +149,7 @@ TEST(Curvature, PointValuesOfSphereAndTorus) {
         ASSERT_NEAR(values.mean[v], (1 / r + k) / 2, 0.03);
         ASSERT_NEAR(values.gaussian[v], k / r, 0.05);
     }
-    // Turned inside out the mean changes its sign, the Gaussian does not.
+    // With reversed orientation the mean curvature changes its sign, the Gaussian does not.
     TriangleSoup soup = to_soup(ring);
     for (auto& t : soup.triangles) std::swap(t[0], t[1]);
     const Curvature reversed = curvature(build_mesh(soup), options);

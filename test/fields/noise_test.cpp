@@ -1,4 +1,4 @@
-// Curvature and thickness of synthetic objects under noise of 0.2 % of the diagonal, part by part, blends apart.
+// Curvature and thickness of synthetic objects under noise of 0.2 % of the diagonal, part by part, without blends.
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/fields/thickness.h"
@@ -88,7 +88,7 @@ std::size_t expect_mean_curvature_kept(const std::string& name, std::uint64_t ve
     const double diagonal = synthetic_object(name).box().diagonal().norm();
     std::size_t parts = 0;
     for (const Compared& c : compare(name, vertices, scale, [&](const Mesh& mesh) { return curvature(mesh, options).mean; })) {
-        if (std::abs(c.clean) * diagonal < 1) continue;  // nearly flat: there is no share to speak of
+        if (std::abs(c.clean) * diagonal < 1) continue;  // nearly flat: a relative error is not meaningful
         EXPECT_NEAR(c.noisy, c.clean, 0.05 * std::abs(c.clean)) << c.part;
         std::cout << "mean curvature of " << c.part << ": " << c.clean << " with noise " << c.noisy << '\n';
         ++parts;
@@ -100,7 +100,7 @@ TEST(Noise, MeanCurvatureMedianPerPartIsRobust) {
     std::size_t parts = 0;
     for (const std::string name : {"sphere", "capsule", "cylinder", "torus", "chair", "teapot"})
         parts += expect_mean_curvature_kept(name, 20000, 0.03);
-    // The hand's palm is thin and nearly flat: it takes more vertices and a wider scale.
+    // The hand's palm is thin and nearly flat: it needs more vertices and a larger scale.
     parts += expect_mean_curvature_kept("hand", 60000, 0.035);
     EXPECT_GE(parts, 25U);
 }

@@ -103,7 +103,7 @@ TEST(Statistics, KnownAnswers) {
     EXPECT_DOUBLE_EQ(weighted.mean, 25.75);
     EXPECT_DOUBLE_EQ(weighted.median, 1);
     EXPECT_DOUBLE_EQ(weighted.percentile_95, 100);
-    // Large values near each other keep their spread; weights of zero count for nothing, unless all are.
+    // Large similar values keep their spread; zero weights are ignored, unless all are zero.
     EXPECT_NEAR(statistics({1e9, 1e9 + 1}, {1, 1}).deviation, 0.5, 1e-9);
     EXPECT_DOUBLE_EQ(statistics({1, 5, 1000}, {1, 1, 0}).max, 5);
     EXPECT_DOUBLE_EQ(statistics({1, 5}, {0, 0}).mean, 3);

@@ -109,7 +109,7 @@ TEST(Plot, LabelsAndIntervalsAreOnePerPoint) {
     EXPECT_THROW(svg_bytes(plot), Error);
 }
 
-/// A plot of the unit square with points and labels of white, so that nothing but names is ink in its area.
+/// A plot of the unit square with white points and labels, so that only names leave ink in its area.
 Plot labelled(const std::vector<std::array<double, 2>>& points, const std::string& words) {
     Plot plot{"", {"x", false, 0.0, 1.0}, {"y", false, 0.0, 1.0}, {{"", points}}};
     plot.series[0].joined = false;
@@ -135,7 +135,7 @@ TEST(Plot, LabelsAreNeitherClippedNorOverlapping) {
     for (const auto& corner : {std::array{0.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 0.0}, std::array{1.0, 1.0}})
         EXPECT_NEAR(ink_of({corner}) / single_ink, 1, 0.1) << corner[0] << " " << corner[1];
     EXPECT_NEAR(ink_of({middle, {0.55, 0.551}}) / single_ink, 2, 0.2);
-    // Of a thousand in one place a few find room, and a line says how many do not.
+    // Of a thousand names at one point a few are drawn, and a line gives the number of the others.
     const double repeated_ink = ink_of(std::vector<std::array<double, 2>>(1000, middle));
     EXPECT_GT(repeated_ink, 3 * single_ink);
     EXPECT_LT(repeated_ink, 60 * single_ink);

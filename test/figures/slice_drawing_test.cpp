@@ -1,4 +1,4 @@
-// Drawings are complete files, at the scale they name, of the same bytes each time.
+// Drawings are complete files at the stated scale, with the same bytes in every run.
 #include "ostraka/figures/slice_drawing.h"
 
 #include "meshes.h"
@@ -51,7 +51,7 @@ TEST(SliceSheet, HandlesOneAndManySlices) {
         write_slice_sheet(scratch / "a.png", cut.sheet(count));
         const Picture picture = test::read_png(scratch / "a.png");
         EXPECT_NEAR(picture.width, 2 * width_of(svg), 2);
-        // Clay is there, and paper.
+        // There are clay pixels and paper pixels.
         std::size_t clay = 0, white = 0;
         for (const auto pixel : picture.argb) clay += pixel == 0xffdec4a6U, white += pixel == 0xffffffffU;
         EXPECT_GT(clay, 100U);
@@ -87,12 +87,12 @@ TEST(ProfileDrawing, IsDrawnAtTheStatedScale) {
     const Scratch scratch;
     const Cut cut;
     const Profile profile = find_profile(cut.mesh, slice_frame({0, 0, -1}, {0, 0, 1}));
-    // 6 units wide: 60 mm in cm, at 2 : 1 or 2.5 : 1 within 430 points; the width of the sheet tells.
+    // 6 units wide: 60 mm in cm, at 2 : 1 or 2.5 : 1 within 430 points; the width of the sheet determines it.
     write_profile_drawing(scratch / "cm.svg", profile, "ring", "cm");
     write_profile_drawing(scratch / "mm.svg", profile, "ring", "mm");
     write_profile_drawing(scratch / "none.svg", profile, "ring", "");
     const double cm = width_of(read_file(scratch / "cm.svg")), mm = width_of(read_file(scratch / "mm.svg"));
-    // What is the same size on paper is at ten times the scale.
+    // The same size on paper means ten times the scale.
     EXPECT_NEAR(cm, mm, 1e-6);
     const double natural = 60 * 72 / 25.4, share = (cm - 128) / natural;
     EXPECT_NEAR(share, 2.5, 0.01);

@@ -80,12 +80,12 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
 TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
     const test::Scratch folder;
     const Path first = folder / "first", fresh = folder / "fresh", last = folder / "last";
-    const Path held = "memory:held";
+    const Path memory_file = "memory:held";
     write_file(first, "old");
-    write_file(held, "old");
+    write_file(memory_file, "old");
     {
         OutputTransaction outputs;
-        write_file(held, "new");
+        write_file(memory_file, "new");
         write_file(first, "new");
         write_file(fresh, "new");
         write_file(last, "new");
@@ -93,8 +93,8 @@ TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
         EXPECT_THROW(outputs.commit(), Error);
     }
     EXPECT_EQ(read_file(first), "old");
-    EXPECT_EQ(read_file(held), "old");
-    remove_memory_files(held);
+    EXPECT_EQ(read_file(memory_file), "old");
+    remove_memory_files(memory_file);
     EXPECT_FALSE(std::filesystem::exists(fresh));
     EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
 }
@@ -154,11 +154,11 @@ TEST(ReplaceOutputs, KeepsFilesOfTheLastRunAndOfOthers) {
     std::filesystem::create_symlink(scratch / "own.txt", scratch / "link.svg");
     write_outputs(scratch.path(), {{"a.png", "1"}, {"c.csv", "5"}});
     for (const char* gone : {"a.svg", "b.svg"}) EXPECT_FALSE(std::filesystem::exists(scratch / gone)) << gone;
-    for (const char* there : {"own.txt", "edited.csv", "other.csv", "a.png", "c.csv", "link.svg"})
-        EXPECT_TRUE(std::filesystem::exists(scratch / there)) << there;
+    for (const char* name : {"own.txt", "edited.csv", "other.csv", "a.png", "c.csv", "link.svg"})
+        EXPECT_TRUE(std::filesystem::exists(scratch / name)) << name;
     EXPECT_EQ(read_file(scratch / "c.csv"), "5");
     EXPECT_EQ(read_file(scratch / ".test.outputs"), sha256("1") + "  a.png\n" + sha256("5") + "  c.csv\n");
-    // What was changed once is the user's from then on.
+    // A file that was changed once belongs to the user from then on.
     write_outputs(scratch.path(), {});
     EXPECT_TRUE(std::filesystem::exists(scratch / "edited.csv"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "a.png"));
@@ -168,12 +168,12 @@ TEST(ReplaceOutputs, LeavesInputs) {
     const Scratch scratch;
     write_outputs(scratch.path(), {{"a.ply", "1"}, {"b.ply", "2"}});
     {
-        const KeptFiles kept({scratch.path() / "." / "a.ply"});
+        const KeptFiles protection({scratch.path() / "." / "a.ply"});
         write_outputs(scratch.path(), {{"c.ply", "3"}});
     }
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "b.ply"));
-    // What was an input once is the user's from then on.
+    // A file that was an input once belongs to the user from then on.
     write_outputs(scratch.path(), {});
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));
     EXPECT_FALSE(std::filesystem::exists(scratch / "c.ply"));
@@ -189,7 +189,7 @@ TEST(ReplaceOutputs, RemovesNothingBeforeAllFilesAreWritten) {
     }
     EXPECT_EQ(read_file(scratch / "a.svg"), "1");
     EXPECT_FALSE(std::filesystem::exists(scratch / "b.svg"));
-    // A run that was killed between the two is made good by the next one.
+    // The next run completes one that was killed between the two.
     (void)scratch.file("b.svg", "2");
     (void)scratch.file(".test.outputs", sha256("2") + "  b.svg\n" + sha256("1") + "  a.svg\n");
     write_outputs(scratch.path(), {{"b.svg", "2"}});
@@ -236,7 +236,7 @@ TEST(RemoveStaleTemporaries, RemovesFilesOfKilledProcessesImmediately) {
             if (name.starts_with(".ostraka-")) list.push_back(name);
         return list;
     };
-    // One that is being written, and one that waits for its transaction, are left alone.
+    // A file that is being written, and one that waits for its transaction, are kept.
     {
         OutputTransaction waiting;
         write_file(scratch / "waits.txt", "x");
@@ -250,7 +250,7 @@ TEST(RemoveStaleTemporaries, RemovesFilesOfKilledProcessesImmediately) {
     }
     EXPECT_EQ(read_file(scratch / "waits.txt") + read_file(scratch / "open.txt"), "xx");
     EXPECT_TRUE(names().empty());
-    // A process that is killed in the middle leaves two.
+    // A process that is killed during the work leaves two files.
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

@@ -29,7 +29,7 @@ std::string raw(std::initializer_list<Number> numbers) {
     std::memcpy(bytes.data(), numbers.begin(), bytes.size());
     return bytes;
 }
-std::string what(const std::string& bytes) {
+std::string error_of(const std::string& bytes) {
     const test::Scratch folder;
     try {
         (void)read_npy(folder.file("a.npy", bytes));
@@ -82,23 +82,23 @@ TEST(Npy, ColumnsFirstAndOtherNumbers) {
 
 TEST(Npy, FalseHeadersAreRefused) {
     const std::string three = raw<double>({1, 2, 3});
-    EXPECT_NE(what(npy("<f8", "(4,)", three)).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(1000000000000, 1000000000000)", three)).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(4294967296, 4294967296)", "")).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(2305843009213693952, 8)", "")).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(0, 3)", three)).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(9223372036854775807, 0)", "")).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(99999999999999999999,)", "")).find("does not match"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "()", raw<double>({1}))).find("0 dimensions"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(1, 1, 3)", three)).find("3 dimensions"), std::string::npos);
-    EXPECT_NE(what(npy(">f8", "(3,)", three)).find("'>f8'"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(-3,)", three)).find("cannot be read"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(3,)", three, "Maybe")).find("cannot be read"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(3,", three)).find("cannot be read"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(3,)", three, "False", 9)).find("version"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(3,)", three).substr(0, 60)).find("ends within"), std::string::npos);
-    EXPECT_NE(what("").find("not a NumPy"), std::string::npos);
-    EXPECT_EQ(what(npy("<f8", "(3,)", three)), "accepted");
+    EXPECT_NE(error_of(npy("<f8", "(4,)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(1000000000000, 1000000000000)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(4294967296, 4294967296)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(2305843009213693952, 8)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(0, 3)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(9223372036854775807, 0)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(99999999999999999999,)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "()", raw<double>({1}))).find("0 dimensions"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(1, 1, 3)", three)).find("3 dimensions"), std::string::npos);
+    EXPECT_NE(error_of(npy(">f8", "(3,)", three)).find("'>f8'"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(-3,)", three)).find("cannot be read"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(3,)", three, "Maybe")).find("cannot be read"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(3,", three)).find("cannot be read"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(3,)", three, "False", 9)).find("version"), std::string::npos);
+    EXPECT_NE(error_of(npy("<f8", "(3,)", three).substr(0, 60)).find("ends within"), std::string::npos);
+    EXPECT_NE(error_of("").find("not a NumPy"), std::string::npos);
+    EXPECT_EQ(error_of(npy("<f8", "(3,)", three)), "accepted");
 }
 
 TEST(Npy, DamagedFilesGiveNumbersOrAnError) {

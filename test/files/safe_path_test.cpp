@@ -1,4 +1,4 @@
-// Names from files never lead out of a folder; secrets are for their owner; nothing is left where a process ends at once.
+// Names from files never leave a folder; secrets are readable by their owner only; no temporary files remain after an abort.
 #include "ostraka/files/safe_path.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/memory.h"

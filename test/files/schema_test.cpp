@@ -1,4 +1,4 @@
-// Schemas of doc/schema: what they refer to is there, and no document makes a check end in anything but words.
+// Schemas of doc/schema: all references resolve, and any document is accepted or refused with a message.
 #include "ostraka/core/error.h"
 #include "ostraka/files/json.h"
 
@@ -21,7 +21,7 @@ std::vector<std::string> schema_names() {
     return names;
 }
 
-/// All that "$ref" says, with its place.
+/// All values of "$ref", with their locations.
 void list_references(const JsonValue& value, const std::string& pointer,
                      std::vector<std::pair<std::string, std::string>>& references) {
     if (value.IsArray())
@@ -34,7 +34,7 @@ void list_references(const JsonValue& value, const std::string& pointer,
     }
 }
 
-/// A document that has every member that the schema knows, at least nearly right.
+/// A document that has every member that the schema knows, approximately valid.
 class Sample {
 public:
     explicit Sample(const JsonValue& schema) : schema_(schema) {}
@@ -42,20 +42,20 @@ public:
     Json make() {
         Json document;
         allocator_ = &document.GetAllocator();
-        static_cast<JsonValue&>(document) = of(schema_, 0);
+        static_cast<JsonValue&>(document) = value_for(schema_, 0);
         return document;
     }
 
 private:
-    JsonValue of(const JsonValue& rules, int depth) {
+    JsonValue value_for(const JsonValue& rules, int depth) {
         if (depth > 7 || !rules.IsObject()) return {};
         if (const JsonValue* reference = find_member(rules, "$ref")) {
             const JsonValue* target = Pointer(text_of(*reference).substr(1).c_str()).Get(schema_);
-            return target == nullptr ? JsonValue() : of(*target, depth + 1);
+            return target == nullptr ? JsonValue() : value_for(*target, depth + 1);
         }
         for (const char* choice : {"anyOf", "oneOf", "allOf"})
             if (const JsonValue* list = find_member(rules, choice); list != nullptr && !list->Empty())
-                return of((*list)[0], depth + 1);
+                return value_for((*list)[0], depth + 1);
         if (const JsonValue* values = find_member(rules, "enum")) return JsonValue((*values)[0], *allocator_);
         const std::string type = text_in(rules, "type");
         if (type == "object" || find_member(rules, "properties") != nullptr) return object(rules, depth);
@@ -66,31 +66,31 @@ private:
     }
 
     JsonValue object(const JsonValue& rules, int depth) {
-        JsonValue made(rapidjson::kObjectType);
+        JsonValue value(rapidjson::kObjectType);
         if (const JsonValue* members = find_member(rules, "properties"))
             for (const auto& member : members->GetObject())
-                add_member(made, text_of(member.name), of(member.value, depth + 1), *allocator_);
+                add_member(value, text_of(member.name), value_for(member.value, depth + 1), *allocator_);
         if (const JsonValue* others = find_member(rules, "additionalProperties"); others != nullptr && others->IsObject())
-            add_member(made, "other", of(*others, depth + 1), *allocator_);
-        return made;
+            add_member(value, "other", value_for(*others, depth + 1), *allocator_);
+        return value;
     }
 
     JsonValue array(const JsonValue& rules, int depth) {
-        JsonValue made(rapidjson::kArrayType);
+        JsonValue value(rapidjson::kArrayType);
         const auto count = static_cast<int>(std::min(4.0, number_or(rules, "minItems", 1)));
         if (const JsonValue* items = find_member(rules, "items"); items != nullptr && items->IsArray()) {
-            for (const auto& one : items->GetArray()) made.PushBack(of(one, depth + 1), *allocator_);
+            for (const auto& item : items->GetArray()) value.PushBack(value_for(item, depth + 1), *allocator_);
         } else if (items != nullptr) {
-            for (int i = 0; i < std::max(1, count); ++i) made.PushBack(of(*items, depth + 1), *allocator_);
+            for (int i = 0; i < std::max(1, count); ++i) value.PushBack(value_for(*items, depth + 1), *allocator_);
         }
-        return made;
+        return value;
     }
 
     const JsonValue& schema_;
     JsonAllocator* allocator_ = nullptr;
 };
 
-/// Whatever the document: it is right, or an Error says where it is not.
+/// Any document is valid, or an Error gives the location of the problem.
 void expect_words(const JsonValue& document, const std::string& schema) {
     try {
         validate(document, schema, "document");
@@ -100,23 +100,23 @@ void expect_words(const JsonValue& document, const std::string& schema) {
     }
 }
 
-/// Puts values of all types in the place of each value, one after the other. Returns how many documents that makes.
+/// Replaces each value by values of all types in turn. Returns the number of documents.
 std::size_t with_wrong_types(Json& document, JsonValue& value, const std::string& schema) {
     static const Json others = parse_json(R"([null, true, 5, -1, 1e300, "", "x", [], {}, [5], [["a"], 5], {"a": 5}])", "others");
     auto& a = document.GetAllocator();
     std::size_t count = 0;
-    JsonValue kept;
-    kept.Swap(value);
+    JsonValue original;
+    original.Swap(value);
     for (const auto& other : others.GetArray()) {
         value.CopyFrom(other, a);
         expect_words(document, schema);
         ++count;
     }
-    value.Swap(kept);
+    value.Swap(original);
     if (value.IsObject())
         for (auto& member : value.GetObject()) count += with_wrong_types(document, member.value, schema);
     else if (value.IsArray())
-        for (auto& one : value.GetArray()) count += with_wrong_types(document, one, schema);
+        for (auto& element : value.GetArray()) count += with_wrong_types(document, element, schema);
     return count;
 }
 

@@ -20,10 +20,10 @@ TEST(BreakCommand, TheCentreIsAPointOrATag) {
     set.annotations[0].tag = "head";
     set.annotations[0].faces = {0, 1, 2};
     write_annotations(scratch / "ball.ant.json", set, ball, "ball.ply", {});
-    const Path piece = scratch / "piece.ply", kept = scratch / "piece.ant.json";
+    const Path piece = scratch / "piece.ply", annotations = scratch / "piece.ant.json";
     const std::string command = "mesh break " + quoted(scratch / "ball.ply") + " " + quoted(piece),
                       annotated = command + " --annotations " + quoted(scratch / "ball.ant.json"),
-                      out = " --annotations-out " + quoted(kept);
+                      out = " --annotations-out " + quoted(annotations);
     const auto unknown = run_command(annotated + " --at nope");
     EXPECT_EQ(unknown.code, 2);
     EXPECT_NE(unknown.err.find("no annotation has this tag"), std::string::npos) << unknown.err;
@@ -37,9 +37,9 @@ TEST(BreakCommand, TheCentreIsAPointOrATag) {
     const auto by_tag = run_command(annotated + " --at head");
     EXPECT_EQ(by_tag.code, 0) << by_tag.err;
     EXPECT_TRUE(std::filesystem::exists(piece));
-    EXPECT_FALSE(std::filesystem::exists(kept));
+    EXPECT_FALSE(std::filesystem::exists(annotations));
     EXPECT_EQ(run_command(annotated + out + " --at head").code, 0);
-    EXPECT_EQ(read_annotations(kept, read_mesh(piece).mesh).annotations.at(0).tag, "head");
+    EXPECT_EQ(read_annotations(annotations, read_mesh(piece).mesh).annotations.at(0).tag, "head");
 }
 
 }  // namespace

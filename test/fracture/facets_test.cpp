@@ -89,7 +89,7 @@ TEST(Facets, AnIntactObjectHasNoFracture) {
         EXPECT_EQ(facets.area(Facet::fracture), 0);
         EXPECT_NEAR(facets.area(Facet::outer), surface_area(mesh), 1e-9 * surface_area(mesh));
     }
-    // A cube may be sawn from something: that is not known.
+    // A cube may be cut from another object: the answer is unclear.
     EXPECT_NE(find_facets(build_mesh(test::box(12))).answer, Facets::Answer::broken);
 }
 
@@ -212,7 +212,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const AnnotationSet set = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     ASSERT_EQ(set.annotations.size(), 3U);
     EXPECT_GT(agreement(sherd, facets_of(sherd.mesh, set)), 0.95);
-    // Again, with landmarks and other regions there, one facet under a name of a person's own spelling and one twice.
+    // Again, with existing landmarks and other regions, one facet with a different spelling and one duplicated.
     AnnotationSet more = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     Annotation mark, handle;
     mark.id = free_id(more);

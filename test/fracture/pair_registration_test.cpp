@@ -34,7 +34,7 @@ Motion random_motion(std::uint64_t seed, double size) {
     return motion;
 }
 
-/// Degrees, and the largest distance of a vertex from its place as a share of the diagonal.
+/// Degrees, and the largest distance of a vertex from its true position as a share of the diagonal.
 std::pair<double, double> errors(const Mesh& mesh, const Motion& pose, const Motion& truth) {
     double farthest = 0;
     for (const Vertex v : mesh.vertices())
@@ -99,7 +99,7 @@ TEST(PairRegistration, UnrelatedFragmentsScoreLower) {
 }
 
 TEST(PairRegistration, TheOrderOfTheFragmentsDoesNotMatter) {
-    // Right pairs and a wrong one, the larger named first and last.
+    // Right pairs and a wrong one, with the larger fragment given first or second.
     const Fragment a = fragment_of(synthetic_sherd(1, 2, 0, 1), "a"),
                    b = fragment_of(synthetic_sherd(2, 3, 1, 2), "b", random_motion(7, 30)),
                    c = fragment_of(synthetic_sherd(4, 5, 0, 1), "c", random_motion(8, 30));
@@ -140,15 +140,15 @@ TEST(PairRegistration, ThreadsDoNotMatter) {
     options.frames = 30;
     const int before = threads();
     set_threads(1);
-    const PairRegistration one = register_fractures(a, b, options);
+    const PairRegistration single_threaded = register_fractures(a, b, options);
     set_threads(3);
     const PairRegistration three = register_fractures(a, b, options);
     set_threads(before);
-    ASSERT_EQ(one.candidates.size(), three.candidates.size());
-    for (std::size_t i = 0; i < one.candidates.size(); ++i) {
-        EXPECT_EQ(one.candidates[i].pose.rotation, three.candidates[i].pose.rotation);
-        EXPECT_EQ(one.candidates[i].pose.translation, three.candidates[i].pose.translation);
-        EXPECT_EQ(one.candidates[i].score, three.candidates[i].score);
+    ASSERT_EQ(single_threaded.candidates.size(), three.candidates.size());
+    for (std::size_t i = 0; i < single_threaded.candidates.size(); ++i) {
+        EXPECT_EQ(single_threaded.candidates[i].pose.rotation, three.candidates[i].pose.rotation);
+        EXPECT_EQ(single_threaded.candidates[i].pose.translation, three.candidates[i].pose.translation);
+        EXPECT_EQ(single_threaded.candidates[i].score, three.candidates[i].score);
     }
 }
 
@@ -181,7 +181,7 @@ TEST(PairRegistration, ScannedBottle) {
     FragmentFile second = read_fragment(folder / "obj2_challenge.ply");
     EXPECT_TRUE(first.points);
     EXPECT_EQ(first.facets_from, "shape");
-    // The motion that the second half was moved by: the truth is its inverse.
+    // The motion applied to the second half: the true pose is its inverse.
     const Json solution = read_json(folder / "solution.json");
     Motion moved_by;
     for (int i = 0; i < 3; ++i) {

@@ -26,7 +26,7 @@ std::string bytes_of(auto value) {
     return bytes;
 }
 
-/// What tells that a canary was read.
+/// Text that reveals that a canary was read.
 const std::vector<std::string>& traces() {
     static const std::vector<std::string> list{token, "271828.1875", bytes_of(number), bytes_of(static_cast<float>(number))};
     return list;
@@ -48,7 +48,7 @@ std::string read_plain(const Path& file, std::size_t most = 50'000'000) {
     return bytes;
 }
 
-/// Names, kinds, sizes and times of all that lies in a folder.
+/// Names, kinds, sizes and times of all files in a folder.
 void list_state(const Path& folder, std::ostream& text) {
     std::vector<Path> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path());
@@ -82,7 +82,7 @@ Arena::Arena(const Path& project) {
     std::string pattern = (std::filesystem::temp_directory_path() / "ostraka-fuzz-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) fail_work(pattern, "cannot be made", "is there space?");
     root_ = pattern;
-    above_ = root_ / "a" / "b" / "c";  // names that climb shall find something
+    above_ = root_ / "a" / "b" / "c";  // names with .. must find something
     home_ = above_ / "home";
     std::filesystem::create_directories(seeds());
     for (const char* name : {"work", "canaries", "tmp"}) std::filesystem::create_directories(home_ / name);
@@ -90,9 +90,10 @@ Arena::Arena(const Path& project) {
     ::setenv("HOME", (home_ / "tmp").c_str(), 1);
     plant_canaries();
     const Verdict verdict =
-        run_child([&](Stopper&) { return make_seeds(project), std::string(); }, seeds(), above_, above_ / "said", {120, 0});
+        run_child([&](Stopper&) { return make_seeds(project), std::string(); }, seeds(), above_, above_ / "output", {120, 0});
     if (verdict.outcome != Outcome::accepted)
-        fail_work("the seeds", "cannot be made: " + verdict.detail + " " + said(), "mend test/fuzz, or what they are made with");
+        fail_work("the seeds", "cannot be made: " + verdict.detail + " " + output(),
+                  "repair test/fuzz, or the operations that make them");
 }
 
 Arena::~Arena() {
@@ -129,7 +130,7 @@ std::string Arena::look_at_canaries() const {
     return text.str();
 }
 
-/// Returns how many bytes there are.
+/// Returns the number of bytes.
 double Arena::lay_out(const Subject& subject, const std::vector<Change>& changes) const {
     const Path work = home_ / "work";
     clear(work);
@@ -171,9 +172,9 @@ void Arena::apply(const Change& change) const {
     }
 }
 
-/// Of which file of the run, or of what it said, a canary's contents are a part; empty: none.
+/// The file or output of the run that contains a canary's contents; empty: none.
 std::string Arena::betrayed_in() const {
-    std::vector<Path> files{above_ / "said"};
+    std::vector<Path> files{above_ / "output"};
     for (const char* folder : {"work", "tmp"})
         for (auto entry = std::filesystem::recursive_directory_iterator(home_ / folder); entry != decltype(entry)(); ++entry)
             if (!entry->is_symlink() && entry->is_regular_file()) files.push_back(entry->path());
@@ -186,15 +187,15 @@ std::string Arena::betrayed_in() const {
 }
 
 void Arena::judge(Verdict& verdict) {
-    const auto found = [&](Outcome outcome, const std::string& detail) {
+    const auto report = [&](Outcome outcome, const std::string& detail) {
         verdict.outcome = outcome;
         verdict.detail = detail;
     };
-    if (!is_finding(verdict.outcome) && said().find("internal error") != std::string::npos)
-        found(Outcome::crash, "an exception that is no Error");
-    if (const std::string file = betrayed_in(); !file.empty()) found(Outcome::betrayed, "what a canary holds is in " + file);
+    if (!is_finding(verdict.outcome) && output().find("internal error") != std::string::npos)
+        report(Outcome::crash, "an exception that is no Error");
+    if (const std::string file = betrayed_in(); !file.empty()) report(Outcome::betrayed, "what a canary holds is in " + file);
     if (look_at_canaries() == canaries_) return;
-    found(Outcome::touched, "the canaries are no longer as they were");
+    report(Outcome::touched, "the canaries are no longer as they were");
     for (const char* name : {"canaries", "work", "tmp"}) clear(home_ / name);
     std::vector<Path> strangers;
     for (const auto& entry : std::filesystem::directory_iterator(home_)) {
@@ -209,11 +210,11 @@ Verdict Arena::run(const Subject& subject, const std::vector<Change>& changes, d
     if (idle_ == 0) idle_ = idle_memory();
     const double input = lay_out(subject, changes);
     const Limits limits{seconds, idle_ + times_input * input + beside_input};
-    Verdict verdict = run_child(subject.act, home_ / "work", home_, above_ / "said", limits);
+    Verdict verdict = run_child(subject.act, home_ / "work", home_, above_ / "output", limits);
     judge(verdict);
     return verdict;
 }
 
-std::string Arena::said() const { return read_plain(above_ / "said", 4'000'000); }
+std::string Arena::output() const { return read_plain(above_ / "output", 4'000'000); }
 
 }  // namespace ostraka::fuzz

@@ -8,7 +8,7 @@
 
 namespace ostraka::fuzz {
 
-/// seeds/ (initial files), said (output of the run), and home/, where runs can write: work/ (the folder of the current run),
+/// seeds/ (initial files), output (of the run), and home/, where runs can write: work/ (the folder of the current run),
 /// canaries/ (must not be changed), tmp/ (temporary files).
 class Arena {
 public:
@@ -23,7 +23,7 @@ public:
     /// Runs a subject with some of its files mutated.
     Verdict run(const Subject& subject, const std::vector<Change>& changes, double seconds);
     /// The beginning of the output of the last run.
-    [[nodiscard]] std::string said() const;
+    [[nodiscard]] std::string output() const;
 
 private:
     void plant_canaries();

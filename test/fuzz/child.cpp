@@ -29,13 +29,13 @@ namespace ostraka::fuzz {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool is_sanitized = true;  // its shadow takes more memory than any limit, and it is some times slower
+constexpr bool is_sanitized = true;  // its shadow memory exceeds any limit, and it is several times slower
 #else
 constexpr bool is_sanitized = false;
 #endif
 
 constexpr double slower = is_sanitized ? 5 : 1;
-constexpr double grace = 3;  ///< seconds to end in, once told
+constexpr double grace = 3;  ///< seconds to end after a cancellation
 enum Code { accepted = 40, refused = 41, stopped = 42, no_memory = 43, no_error = 44 };
 
 std::atomic<bool> told_to_stop{false};
@@ -44,7 +44,7 @@ int landlock_version() {
     return static_cast<int>(::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION));
 }
 
-/// Everything that changes files.
+/// All rights that change files.
 constexpr std::uint64_t always = LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_REMOVE_FILE |
                                  LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG |
                                  LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK |
@@ -83,16 +83,16 @@ bool confine(const Path& home) {
     return done;
 }
 
-void limit(int what, double soft, double hard) {
+void limit(int resource, double soft, double hard) {
     const rlimit limits{static_cast<rlim_t>(soft), static_cast<rlim_t>(hard)};
-    ::setrlimit(static_cast<__rlimit_resource>(what), &limits);
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
 void set_limits(const Limits& limits) {
     limit(RLIMIT_CORE, 0, 0);
     limit(RLIMIT_FSIZE, 2e9, 2e9);
     limit(RLIMIT_CPU, std::max(1.0, slower * limits.seconds), slower * limits.seconds + grace + 1);
-    // Twice what is allowed: a bomb ends early, and what is a little too much is measured.
+    // Twice the limit: large allocations fail early, and slightly excessive use is measured.
     if (!is_sanitized && limits.memory > 0) limit(RLIMIT_DATA, 2 * limits.memory, 2 * limits.memory);
     std::signal(SIGXCPU, [](int) { told_to_stop = true; });
     std::signal(SIGTERM, [](int) { told_to_stop = true; });
@@ -115,9 +115,9 @@ int act_and_tell(const Act& act, Stopper& stopper) {
     }
 }
 
-[[noreturn]] void be_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits) {
+[[noreturn]] void be_child(const Act& act, const Path& folder, const Path& home, const Path& output_file, const Limits& limits) {
     ::setpgid(0, 0);
-    const int out = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int out = ::open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     ::dup2(in, 0);
     ::dup2(out, 1);
@@ -134,7 +134,7 @@ int act_and_tell(const Act& act, Stopper& stopper) {
     ::_exit(act_and_tell(act, stopper));
 }
 
-/// Whether one of its threads has work, whether the machine lets it or not.
+/// Whether one of its threads is runnable.
 bool is_at_work(pid_t child) {
     std::error_code code;
     const Path tasks = Path("/proc") / std::to_string(child) / "task";
@@ -148,7 +148,7 @@ bool is_at_work(pid_t child) {
     return false;
 }
 
-/// Waits for it, and ends it when it has waited too long for something that never comes. What works is ended by its limits.
+/// Waits for it, and kills it if it has been idle for too long. Busy processes are ended by their limits.
 int wait_for(pid_t child, double seconds, rusage& used) {
     using Clock = std::chrono::steady_clock;
     constexpr double between = 0.25;
@@ -205,14 +205,14 @@ bool measures_memory() { return !is_sanitized; }
 
 bool can_confine() { return landlock_version() >= 1; }
 
-Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits) {
+Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& output_file, const Limits& limits) {
     std::cout.flush();
     const pid_t child = ::fork();
     if (child < 0) fail_work("a run", std::string("cannot be started: ") + std::strerror(errno), "end other programs");
-    if (child == 0) be_child(act, folder, home, said, limits);
+    if (child == 0) be_child(act, folder, home, output_file, limits);
     rusage used{};
     const int status = wait_for(child, slower * limits.seconds, used);
-    ::kill(-child, SIGKILL);  // what it has started
+    ::kill(-child, SIGKILL);  // its child processes
     Verdict verdict;
     verdict.seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
     verdict.peak = 1024.0 * static_cast<double>(used.ru_maxrss);

@@ -62,8 +62,8 @@ bool measures_memory();
 /// Whether the system can restrict where a process writes (Linux's Landlock).
 bool can_confine();
 
-/// Runs it in `folder`; it may write below `home` only. Its output is written to the file `said`.
-Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits);
+/// Runs it in `folder`; it may write below `home` only. Its output is written to `output_file`.
+Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& output_file, const Limits& limits);
 
 /// Memory of an idle process in bytes.
 double idle_memory();

@@ -50,11 +50,11 @@ void write_finding(const Path& file, const Finding& finding) {
     auto& a = document.GetAllocator();
     add_members(document, a, "subject", finding.subject, "kind", finding.kind, "note", finding.note, "changes",
                 json_list(finding.changes, a, [&](const Change& change) {
-                    JsonValue one =
+                    JsonValue entry =
                         json_object(a, "file", change.file, "what", kinds_of_change.at(static_cast<std::size_t>(change.what)));
-                    if (is_plain(change.bytes)) add_members(one, a, "text", change.bytes);
-                    else add_members(one, a, "hexadecimal", hexadecimal(change.bytes));
-                    return one;
+                    if (is_plain(change.bytes)) add_members(entry, a, "text", change.bytes);
+                    else add_members(entry, a, "hexadecimal", hexadecimal(change.bytes));
+                    return entry;
                 }));
     write_json(file, document);
 }
@@ -62,15 +62,15 @@ void write_finding(const Path& file, const Finding& finding) {
 Finding read_finding(const Path& file) {
     const Json document = read_json(file);
     Finding finding{text_in(document, "subject"), text_in(document, "kind"), text_in(document, "note"), {}};
-    for (const JsonValue& one : list_in(document, "changes")) {
+    for (const JsonValue& entry : list_in(document, "changes")) {
         Change change;
-        change.file = text_in(one, "file");
-        const auto known = std::find(kinds_of_change.begin(), kinds_of_change.end(), text_in(one, "what"));
-        if (change.file.empty() || known == kinds_of_change.end())
+        change.file = text_in(entry, "file");
+        const auto kind = std::find(kinds_of_change.begin(), kinds_of_change.end(), text_in(entry, "what"));
+        if (change.file.empty() || kind == kinds_of_change.end())
             fail_input(file.string(), "holds a change without a file or of an unknown kind", "keep the finding once more");
-        change.what = static_cast<Change::What>(known - kinds_of_change.begin());
-        const JsonValue* bytes = find_member(one, "hexadecimal");
-        change.bytes = bytes != nullptr ? from_hexadecimal(text_of(*bytes), file.string()) : text_in(one, "text");
+        change.what = static_cast<Change::What>(kind - kinds_of_change.begin());
+        const JsonValue* bytes = find_member(entry, "hexadecimal");
+        change.bytes = bytes != nullptr ? from_hexadecimal(text_of(*bytes), file.string()) : text_in(entry, "text");
         finding.changes.push_back(std::move(change));
     }
     if (finding.changes.empty()) fail_input(file.string(), "holds no change", "name what ostraka_fuzz --keep has kept");

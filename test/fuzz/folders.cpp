@@ -1,4 +1,4 @@
-// What names other files and programs as subjects: studies, folders of runs, sessions, messages, kits.
+// Files that name other files and programs as subjects: studies, run folders, sessions, messages, kits.
 #include "subjects.h"
 
 #include "ostraka/conformance/kit.h"
@@ -30,7 +30,7 @@ constexpr const char* rich_study =
  "plots": {"area": {"title": "Area", "table": "areas", "x": "vertices", "y": "area", "logarithmic": ["x"]}},
  "page": [{"title": "All", "text": "Areas", "show": ["areas", "area"]}]})";
 
-/// Steps that lead elsewhere or start programs.
+/// Steps that leave the folder or start programs.
 const std::vector<Plant>& hostile_steps() {
     static const std::vector<Plant> plants{
         {"/steps", R"({"program": ["sh", "-c", "echo > @CANARIES@/made"]})"},
@@ -73,7 +73,7 @@ const std::vector<Plant>& hostile_steps() {
     return plants;
 }
 
-/// Steps, parts and files of a session that lead elsewhere.
+/// Steps, parts and files of a session that leave the folder.
 const std::vector<Plant>& hostile_session() {
     static const std::vector<Plant> plants{
         {"/steps/0/state/objects/0/parts", R"("@CANARIES@/secret.txt")"},
@@ -124,19 +124,19 @@ std::string run_twice(const std::string& study, const std::string& folder, Stopp
 }
 
 std::string go_on_and_replay(const std::string& study, const std::string& folder, Stopper& stopper) {
-    std::string said;
+    std::string output;
     const auto attempt = [&](const std::string& operation, const std::string& with) {
         try {
-            said += call_operation(operation, with, stopper);
+            output += call_operation(operation, with, stopper);
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled) throw;
-            said += error.what();
+            output += error.what();
         }
     };
     attempt("replay", R"({"crate":")" + folder + "\"}");
     attempt("replay", R"({"crate":")" + folder + R"(","inputs":"."})");
     attempt("run", R"({"study":")" + study + R"(","output":")" + folder + "\"}");
-    return said;
+    return output;
 }
 
 void add_study(const std::string& name, const Path& folder, std::vector<Subject>& subjects) {
@@ -208,7 +208,7 @@ const std::vector<std::string>& further_messages() {
     return messages;
 }
 
-/// What the workbench answers, its bytes as well.
+/// The workbench's answer, including its bytes.
 std::string ask(Workbench& workbench, const std::string& message) {
     const Workbench::Reply reply = workbench.answer(message);
     return reply.json + "\n" + reply.bytes + "\n";
@@ -221,8 +221,8 @@ std::string talk(const std::vector<std::string>& messages, Stopper& stopper) {
         Stopper& stopper;
         ~Unset() { stopper.set({}); }
     } const unset{stopper};
-    std::string said;
-    for (const std::string& message : messages) said += ask(workbench, message);
+    std::string answers;
+    for (const std::string& message : messages) answers += ask(workbench, message);
     std::set<std::string> files;
     for (const SessionObject& object : workbench.session().state().objects)
         for (const auto& [part, file] : object.parts) files.insert(file);
@@ -230,9 +230,9 @@ std::string talk(const std::vector<std::string>& messages, Stopper& stopper) {
     for (const std::string& file : files) {
         Json message(rapidjson::kObjectType);
         add_members(message, message.GetAllocator(), "id", 30, "do", "file", "file", file);
-        said += ask(workbench, to_compact_text(message));
+        answers += ask(workbench, to_compact_text(message));
     }
-    return said;
+    return answers;
 }
 
 Subject session_subject(const Path& seeds) {
@@ -248,11 +248,11 @@ Subject session_subject(const Path& seeds) {
 class OwnBackend final : public Backend {
 public:
     explicit OwnBackend(Stopper& stopper) : stopper_(stopper) {}
-    Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& /*folder*/) override {
+    Answer run(const ConformanceCase& test_case, const JsonValue& settings, const Path& /*folder*/) override {
         Answer answer;
         try {
-            const Json report = parse_json(call_operation(one.operation, settings, stopper_), "the report");
-            answer.code = one.code == 3 ? 3 : 0;
+            const Json report = parse_json(call_operation(test_case.operation, settings, stopper_), "the report");
+            answer.code = test_case.code == 3 ? 3 : 0;
             answer.result = std::make_shared<const Json>([&] {
                 Json result;
                 result.CopyFrom(report["result"], result.GetAllocator());
@@ -273,13 +273,13 @@ private:
 std::string judge_kit(Stopper& stopper) {
     const ConformanceKit kit = read_kit("kit", find_operation);
     OwnBackend backend(stopper);
-    std::string said;
+    std::string report;
     for (std::size_t i = 0; i < kit.cases.size() && i < 12; ++i) {
         const CaseResult result = run_case(kit, kit.cases[i], backend, "scratch", find_operation);
-        said += kit.cases[i].id + " " + to_string(result.outcome) + "\n";
-        for (const std::string& how : result.differences) said += how + "\n";
+        report += kit.cases[i].id + " " + to_string(result.outcome) + "\n";
+        for (const std::string& how : result.differences) report += how + "\n";
     }
-    return said;
+    return report;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ void add_call(std::vector<Subject>& subjects, const std::string& name, std::vect
     subjects.push_back(std::move(subject));
 }
 
-/// Recipes of the project, on the meshes that are there.
+/// Recipes of the project, on the existing meshes.
 void add_recipes(const Path& project, std::vector<Subject>& subjects) {
     for (const std::string& name : files_in(project / "data")) {
         if (!name.ends_with(".recipe.json")) continue;

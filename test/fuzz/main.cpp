@@ -1,5 +1,5 @@
-// Mutated files of all kinds, given to what reads them: nothing may crash, hang, take memory without bound, or touch what lies
-// outside. doc/building.md says how it is used.
+// Runs the readers on mutated files of all kinds: they must not crash, hang, use unbounded memory, or access files outside the
+// folder. doc/building.md describes its use.
 #include "arena.h"
 #include "findings.h"
 
@@ -23,7 +23,7 @@ ostraka_fuzz [--say] [--expected] FILE...   what was kept (or folders of it), on
 ostraka_fuzz --kinds           kinds of files
 )";
 
-constexpr int left_out = 77;  ///< exit code, which ctest understands
+constexpr int left_out = 77;  ///< exit code, as expected by ctest
 
 struct Words {
     std::uint64_t seed = 1, runs = 0, first = 0;
@@ -65,7 +65,7 @@ Words words_of_call(const std::vector<std::string>& given) {
     return words;
 }
 
-/// What can be mutated, by kind: a subject, and one of its targets.
+/// The possible mutations by kind: a subject and one of its targets.
 using Kinds = std::map<std::string, std::vector<std::pair<const Subject*, const Target*>>>;
 
 Kinds kinds_of(const std::vector<Subject>& subjects) {
@@ -76,8 +76,8 @@ Kinds kinds_of(const std::vector<Subject>& subjects) {
 }
 
 std::string bytes_of(const Subject& subject, const std::string& file) {
-    for (const SubjectFile& one : subject.files)
-        if (one.name == file) return one.from.empty() ? one.text : read_file(one.from);
+    for (const SubjectFile& subject_file : subject.files)
+        if (subject_file.name == file) return subject_file.from.empty() ? subject_file.text : read_file(subject_file.from);
     return {};
 }
 
@@ -116,7 +116,7 @@ Trial trial_of(const Kinds& kinds, const std::string& kind, Dice& dice) {
     return trial;
 }
 
-/// How often which outcome, and what took most.
+/// The number of runs by outcome, and the maximum cost.
 struct Tally {
     std::map<Outcome, std::size_t> outcomes;
     std::map<std::string, std::size_t> findings;
@@ -149,10 +149,10 @@ std::string first_lines(const std::string& text) {
     return line;
 }
 
-void tell(const std::string& which, const Trial& trial, const Verdict& verdict, const std::string& said) {
+void tell(const std::string& which, const Trial& trial, const Verdict& verdict, const std::string& output) {
     std::cout << to_string(verdict.outcome) << ": " << which << ", " << trial.kind << ", " << trial.subject->name << " (";
     for (const Change& change : trial.changes) std::cout << change.file << (&change == &trial.changes.back() ? "" : ", ");
-    std::cout << "): " << verdict.detail << ", " << verdict.seconds << " s\n    " << first_lines(said) << std::endl;
+    std::cout << "): " << verdict.detail << ", " << verdict.seconds << " s\n    " << first_lines(output) << std::endl;
 }
 
 int fuzz(Arena& arena, const Kinds& kinds, const Words& words) {
@@ -167,7 +167,7 @@ int fuzz(Arena& arena, const Kinds& kinds, const Words& words) {
         tally.add(verdict, trial.kind);
         if (verdict.outcome < Outcome::stopped) continue;
         const std::string which = "seed " + std::to_string(words.seed) + ", run " + std::to_string(run);
-        tell(which, trial, verdict, arena.said());
+        tell(which, trial, verdict, arena.output());
         if (words.keep.empty()) continue;
         make_folder(words.keep);
         const std::string name =
@@ -196,9 +196,9 @@ int repeat(Arena& arena, const std::vector<Subject>& subjects, const Words& word
             fail_input(file.string(), "is of a subject '" + finding.subject + "' that there is none of", "take it away");
         const Verdict verdict = arena.run(*subject, finding.changes, words.limit);
         tally.add(verdict, finding.kind);
-        tell(file.filename().string(), {&*subject, finding.kind, finding.changes}, verdict, arena.said());
+        tell(file.filename().string(), {&*subject, finding.kind, finding.changes}, verdict, arena.output());
         as_expected = as_expected && file.filename().string().starts_with(to_string(verdict.outcome));
-        if (words.say) std::cout << arena.said() << std::endl;
+        if (words.say) std::cout << arena.output() << std::endl;
     }
     tally.print(0);
     return (words.expected ? as_expected && !files.empty() : tally.is_clean()) ? 0 : 1;

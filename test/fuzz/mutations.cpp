@@ -122,7 +122,7 @@ const std::vector<std::string>& hostile_texts() {
     return texts;
 }
 
-/// Those that lead to canaries, from folders of any depth.
+/// Paths to canaries, from folders of any depth.
 std::vector<std::string> make_leading_out() {
     std::vector<std::string> texts;
     for (const char* name : {"secret.ply", "secret.txt", "secret.json", "made"}) {
@@ -144,7 +144,7 @@ std::size_t stretch(const std::string& text, std::size_t at, Dice& dice) {
     return std::min(1 + dice.below(most), text.size() - at);
 }
 
-/// Begin and end of the word around a place: what stands between blanks and punctuation.
+/// Begin and end of the word around a place: the text between blanks and punctuation.
 std::pair<std::size_t, std::size_t> word_at(const std::string& text, std::size_t at) {
     static constexpr const char* separators = " \t\r\n,:;[]{}\"/<>=";
     std::size_t begin = text.find_first_not_of(separators, at);
@@ -197,7 +197,7 @@ void injure(std::string& text, const std::string& other, Dice& dice) {
         case 8:
             text.insert(at, dice.pick(hostile_words()));
             break;
-        case 9: {  // a line, twice or gone
+        case 9: {  // a line, duplicated or removed
             const std::size_t first = line_begin(text, at), last = std::min(text.find('\n', at), text.size() - 1) + 1;
             if (dice.once_in(2)) text.erase(first, last - first);
             else text.insert(first, text.substr(first, last - first));
@@ -214,7 +214,7 @@ void injure(std::string& text, const std::string& other, Dice& dice) {
 
 // ---- JSON ----
 
-/// A value with what holds it.
+/// A value with its holder.
 struct Place {
     JsonValue* value;
     JsonValue* holder;  ///< null for the root
@@ -335,11 +335,11 @@ void change_document(Json& document, Dice& dice) {
     }
 }
 
-void plant(Json& document, const Plant& one, Dice& dice) {
+void plant(Json& document, const Plant& planting, Dice& dice) {
     auto& a = document.GetAllocator();
-    JsonValue* const place = rapidjson::GenericPointer<JsonValue>(one.pointer).Get(document);
+    JsonValue* const place = rapidjson::GenericPointer<JsonValue>(planting.pointer).Get(document);
     if (place == nullptr) return;
-    const Json planted = parse_json(one.value, "what is planted");
+    const Json planted = parse_json(planting.value, "what is planted");
     JsonValue value(planted, a);
     if (place->IsArray()) {
         place->PushBack(value, a);

@@ -1,4 +1,4 @@
-// Cases of the conformance kit as subjects, and what all subjects share.
+// Cases of the conformance kit as subjects, and functions shared by all subjects.
 #include "subjects.h"
 
 #include "ostraka/files/json_build.h"
@@ -11,7 +11,7 @@ namespace ostraka::fuzz {
 
 namespace {
 
-/// Those that run others have subjects of their own; the others take more than a second for a case.
+/// Operations that run others have separate subjects; the others take more than a second per case.
 bool is_left_out(const std::string& operation) {
     static const std::set<std::string> names{"run",
                                              "replay",
@@ -26,14 +26,14 @@ bool is_left_out(const std::string& operation) {
     return names.contains(operation);
 }
 
-/// The kind of file of an input: of meshes their format, since each has its reader.
+/// The kind of file of an input: for meshes the format, since each format has its own reader.
 std::string kind_of(const Slot& slot, const std::string& file) {
     const bool is_mesh = slot.kind == Kind::mesh || slot.kind == Kind::cage || slot.kind == Kind::collection;
     if (is_mesh && Path(file).has_extension()) return extension(file).substr(1);
     return slot.kind == Kind::mesh ? "mesh" : to_string(slot.kind);
 }
 
-/// Files that a run needs: those named, what lies beside them under their names, and what JSON files name in turn.
+/// Files that a run needs: the named ones, files of the same name next to them, and files named by JSON files.
 class Closure {
 public:
     explicit Closure(Path kit) : kit_(std::move(kit)) {}
@@ -85,14 +85,14 @@ std::string without_label(const std::string& file) {
     return equals == std::string::npos ? file : file.substr(equals + 1);
 }
 
-Subject subject_of(const JsonValue& one, const Path& kit) {
+Subject subject_of(const JsonValue& test_case, const Path& kit) {
     Subject subject;
-    subject.name = text_in(one, "id");
+    subject.name = text_in(test_case, "id");
     subject.keeps_inside = false;
-    const std::string operation = text_in(one, "operation");
+    const std::string operation = text_in(test_case, "operation");
     Json call(rapidjson::kObjectType);
     auto& a = call.GetAllocator();
-    JsonValue with(one["with"], a);
+    JsonValue with(test_case["with"], a);
     Closure closure(kit);
     const Call declared(find_operation(operation));
     const auto take = [&](const Slot& slot, const std::string& text) {
@@ -111,7 +111,7 @@ Subject subject_of(const JsonValue& one, const Path& kit) {
             for (const auto& file : member.value.GetArray())
                 if (file.IsString()) take(*slot, text_of(file));
     }
-    if (const JsonValue* outputs = find_member(one, "outputs"))
+    if (const JsonValue* outputs = find_member(test_case, "outputs"))
         for (const auto& member : outputs->GetObject()) add_member(with, text_of(member.name), "out/" + text_of(member.value), a);
     add_member(call, "operation", operation, a);
     add_member(call, "with", std::move(with), a);
@@ -164,10 +164,10 @@ std::vector<SubjectFile> files_below(const Path& folder, const std::string& befo
 void add_cases(const Path& project, std::vector<Subject>& subjects) {
     const Path kit = project / "data" / "conformance";
     const Json document = read_json(kit / "conformance.json");
-    for (const auto& one : list_in(document, "cases")) {
-        const int code = one["code"].GetInt();
-        if (is_left_out(text_in(one, "operation")) || (code != 0 && code != 3)) continue;
-        Subject subject = subject_of(one, kit);
+    for (const auto& test_case : list_in(document, "cases")) {
+        const int code = test_case["code"].GetInt();
+        if (is_left_out(text_in(test_case, "operation")) || (code != 0 && code != 3)) continue;
+        Subject subject = subject_of(test_case, kit);
         if (!subject.targets.empty()) subjects.push_back(std::move(subject));
     }
 }

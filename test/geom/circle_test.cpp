@@ -1,4 +1,4 @@
-// Circles, lines, hulls and rectangles that are known.
+// Known circles, lines, hulls and rectangles.
 #include "ostraka/geom/circle.h"
 #include "ostraka/geom/line.h"
 #include "ostraka/geom/planar.h"
@@ -25,7 +25,7 @@ PlaneSegments arc(double from, double to, double radius, const Vector2d& centre,
 
 }  // namespace
 
-TEST(CircleFit, OfArcsWhateverThePiecesAndThePlace) {
+TEST(CircleFit, OfArcsForAnySubdivisionAndPosition) {
     for (const double scale : {1.0, 1e-6, 1e6})
         for (const double to : {2 * M_PI, 3.0, 0.8}) {
             const Vector2d centre = scale * Vector2d(30, -20);
@@ -33,7 +33,7 @@ TEST(CircleFit, OfArcsWhateverThePiecesAndThePlace) {
             EXPECT_NEAR((circle.centre - centre).norm() / scale, 0, 2e-4) << to;
             EXPECT_NEAR(circle.radius / scale, 2, 2e-4) << to;
         }
-    // Cutting every piece in two changes nothing.
+    // Halving every piece changes nothing.
     const auto coarse = arc(0, 2.5, 3, {1, 2}, 12);
     PlaneSegments fine;
     for (const auto& [a, b] : coarse) fine.emplace_back(a, a + 0.3 * (b - a)), fine.emplace_back(a + 0.3 * (b - a), b);
@@ -43,7 +43,7 @@ TEST(CircleFit, OfArcsWhateverThePiecesAndThePlace) {
 }
 
 TEST(CircleFit, IsTheLeastSquares) {
-    // No circle nearby does better, for a figure that is no circle.
+    // No nearby circle fits better, for a figure that is not a circle.
     const PlaneSegments egg{{{2, 0}, {0, 1.5}}, {{0, 1.5}, {-1.6, 0}}, {{-1.6, 0}, {0, -1.4}}, {{0, -1.4}, {2, 0}}};
     const Circle best = fit_circle(egg);
     const double minimum = circle_deviation(egg, best).square;
@@ -52,7 +52,7 @@ TEST(CircleFit, IsTheLeastSquares) {
     for (const double r : {-1e-3, 1e-3}) EXPECT_GT(circle_deviation(egg, {best.centre, best.radius + r}).square, minimum);
 }
 
-TEST(ArcFit, TellsTheRadiusAsFarAsTheArcDoes) {
+TEST(ArcFit, RadiusUncertaintyMatchesTheArc) {
     for (const double degrees : {4.6, 30.0, 90.0, 180.0, 330.0}) {
         const ArcFit fit = fit_arc(arc(0.3, 0.3 + degrees * M_PI / 180, 100, {20, -3}, 400));
         EXPECT_NEAR(fit.angle * 180 / M_PI, degrees, 1e-3 * degrees);
@@ -62,19 +62,19 @@ TEST(ArcFit, TellsTheRadiusAsFarAsTheArcDoes) {
     }
     EXPECT_FALSE(fit_arc(PlaneSegments{}).is_round());
     EXPECT_FALSE(fit_arc(PlaneSegments{{{0, 0}, {1, 1}}}).is_round());
-    // Sides of a square: no arc, however well a circle goes through.
+    // Sides of a square: not an arc, however well a circle fits.
     const PlaneSegments corner{{{1, 0}, {0, 0}}, {{0, 0}, {0, 1}}};
     EXPECT_FALSE(fit_arc(corner).is_round());
     EXPECT_GT(fit_arc(corner).uncertainty(), 0.3);
 }
 
-TEST(ArcFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
-    // Of 200 points with noise s along an arc of length L the curvature has the standard error s sqrt(720 / n) / L^2 where the
-    // arc is short; for any arc the intervals hold the radius in 95 of 100 cases, give or take what 200 draws leave open.
+TEST(ArcFit, IntervalsHaveTheNominalCoverage) {
+    // For 200 points with noise s along a short arc of length L the curvature has the standard error s sqrt(720 / n) / L^2; for
+    // any arc the intervals contain the radius in 95 of 100 cases, up to the error of 200 draws.
     const int n = 200, draws = 200;
     for (const double degrees : {5.0, 20.0, 90.0, 180.0}) {
         const double noise = degrees < 10 ? 0.02 : 0.3, length = 100 * degrees * M_PI / 180;
-        int held = 0;
+        int covered = 0;
         double width = 0;
         for (int draw = 0; draw < draws; ++draw) {
             Random random(11, static_cast<std::uint64_t>(draw));
@@ -86,10 +86,10 @@ TEST(ArcFit, IntervalsHoldTheTruthAsOftenAsTheySay) {
             random.shuffle(points);  // in any order
             const ArcFit fit = fit_arc(points);
             EXPECT_TRUE(fit.is_round());
-            if (fit.radius_low <= 100 && 100 <= fit.radius_high) ++held;
+            if (fit.radius_low <= 100 && 100 <= fit.radius_high) ++covered;
             width += (1 / fit.radius_low - 1 / fit.radius_high) / 2 / draws;
         }
-        EXPECT_GE(held, 0.88 * draws) << degrees;
+        EXPECT_GE(covered, 0.88 * draws) << degrees;
         if (degrees < 30) {
             EXPECT_NEAR(width / (1.96 * noise * std::sqrt(720.0 / n) / length / length), 1, 0.2) << degrees;
         }
@@ -102,7 +102,7 @@ TEST(AngleCovered, ByPoints) {
         return angle_covered(list) * 180 / M_PI;
     };
     EXPECT_NEAR(degrees({0, 120, 240}), 360, 1e-9);
-    EXPECT_NEAR(degrees({0, 5, 10}), 10, 1e-9);  // three points on a short arc are no circle
+    EXPECT_NEAR(degrees({0, 5, 10}), 10, 1e-9);  // three points on a short arc are not a circle
     EXPECT_NEAR(degrees({0, 90, 180}), 180, 1e-9);
     std::vector<double> ring, arcs;
     for (int k = 0; k < 90; ++k) ring.push_back(4 * k), arcs.push_back(k < 45 ? k : k + 135);

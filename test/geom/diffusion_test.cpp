@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 /// On the unit sphere x, y, z are eigenfunctions of the Laplacian with eigenvalue 2: they shrink by exp(-2 t), t = sigma^2 / 2.
-TEST(Diffusion, ShrinksTheCoordinatesOfASphereAsTheHeatEquationSays) {
+TEST(Diffusion, ShrinksTheCoordinatesOfASphereByTheHeatEquation) {
     const double sigma = 0.4;
     double last = 1;
     for (const int levels : {3, 4, 5}) {
@@ -27,7 +27,7 @@ TEST(Diffusion, ShrinksTheCoordinatesOfASphereAsTheHeatEquationSays) {
     EXPECT_LT(last, 3e-3);
 }
 
-TEST(Diffusion, ScalesWithTheMeshAndIsBlindToWhereItStands) {
+TEST(Diffusion, ScalesWithTheMeshAndIgnoresItsPosition) {
     const Mesh unit = build_mesh(test::octahedron_sphere(3));
     const Eigen::MatrixXd expected = Diffusion(unit).smoothed(positions(unit), 0.3, 2);
     for (const double scale : {1e-6, 1e6}) {
@@ -61,7 +61,7 @@ TEST(Diffusion, NothingOvershoots) {
     EXPECT_EQ((Diffusion(mesh).smoothed(spike, 0) - spike).norm(), 0);
 }
 
-TEST(Diffusion, RefusesWhatMakesNoSense) {
+TEST(Diffusion, RefusesInvalidArguments) {
     const Mesh mesh = build_mesh(test::octahedron_sphere(1));
     const Diffusion diffusion(mesh);
     EXPECT_THROW((void)diffusion.smoothed(positions(mesh), -1), Error);

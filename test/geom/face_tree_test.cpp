@@ -14,7 +14,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// All faces one by one, with exact predicates.
+/// Brute force over all faces, with exact predicates.
 std::vector<Index> met_one_by_one(const Mesh& mesh, const Point& p, const Point& q) {
     std::vector<Index> faces;
     for (const Face f : mesh.faces()) {
@@ -26,7 +26,7 @@ std::vector<Index> met_one_by_one(const Mesh& mesh, const Point& p, const Point&
     return faces;
 }
 
-/// Segments of every kind about a mesh.
+/// Segments of every kind around a mesh.
 class SegmentMaker {
 public:
     explicit SegmentMaker(const Mesh& mesh) : mesh_(mesh), box_(bounding_box(mesh)), diagonal_(box_diagonal(mesh)) {}
@@ -110,7 +110,7 @@ std::vector<Named> group_of_all_sizes() {
 
 }  // namespace
 
-TEST(FaceTree, FacesMetAreThoseOfAllFacesOneByOne) {
+TEST(FaceTree, HitFacesEqualBruteForce) {
     for (const auto& [name, soup] : group_of_all_sizes()) {
         const Mesh mesh = build_mesh(soup);
         const FaceTree tree(mesh);
@@ -146,7 +146,7 @@ TEST(FaceTree, IsTheSameForAnyNumberOfThreads) {
         SegmentMaker segments(mesh);
         for (std::size_t i = 0; i < 400; ++i) {
             const auto [from, to] = segments.make(static_cast<int>(i) % SegmentMaker::kinds);
-            const auto faces = tree.met(from, to);  // their order tells of the tree's shape
+            const auto faces = tree.met(from, to);  // their order depends on the tree's structure
             const auto hit = tree.closest(from, Vector(0, 0, 1), 0.2, 3);
             if (thread_count == 1) {
                 met.push_back(faces);
@@ -166,7 +166,7 @@ TEST(FaceTree, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(FaceTree, ManyFacesInOnePlace) {
-    // Codes that are all equal: what is left is halving.
+    // All codes are equal: the tree is built by halving.
     TriangleSoup soup = octahedron_sphere(0);
     for (Index i = 1; i < 400; ++i) soup = joined(std::move(soup), octahedron_sphere(0));
     const Mesh mesh = build_mesh(soup);

@@ -24,7 +24,7 @@ Mesh flat(Index n, double scale = 1, double shift = 0) {
     }));
 }
 
-/// A cube of side 1, one vertex a corner.
+/// A cube of side 1, with one vertex per corner.
 Mesh unit_cube() {
     TriangleSoup soup;
     for (int i = 0; i < 8; ++i) soup.points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
@@ -33,7 +33,7 @@ Mesh unit_cube() {
     return build_mesh(soup);
 }
 
-TEST(Geodesic, StraightOnAPlaneWhateverItsPlaceAndSize) {
+TEST(Geodesic, StraightOnAPlaneAtAnyPositionAndSize) {
     for (const auto& [scale, shift] : {std::pair{1.0, 0.0}, {1e-9, 0.0}, {1e9, 0.0}, {1.0, 1e6}}) {
         const Mesh mesh = flat(9, scale, shift);
         const std::vector<double> distances = geodesic_distances(mesh, {37});
@@ -76,7 +76,7 @@ TEST(Geodesic, FarthestPointOfTheSphereIsPi) {
 }
 
 TEST(Geodesic, AroundANotch) {
-    // An L: the square without its upper right quarter; the way between the tips of the L bends at the inner corner.
+    // An L: the square without its upper right quarter; the path between the tips of the L bends at the inner corner.
     const Mesh square = flat(10);
     TriangleSoup soup = to_soup(square);
     std::erase_if(soup.triangles, [&](const auto& t) {
@@ -113,7 +113,7 @@ TEST(Geodesic, ALimitChangesNothingBelowIt) {
     }
     EXPECT_GT(reached, 20U);
     EXPECT_LT(reached, all.size() / 2);
-    // Of several sources the nearest counts; between two vertices it is the same both ways; edge paths are never shorter.
+    // With several sources the nearest counts; the distance is symmetric; edge paths are never shorter.
     const std::vector<double> a = geodesic_distances(mesh, {0}), b = geodesic_distances(mesh, {17}),
                               c = geodesic_distances(mesh, {400});
     PathSearch paths(mesh);
@@ -150,7 +150,7 @@ TEST(Geodesic, SeparatePartsIsolatedVerticesAndFacesWithoutArea) {
     EXPECT_LE(distances[4], 2 * std::sqrt(2) + 1e-12);
 }
 
-TEST(Geodesic, ErrorsSayWhatIsWrong) {
+TEST(Geodesic, ErrorsNameTheProblem) {
     const Mesh mesh = flat(2);
     EXPECT_THROW((void)geodesic_distances(mesh, {}), Error);
     EXPECT_THROW((void)geodesic_distances(mesh, {9}), Error);
@@ -162,7 +162,7 @@ TEST(Geodesic, ErrorsSayWhatIsWrong) {
     EXPECT_THROW((void)geodesic_distance(mesh, nowhere, vertex_point(0)), Error);
 }
 
-TEST(Geodesic, IsRefusedWhereTheMemoryIsNotThere) {
+TEST(Geodesic, IsRefusedWithoutEnoughMemory) {
     Watch watch;
     watch.memory_limit = resident_memory() + 50e6;
     const WatchScope scope(&watch);

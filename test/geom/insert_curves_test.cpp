@@ -56,7 +56,7 @@ TEST(InsertCurves, CurvesBecomeEdgesAndTheSurfaceStays) {
                     distance(inserted.mesh.point(Vertex(inserted.node_vertex[c][i])), position(mesh, curves[c].points[i])), 0,
                     1e-6);
         }
-        // A single curve has nothing to cross: each piece is an edge.
+        // A single curve has no intersections: each piece is an edge.
         const InsertedCurves alone = insert_curves(mesh, {curves.front()});
         for (std::size_t i = 0; i + 1 < alone.node_vertex[0].size(); ++i) {
             const Index a = alone.node_vertex[0][i], b = alone.node_vertex[0][i + 1];
@@ -76,7 +76,7 @@ TEST(InsertCurves, NothingToInsertChangesNothing) {
     EXPECT_EQ(mesh_checksum(insert_curves(mesh, {edge}).mesh), mesh_checksum(mesh));
 }
 
-TEST(InsertCurves, RefusesPlacesThatDoNotExist) {
+TEST(InsertCurves, RefusesMissingPoints) {
     const Mesh mesh = build_mesh(torus(12, 8));
     SurfaceCurve curve;
     curve.points.push_back(vertex_point(0));
@@ -90,7 +90,7 @@ TEST(InsertCurves, RefusesPlacesThatDoNotExist) {
 TEST(LeftShares, MatchTheAreaOfTheHalfPlane) {
     const Mesh mesh = flat_patch(7);
     const SurfaceSearch search(mesh);
-    // Left of a line that runs towards +y lies what has a smaller x.
+    // Left of a line that runs towards +y, x is smaller.
     const double x = 0.4321;
     const auto shares = left_shares(mesh, {line(mesh, search, Point(x, 0.0001, 0), Point(x, 0.9999, 0))}, 2);
     ASSERT_FALSE(shares.empty());

@@ -51,7 +51,7 @@ TEST(LaplaceSpectrum, OfARectangleFlatAndBent) {
     }
 }
 
-TEST(LaplaceSpectrum, IsOfTheLargestPart) {
+TEST(LaplaceSpectrum, IsComputedOnTheLargestComponent) {
     Mesh two = sheet(0);
     const auto alone = laplace_spectrum(two, 4);
     const Vertex a = two.add_vertex(Point(9, 9, 9)), b = two.add_vertex(Point(9.1, 9, 9)), c = two.add_vertex(Point(9, 9.1, 9));

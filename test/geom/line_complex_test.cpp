@@ -1,4 +1,4 @@
-// Axes that normals meet, of surfaces whose axis is known.
+// Axes that normals intersect, for surfaces with known axis.
 #include "ostraka/geom/line_complex.h"
 #include "ostraka/stats/random.h"
 
@@ -18,7 +18,7 @@ Motion some_motion() {
     return motion;
 }
 
-/// Places and normals of a cone about z with this slope.
+/// Points and normals of a cone about z with this slope.
 std::vector<std::pair<Vector3d, Vector3d>> cone(double slope, double from, double to) {
     std::vector<std::pair<Vector3d, Vector3d>> list;
     for (int i = 0; i < 20; ++i)
@@ -48,7 +48,7 @@ TEST(LineComplex, FindsTheAxisOfAPartOfACone) {
     EXPECT_NEAR(complex.off_axis(), 0, 1e-6);
 }
 
-TEST(LineComplex, MovedIsThatOfWhatIsMoved) {
+TEST(LineComplex, TransformsWithTheNormals) {
     Random random(3);
     std::vector<std::pair<Vector3d, Vector3d>> list;
     for (int k = 0; k < 50; ++k) {
@@ -56,12 +56,12 @@ TEST(LineComplex, MovedIsThatOfWhatIsMoved) {
         list.emplace_back(any(), any().normalized());
     }
     const Motion motion = some_motion();
-    const LineComplex moved = complex_of(list).moved(motion), made = complex_of(list, motion);
-    EXPECT_NEAR(moved.off_axis(), made.off_axis(), 1e-9);
-    EXPECT_NEAR(std::abs(moved.solve().direction.dot(made.solve().direction)), 1, 1e-8);
+    const LineComplex moved = complex_of(list).moved(motion), recomputed = complex_of(list, motion);
+    EXPECT_NEAR(moved.off_axis(), recomputed.off_axis(), 1e-9);
+    EXPECT_NEAR(std::abs(moved.solve().direction.dot(recomputed.solve().direction)), 1, 1e-8);
 }
 
-TEST(LineComplex, TwoPartsShareAnAxisOnlyWhereTheyBelong) {
+TEST(LineComplex, OnlyMatchingPartsShareAnAxis) {
     const LineComplex left = complex_of(cone(0.4, 0, 1)), right = complex_of(cone(0.4, 1, 2));
     LineComplex together = left;
     together.add(right);
@@ -73,7 +73,7 @@ TEST(LineComplex, TwoPartsShareAnAxisOnlyWhereTheyBelong) {
     EXPECT_GT(apart.off_axis(), 0.01);
 }
 
-TEST(LineComplex, OfNothingAndOfAPlaneIsFinite) {
+TEST(LineComplex, IsFiniteForEmptyAndPlanarInput) {
     EXPECT_EQ(LineComplex().off_axis(), 0);
     LineComplex plane;
     for (int k = 0; k < 9; ++k) plane.add(Vector3d(k % 3, k / 3, 0), Vector3d::UnitZ());

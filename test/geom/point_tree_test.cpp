@@ -1,4 +1,4 @@
-// Every answer of the tree against looking at all points.
+// Every answer of the tree against brute force.
 #include "ostraka/geom/point_tree.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ double squared(const Point& p, const Point& q) {
     return x * x + y * y + z * z;
 }
 
-/// Nearest first, of equally near ones the lower index.
+/// Nearest first; in case of a tie, the lower index.
 std::vector<std::pair<double, Index>> ranked(const std::vector<Point>& points, const Point& place) {
     std::vector<std::pair<double, Index>> list;
     for (Index i = 0; i < points.size(); ++i) list.emplace_back(squared(points[i], place), i);
@@ -38,11 +38,11 @@ void compare(const std::vector<Point>& points, const std::vector<Point>& places)
             for (std::size_t k = 0; k < near.size(); ++k) EXPECT_EQ(std::pair(near[k].squared, near[k].index), all[k]) << k;
         }
         const double search_radius = std::sqrt(all[all.size() / 3].first);
-        std::vector<Index> expected, found{5, 5, 5};
+        std::vector<Index> expected, neighbours{5, 5, 5};
         for (Index i = 0; i < points.size(); ++i)
             if (squared(points[i], place) <= search_radius * search_radius) expected.push_back(i);
-        tree.within(place, search_radius, found);
-        EXPECT_EQ(found, expected);
+        tree.within(place, search_radius, neighbours);
+        EXPECT_EQ(neighbours, expected);
         if (all.front().first == 0) continue;
         EXPECT_EQ(tree.nearest(place, 0.999 * std::sqrt(all.front().first)).index, no_index);
     }
@@ -77,25 +77,25 @@ TEST(PointTree, NoPoints) {
     EXPECT_TRUE(std::isinf(tree.nearest(place).squared));
     EXPECT_TRUE(tree.neighbours(place, 3).empty());
     EXPECT_EQ(tree.farthest_squared(place), 0);
-    std::vector<Index> found{1};
-    tree.within(place, 1e300, found);
-    EXPECT_TRUE(found.empty());
+    std::vector<Index> neighbours{1};
+    tree.within(place, 1e300, neighbours);
+    EXPECT_TRUE(neighbours.empty());
 }
 
-TEST(PointTree, NoNeighboursAreAskedFor) { EXPECT_TRUE(PointTree({Point(0, 0, 0)}).neighbours(Point(0, 0, 0), 0).empty()); }
+TEST(PointTree, ZeroNeighboursAreRequested) { EXPECT_TRUE(PointTree({Point(0, 0, 0)}).neighbours(Point(0, 0, 0), 0).empty()); }
 
-TEST(PointTree, TheReachItselfCounts) {
+TEST(PointTree, TheSearchRadiusIsInclusive) {
     const PointTree tree({Point(0, 0, 0), Point(0, 0, 0), Point(3, 0, 0)});
-    std::vector<Index> found;
-    tree.within(Point(0, 0, 0), 0, found);
-    EXPECT_EQ(found, (std::vector<Index>{0, 1}));
-    tree.within(Point(0, 0, 0), 3, found);
-    EXPECT_EQ(found, (std::vector<Index>{0, 1, 2}));
+    std::vector<Index> neighbours;
+    tree.within(Point(0, 0, 0), 0, neighbours);
+    EXPECT_EQ(neighbours, (std::vector<Index>{0, 1}));
+    tree.within(Point(0, 0, 0), 3, neighbours);
+    EXPECT_EQ(neighbours, (std::vector<Index>{0, 1, 2}));
     EXPECT_EQ(tree.nearest(Point(5, 0, 0), 2).index, 2U);
     EXPECT_EQ(tree.nearest(Point(5, 0, 0), 1.9).index, no_index);
 }
 
-TEST(PointTree, PointsAtOnePlaceComeByIndex) {
+TEST(PointTree, CoincidentPointsAreOrderedByIndex) {
     std::vector<Point> points(500, Point(1, 1, 1));
     points[77] = Point(2, 2, 2);
     compare(points, {Point(1, 1, 1), Point(0, 0, 0), Point(2, 2, 2), Point(1.5, 1.5, 1.5)});
@@ -133,10 +133,10 @@ TEST(PointTree, IsMoved) {
     EXPECT_EQ(tree.nearest(Point(9, 0, 0)).index, 1U);
 }
 
-TEST(PointTree, HeapsAtOnePlaceAreNotLookedThroughForEach) {
+TEST(PointTree, ManyCoincidentPointsAreNotSearchedRepeatedly) {
     const std::vector<Point> heap(200'000, Point(1, 2, 3));
     const PointTree tree(heap);
-    for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, not of the heap
+    for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, independent of the number of coincident points
         EXPECT_EQ(tree.nearest(Point(1, 2, 3)).index, 0U);
         const auto two = tree.neighbours(Point(1, 2, 3), 2);
         EXPECT_EQ(std::pair(two[0].index, two[1].index), std::pair(Index{0}, Index{1}));

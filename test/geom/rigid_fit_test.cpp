@@ -26,7 +26,7 @@ Motion some_motion(double scale) {
     return motion;
 }
 
-TEST(RigidFit, FindsTheMotionAtAnySizeAndPlace) {
+TEST(RigidFit, FindsTheMotionAtAnySizeAndPosition) {
     for (const double size : {1e-6, 1.0, 1e6}) {
         for (const double away : {0.0, 1e4}) {
             for (const bool scaled : {false, true}) {
@@ -36,11 +36,11 @@ TEST(RigidFit, FindsTheMotionAtAnySizeAndPlace) {
                 for (const Vector3d& p : from) to.push_back(truth(p));
                 FitOptions options;
                 options.scale = scaled;
-                const Motion found = fit_motion(from, to, {}, options);
-                EXPECT_NEAR((found.rotation - truth.rotation).norm(), 0, 1e-9);
-                EXPECT_NEAR(found.scale, truth.scale, 1e-9);
+                const Motion fitted = fit_motion(from, to, {}, options);
+                EXPECT_NEAR((fitted.rotation - truth.rotation).norm(), 0, 1e-9);
+                EXPECT_NEAR(fitted.scale, truth.scale, 1e-9);
                 for (std::size_t i = 0; i < from.size(); ++i)
-                    EXPECT_LT((found(from[i]) - to[i]).norm(), 1e-9 * (to[i].norm() + size));
+                    EXPECT_LT((fitted(from[i]) - to[i]).norm(), 1e-9 * (to[i].norm() + size));
             }
         }
     }
@@ -89,15 +89,15 @@ TEST(RigidFit, MotionsInvertAndFollowEachOther) {
     EXPECT_LT((a.after(b)(p) - a(b(p))).norm(), 1e-12);
 }
 
-TEST(RigidFit, TakesWhatLeavesTheMotionOpen) {
-    const std::vector<Vector3d> one{{1, 2, 3}}, other{{4, 5, 6}}, same(5, Vector3d(1, 1, 1));
-    EXPECT_LT((fit_motion(one, other)(one[0]) - other[0]).norm(), 1e-12);
+TEST(RigidFit, HandlesPointsThatLeaveTheMotionUndetermined) {
+    const std::vector<Vector3d> single_point{{1, 2, 3}}, other{{4, 5, 6}}, same(5, Vector3d(1, 1, 1));
+    EXPECT_LT((fit_motion(single_point, other)(single_point[0]) - other[0]).norm(), 1e-12);
     FitOptions options;
     options.scale = true;
     const Motion motion = fit_motion(same, same, {}, options);
     EXPECT_NEAR(motion.rotation.determinant(), 1, 1e-12);
     EXPECT_DOUBLE_EQ(motion.scale, 1);
-    EXPECT_THROW((void)fit_motion(one, same), Error);
+    EXPECT_THROW((void)fit_motion(single_point, same), Error);
     EXPECT_THROW((void)fit_motion({}, {}), Error);
 }
 

@@ -9,7 +9,7 @@
 namespace ostraka {
 namespace {
 
-TEST(SubMesh, KeepsWhatIsMarkedWhereItIs) {
+TEST(SubMesh, KeepsMarkedFacesAtTheirPositions) {
     const Mesh mesh = build_mesh(test::moved(test::torus(20, 10), 0.3, {100, 0, 5}));
     std::vector<bool> keep(mesh.number_of_faces());
     std::size_t count = 0;
@@ -24,13 +24,13 @@ TEST(SubMesh, KeepsWhatIsMarkedWhereItIs) {
     for (const Vertex v : part.mesh.vertices()) EXPECT_EQ(part.mesh.point(v), mesh.point(Vertex(part.vertices[v])));
 }
 
-TEST(SubMesh, TheLargestPieceIsThatOfMostArea) {
+TEST(SubMesh, TheLargestComponentHasTheLargestArea) {
     const Mesh mesh = build_mesh(test::joined(test::octahedron_sphere(3), test::moved(test::octahedron_sphere(1), 2, {9, 0, 0})));
     const SubMesh part = keep_faces(mesh, std::vector<bool>(mesh.number_of_faces(), true), true);
     EXPECT_EQ(part.mesh.number_of_faces(), build_mesh(test::octahedron_sphere(1)).number_of_faces());
 }
 
-TEST(SubMesh, NothingMarkedIsNothing) {
+TEST(SubMesh, WithoutMarksIsEmpty) {
     const Mesh mesh = build_mesh(test::octahedron_sphere(1));
     EXPECT_EQ(keep_faces(mesh, std::vector<bool>(mesh.number_of_faces(), false), true).mesh.number_of_faces(), 0U);
     EXPECT_THROW((void)keep_faces(mesh, {true}), Error);

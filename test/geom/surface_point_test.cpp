@@ -13,7 +13,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Two points on each vertex, edge and face of a mesh, given from both ends of edges.
+/// Two points on each vertex, edge and face of a mesh, specified from both ends of edges.
 std::vector<SurfacePoint> points_everywhere(const Mesh& mesh) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> fraction(0.01, 0.99);
@@ -77,7 +77,7 @@ TEST(SurfacePoint, SharesFacesAndEdgesWithItsNeighbours) {
     EXPECT_EQ(shared_face(mesh, face_point(0, {0.2, 0.3, 0.5}), face_point(1, {0.2, 0.3, 0.5})), no_index);
 }
 
-TEST(SurfacePoint, NamesWhatTheMeshDoesNotHave) {
+TEST(SurfacePoint, NamesMissingElements) {
     const Mesh mesh = build_mesh(torus(12, 8));
     const auto refused = [&](const SurfacePoint& p, const std::string& why) {
         try {

@@ -26,7 +26,7 @@ TEST(SurfaceSearch, ClosestPointOfEveryCentroidIsItself) {
     }
 }
 
-TEST(SurfaceSearch, LineThroughASphereMeetsItTwice) {
+TEST(SurfaceSearch, LineThroughASphereIntersectsItTwice) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const SurfaceSearch search(mesh);
     std::mt19937_64 random(7);
@@ -37,7 +37,7 @@ TEST(SurfaceSearch, LineThroughASphereMeetsItTwice) {
         direction = direction / std::sqrt(direction.squared_length());
         const auto hits = search.line_hits(origin, direction, 3);
         ASSERT_EQ(hits.size(), 2U);
-        EXPECT_LT(hits[0].distance * hits[1].distance, 0);  // one each way
+        EXPECT_LT(hits[0].distance * hits[1].distance, 0);  // one in each direction
         EXPECT_LE(std::abs(hits[0].distance), std::abs(hits[1].distance));
         for (const SurfaceHit& hit : hits) {
             EXPECT_NEAR(distance(hit.point, origin + hit.distance * direction), 0, 1e-9);
@@ -46,7 +46,7 @@ TEST(SurfaceSearch, LineThroughASphereMeetsItTwice) {
     }
 }
 
-TEST(SurfaceSearch, InsideIsToldByRays) {
+TEST(SurfaceSearch, InsideIsDeterminedByRays) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> uniform(-1.2, 1.2);
     for (const auto& [scale, shift] : {std::pair(1.0, 0.0), std::pair(1e-6, 0.0), std::pair(1e6, 3e6)}) {
@@ -87,7 +87,7 @@ TEST(SurfaceSearch, CompatibleNormalChoosesTheSheet) {
     EXPECT_FALSE(search.closest_compatible(query, Vector(0, 0, 1), 0, 0.01));
 }
 
-TEST(SurfaceSearch, NearestFacesAreThoseOfAllFacesOneByOne) {
+TEST(SurfaceSearch, NearestFacesEqualBruteForce) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (const auto& [name, soup] : group()) {

@@ -1,4 +1,4 @@
-// Attributes as a table: there and back, edited, damaged; no cell is a formula.
+// Attributes as a table: round trip, edited, damaged; no cell is a formula.
 #include "interchange/attribute_table.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
@@ -28,7 +28,7 @@ TEST(AttributeTable, RoundTripKeepsEverything) {
     const AnnotationSet set = wild_set(mesh);
     const std::string table = attribute_table(set);
     EXPECT_TRUE(is_attribute_table(table));
-    // Onto a set that lost all that the table holds.
+    // Onto a set without the attributes of the table.
     AnnotationSet bare = copy_of(set);
     for (Annotation& annotation : bare.annotations) {
         annotation.attributes.clear();

@@ -12,7 +12,7 @@ using namespace ostraka::example;
 
 namespace {
 
-/// A few random edits of a set: what a person might do.
+/// A few random edits of a set, as a user might make.
 AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     AnnotationSet copy = copy_of(set);
@@ -51,7 +51,7 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
                 break;
             }
             case 8:
-                for (Attribute& attribute : annotation.attributes) {  // what else may differ, one at a time
+                for (Attribute& attribute : annotation.attributes) {  // other possible differences, one at a time
                     Measure& measure = attribute.measure;
                     if (attribute.type == AttributeType::semantic) {
                         attribute.origin += "rule";
@@ -95,17 +95,17 @@ TEST(Difference, IsEmptyExactlyIfFilesAgreeAndIsAntisymmetric) {
     const AnnotationSet set = wild_set(mesh);
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         const AnnotationSet a = edited(set, mesh, seed), b = edited(a, mesh, seed + 1000);
-        const auto there = differences(a, b), back = differences(b, a);
-        EXPECT_EQ(there.empty(), as_file(a, mesh) == as_file(b, mesh));
-        ASSERT_EQ(there.size(), back.size());
-        for (std::size_t i = 0; i < there.size(); ++i) {
-            EXPECT_EQ(there[i].id, back[i].id);
-            EXPECT_EQ(there[i].field, back[i].field);
-            EXPECT_EQ(there[i].before, back[i].after);
-            EXPECT_EQ(there[i].after, back[i].before);
-            EXPECT_EQ(there[i].only_before, back[i].only_after);
-            EXPECT_EQ(there[i].only_after, back[i].only_before);
-            EXPECT_EQ(there[i].kind == Difference::Kind::added, back[i].kind == Difference::Kind::removed);
+        const auto forward = differences(a, b), backward = differences(b, a);
+        EXPECT_EQ(forward.empty(), as_file(a, mesh) == as_file(b, mesh));
+        ASSERT_EQ(forward.size(), backward.size());
+        for (std::size_t i = 0; i < forward.size(); ++i) {
+            EXPECT_EQ(forward[i].id, backward[i].id);
+            EXPECT_EQ(forward[i].field, backward[i].field);
+            EXPECT_EQ(forward[i].before, backward[i].after);
+            EXPECT_EQ(forward[i].after, backward[i].before);
+            EXPECT_EQ(forward[i].only_before, backward[i].only_after);
+            EXPECT_EQ(forward[i].only_after, backward[i].only_before);
+            EXPECT_EQ(forward[i].kind == Difference::Kind::added, backward[i].kind == Difference::Kind::removed);
         }
     }
 }
@@ -232,7 +232,7 @@ TEST(Merge, NamesEachKindOfConflict) {
     EXPECT_EQ(lid->colour, (std::array<int, 3>{1, 1, 1})) << "what one side alone changed is kept";
     EXPECT_EQ(settled.set.find(std::stoi(removed_id)), nullptr);
     EXPECT_EQ(settled.set.find(900)->tag, "yours");
-    // Faces one by one, and both new annotations.
+    // Merged face by face, with both new annotations.
     options = {};
     options.merge_faces = true;
     options.renumber = true;

@@ -1,4 +1,4 @@
-// Edits: each step, what follows from it, what is refused.
+// Edits: each step, its consequences, and refusals.
 #include "ostraka/interchange/edit.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
@@ -123,7 +123,7 @@ TEST(Edit, DuplicateAndRemove) {
     EXPECT_EQ(set.annotations[1].id, 4);
     EXPECT_EQ(set.annotations[1].faces, set.annotations[0].faces);
     EXPECT_TRUE(differences(set, copy_of(set)).empty());
-    // What else is asked for is done to the copy.
+    // Other changes apply to the copy.
     const AnnotationSet before = copy_of(set);
     const auto notes = edit_annotations(
         mesh, set, edits(R"({"annotation": 2, "duplicate": true, "id": 9, "tag": "twin", "colour": [1, 2, 3]})"), "edits");
@@ -195,7 +195,7 @@ TEST(RenameUnit, UnitsOfLengthsFollowAndNoNumberChanges) {
     EXPECT_EQ(units(), (std::vector<std::string>{"cm^2", "cm", "1/cm", "g", "mmol"}));
     EXPECT_EQ(*set.annotations[1].attributes[2].measure.value, 4);
     EXPECT_EQ(set.annotations[1].attributes[0].descriptor.values, std::vector<double>{4});
-    // None, and back: what is computed from the coordinates is known again.
+    // No unit, and back: values computed from the coordinates have a unit again.
     rename_unit(mesh, set, "");
     EXPECT_EQ(units(), (std::vector<std::string>{"", "", "1/cm", "g", "mmol"}));
     rename_unit(mesh, set, "m");

@@ -1,4 +1,4 @@
-// GLB with features: there and back, other meshes, the rules of the extensions, the public validator, damage.
+// GLB with features: round trip, other meshes, the rules of the extensions, the public validator, damage.
 #include "ostraka/interchange/feature_glb.h"
 #include "mutate.h"
 #include "ostraka/annotation/curves.h"
@@ -117,7 +117,7 @@ TEST(FeatureGlb, ConformsToTheFormat) {
         EXPECT_LE(word_at(glb, at + 4 * set.annotations.size()), values["byteLength"].GetUint());
     }
     EXPECT_EQ(columns, described.MemberCount());
-    // Features: each id that occurs has a row, counts are right, 16 bit values stand four bytes apart.
+    // Features: each id that occurs has a row, counts are right, 16 bit values are four bytes apart.
     for (const auto& primitive : document["meshes"][0]["primitives"].GetArray())
         for (const auto& id : primitive["extensions"]["EXT_mesh_features"]["featureIds"].GetArray()) {
             const std::string name = "_FEATURE_ID_" + std::to_string(id["attribute"].GetUint());
@@ -165,7 +165,7 @@ TEST(FeatureGlb, TheSmallestRegionLiesInTheFirstSet) {
     const Json document = json_of(written(mesh, set));
     const JsonValue& ids = document["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"];
     EXPECT_EQ(ids.Size(), 3U);
-    // Regions side by side need one set; vertices on their border are doubled, others are not.
+    // Disjoint regions need one set; vertices on their border are duplicated, others are not.
     AnnotationSet halves;
     for (const Index half : {0U, 1U}) {
         Annotation region;
@@ -239,7 +239,7 @@ TEST(FeatureGlb, InvalidFilesAreRefusedWithTheirPosition) {
 }
 
 TEST(FeatureGlb, ThePublicValidatorFindsNoError) {
-    // The Khronos validator is no package of the distribution: this runs where someone has put it.
+    // The Khronos validator is not a package of the distribution: this test runs if it is installed.
     const char* const module = std::getenv("OSTRAKA_GLTF_VALIDATOR");
     if (module == nullptr || !std::filesystem::exists(module))
         GTEST_SKIP() << "set OSTRAKA_GLTF_VALIDATOR to the folder of the npm package gltf-validator";
@@ -265,7 +265,7 @@ TEST(FeatureGlb, DamagedFilesAreRefusedWithAMessage) {
         try {
             PlaceOptions skip;
             skip.skip_far = seed % 4 == 1;
-            // Most damage falls into the binary part: half of the copies are hurt in the JSON only.
+            // Most damage falls into the binary part: half of the copies are damaged in the JSON only.
             const std::string json = glb.substr(20, word_at(glb, 12));
             const std::string copy = seed % 3 == 0 ? test::mutate(glb, seed) : with_json(glb, test::mutate(json, seed));
             read_feature_glb(copy, seed % 2 == 0 ? mesh : other, "file", skip);
@@ -318,10 +318,10 @@ TEST(FeatureGlb, FreeOutlinesRoundTripExactly) {
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
     for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read.set.annotations.at(i).curves, set.annotations[i].curves);
     EXPECT_EQ(written(mesh, read.set), glb);
-    // Another tool that renames a feature is believed: the faces are then those that the file shows.
+    // A feature renamed by another tool is accepted: its faces are then those in the file.
     const std::string renamed = with(glb, "\"tag\":\"part 0\"", "\"tag\":\"past 0\"");
     EXPECT_EQ(read_feature_glb(renamed, mesh, "file").set.annotations.size(), 2U);
-    // Places beyond the mesh are refused by name.
+    // Elements that the mesh does not have are refused by name.
     const std::size_t at = glb.find("\"face\":");
     ASSERT_NE(at, std::string::npos);
     const std::string digits_ = glb.substr(at + 7, glb.find_first_of(",}", at) - at - 7);

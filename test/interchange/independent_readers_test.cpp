@@ -1,4 +1,4 @@
-// What we write, read by programs that are not ours.
+// Written files, read by independent programs.
 #include "interchange/attribute_table.h"
 #include "ostraka/interchange/landmarks.h"
 #include "scratch.h"
@@ -36,7 +36,7 @@ TEST(IndependentReaders, PythonReadsTheTable) {
     const AnnotationSet set = wild_set(mesh);
     const Scratch scratch;
     const Path table = scratch.file("a.csv", attribute_table(set));
-    // One row an attribute or an annotation without any, all as wide as the header, no cell that begins like a formula.
+    // One row per attribute, or per annotation without attributes, all as wide as the header, no cell that begins like a formula.
     std::size_t rows = 1;
     for (const Annotation& annotation : set.annotations) rows += std::max<std::size_t>(annotation.attributes.size(), 1);
     const Path script = scratch.file("check.py", R"(

@@ -214,7 +214,7 @@ TEST(InterchangeCommand, TablesKeepLongTexts) {
     ASSERT_EQ(edited.code, 0) << edited.err;
     EXPECT_NE(edited.out.find(text), std::string::npos) << edited.out;
     EXPECT_NE(folder.run("list", {"b.ant.json"}).out.find(text), std::string::npos);
-    // A long cell widens no other row.
+    // A long cell does not widen other rows.
     const auto tagged = folder.run("edit", {"a.ant.json", "c.ant.json"}, "--annotation 3 --tag " + text + text);
     const auto list = folder.run("list", {"c.ant.json"});
     EXPECT_NE(list.out.find(text + text), std::string::npos);
@@ -241,7 +241,7 @@ TEST(InterchangeCommand, DiffAndMerge) {
     EXPECT_NE(conflict.out.find("1 conflict"), std::string::npos) << conflict.out;
     EXPECT_EQ(conflict.out.find("--renumber"), std::string::npos) << conflict.out;
     EXPECT_FALSE(std::filesystem::exists(folder / "n.ant.json"));
-    // Two annotations under one id: the way out is named.
+    // Two annotations with one id: the remedy is named.
     for (const char* name : {"ours", "theirs"}) {
         const std::string file = std::string(name) + "2.ant.json";
         ASSERT_EQ(
@@ -261,7 +261,7 @@ TEST(InterchangeCommand, RealSkullsWithTheirLandmarks) {
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real landmarks: " << data << " is not there";
     const Scratch scratch;
     for (const std::string name : {"PWK", "LEWES"}) {
-        // The scans are not manifold: landmarks go onto what repair makes of them.
+        // The scans are not manifold: landmarks are imported onto the repaired meshes.
         const std::string mesh = (scratch / (name + ".ply")).string(), source = (data / (name + ".ply")).string(),
                           points = (data / "LMs" / (name + ".mrk.json")).string(), out = (scratch / "a.ant.json").string();
         (void)run_command("mesh repair " + source + " " + mesh);

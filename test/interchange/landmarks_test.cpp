@@ -26,7 +26,7 @@ LandmarkSet wild_landmarks() {
     return set;
 }
 
-/// What the format's own limits make of a name.
+/// A name after the format's own restrictions.
 std::string kept_name(const std::string& name, LandmarkFormat format) {
     std::string result;
     for (std::size_t i = 0; i < name.size();) {
@@ -99,7 +99,7 @@ TEST(Landmarks, AnatomicalSpacesAreConverted) {
         EXPECT_EQ(landmarks_from_text(written(set, format, ras), format, "f", ras).landmarks[0].position,
                   set.landmarks[0].position);
     }
-    // Old tables: a number for the space, or none, which is RAS.
+    // Old tables: a number for the space, or none, which means RAS.
     const std::string row = "\nvtkMRML_0,1,2,3,0,0,0,1,1,1,0,a,,\n";
     const auto first = [](const std::string& text) {
         return landmarks_from_text(text, LandmarkFormat::fcsv, "f").landmarks.at(0).position[0];
@@ -192,10 +192,10 @@ TEST(Landmarks, FarPointsAreRefusedOrSkipped) {
     ASSERT_EQ(placed.set.annotations.size(), 1U);
     EXPECT_NEAR(placed.placements[0].to_surface, 0.001, 1e-9);
     EXPECT_EQ(placed.set.notes.size(), 1U);
-    // The other space would fit: said so.
+    // The other space would fit, which the message reports.
     for (Landmark& landmark : set.landmarks) landmark.position = {-101, -200, 0};
     EXPECT_NE(message([&] { place_landmarks(mesh, set, "file"); }).find("--mesh-space"), std::string::npos);
-    // Nearest of equally near vertices: the lower index.
+    // In case of a tie, the lower index.
     const Mesh tile = grid(2);
     LandmarkSet middle;
     middle.landmarks = {{"m", {0.5, 0.5, 0}, {}}};

@@ -1,4 +1,4 @@
-// The prototype's .ant and .fct: there and back, what is lost, damage.
+// The prototype's .ant and .fct: round trip, losses, damage.
 #include "interchange/prototype_files.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
@@ -75,7 +75,7 @@ TEST(PrototypeFiles, FacetsRoundTrip) {
         EXPECT_EQ(read.annotations[i].faces, regions[i]->faces);
         EXPECT_EQ(read.annotations[i].attributes[0].note, i + 2 == regions.size() ? "fracture" : "external");
     }
-    // Borders that run the other way round: the inner vertices tell the side.
+    // Borders with reversed direction: the inner vertices determine the side.
     std::string turned;
     bool border = false;
     for (std::size_t at = 0; at < text.size();) {

@@ -1,4 +1,4 @@
-// W3C Web Annotation: there and back by indices, by places on other meshes, what others write, damage.
+// W3C Web Annotation: round trip by indices, by positions on other meshes, files of other tools, damage.
 #include "ostraka/interchange/web_annotation.h"
 #include "mutate.h"
 #include "ostraka/annotation/outline.h"
@@ -28,7 +28,7 @@ Mesh shuffled(const Mesh& mesh) {
     return build_mesh(other);
 }
 
-/// The places of the corners of a region's faces, in an order that does not depend on indices.
+/// The positions of the corners of a region's faces, in an order that does not depend on indices.
 std::vector<std::array<Point, 3>> triangles_of(const Mesh& mesh, const Annotation& annotation) {
     std::vector<std::array<Point, 3>> triangles;
     for (const Index f : annotation.faces) {
@@ -138,16 +138,16 @@ TEST(WebAnnotation, AnotherResolutionKeepsPlacesAndAreas) {
         if (centroid(mesh, f).z() > 0.5) cap.faces.push_back(f);
     set.annotations.push_back(cap);
     const std::string text = web_annotations(mesh, set, "m.ply", {});
-    const double there = area_of(mesh, cap);
+    const double original_area = area_of(mesh, cap);
     for (const int level : {4, 6}) {
-        // Turned, so that no vertex is where one was.
+        // Rotated, so that no vertex coincides with an old one.
         TriangleSoup soup = to_soup(spheres(level));
         for (auto& p : soup.points) p = {0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]};
         const Mesh other = build_mesh(soup);
         const PlacedAnnotations read = read_web_annotations(text, other, "file");
         EXPECT_EQ(read.placements[0].how, "places");
         EXPECT_GT(read.placements[0].to_vertex, 0);
-        EXPECT_NEAR(area_of(other, read.set.annotations[0]), there, 0.05 * there) << level;
+        EXPECT_NEAR(area_of(other, read.set.annotations[0]), original_area, 0.05 * original_area) << level;
     }
 }
 

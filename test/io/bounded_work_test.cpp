@@ -1,4 +1,4 @@
-// Files that are small, or plain, and would take very much time or memory if each pair were looked at.
+// Small or simple files that would take excessive time or memory if each pair were tested.
 #include "ostraka/core/error.h"
 #include "ostraka/files/file.h"
 #include "ostraka/io/diagnose.h"
@@ -18,7 +18,7 @@ namespace {
 using Place = std::array<double, 3>;
 
 Place on_circle(double turn, double height = 0) {
-    // In a plane that is askew, so that no coordinate is the same for all.
+    // In an oblique plane, so that no coordinate is constant.
     const double x = std::cos(2 * M_PI * turn), y = std::sin(2 * M_PI * turn);
     return {2 * x / 3 - y / 3 + height, 2 * x / 3 + 2 * y / 3, -x / 3 + 2 * y / 3};
 }
@@ -80,7 +80,7 @@ TEST(BoundedWork, AFanAroundOneVertexIsSearchedInFull) {
         EXPECT_TRUE(intersections.complete);
         EXPECT_TRUE(intersections.pairs.empty());
     }
-    // A triangle folded into the fan meets those whose directions it covers.
+    // A triangle folded into the fan intersects those whose directions it covers.
     TriangleSoup folded = fan(1000, 0.4);
     folded.points.push_back(on_circle(0.1001, 0.001));
     folded.points.push_back(on_circle(0.1039, -0.001));
@@ -91,7 +91,7 @@ TEST(BoundedWork, AFanAroundOneVertexIsSearchedInFull) {
     for (const auto& [a, b] : intersections.pairs) EXPECT_EQ(b, 1000U);
 }
 
-TEST(BoundedWork, PairsAroundAVertexAreThoseThatMeetAlone) {
+TEST(BoundedWork, PairsAroundAVertexIntersectOnlyElsewhere) {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     TriangleSoup soup{{{0, 0, 0}}, {}};

@@ -1,4 +1,4 @@
-// `mesh convert` as people run it: right, wrong and impossible input.
+// `mesh convert` as users run it: valid, invalid and impossible input.
 #include "io_examples.h"
 #include "ostraka/files/json.h"
 #include "scratch.h"
@@ -77,11 +77,11 @@ TEST(ConvertCommand, PolygonsOfAnotherFileAreRestored) {
         EXPECT_EQ(back.extras.face_labels,
                   output.extension() == ".ply" ? (std::vector<std::int32_t>{4, 9}) : std::vector<std::int32_t>());
     }
-    // Formats of triangles keep them, and say so.
+    // Formats of triangles keep triangles, and a note reports it.
     const auto cut = run_command(words(bent, scratch / "b.stl", "--polygons-of " + input.string()));
     EXPECT_EQ(cut.code, 0);
     EXPECT_NE(cut.err.find("they are triangulated"), std::string::npos) << cut.err;
-    // Of another mesh.
+    // Polygons of another mesh.
     for (const char* obj :
          {"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\n",
           "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 2 5 6 3\nf 1 2 3 4\n"}) {

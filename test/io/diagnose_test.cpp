@@ -123,7 +123,7 @@ TEST(Diagnose, CubesThatShareAnEdgeOrAVertex) {
     EXPECT_EQ(vertex.nonmanifold_edges, 0u);
     EXPECT_EQ(vertex.nonmanifold_vertices, 1u);
     EXPECT_FALSE(sound(vertex));
-    // Touching without being joined is no defect: vertices at one place count as joined.
+    // Touching without being joined is not a defect: coincident vertices count as joined.
     const auto touching = diagnose(both(cube(), cube({1, 1, 1})));
     EXPECT_TRUE(sound(touching));
     EXPECT_EQ(touching.duplicate_vertices, 1u);
@@ -164,7 +164,7 @@ TEST(Diagnose, BadIndicesAndCoordinatesAreRefused) {
     EXPECT_THROW(diagnose({{{0, 0, 1e200}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), Error);
 }
 
-// The law: pairs found through the tree are those that all pairs give by the library's exact test, away from shared places.
+// The pairs found with the tree equal those of an exact test of all pairs, away from shared elements.
 TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
     std::mt19937 random(7);
     for (int trial = 0; trial < 20; ++trial) {
@@ -205,8 +205,8 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
                 } else if (shared == 3) {
                     EXPECT_TRUE(listed);
                 } else {
-                    // The part shared is more than what joins them if it holds a point away from it: a proper crossing shows
-                    // between one triangle and the other shrunk a little away from the shared corners.
+                    // The intersection exceeds the shared elements if it contains another point: a proper crossing exists between
+                    // one triangle and the other, shrunk slightly away from the shared corners.
                     if (listed) {
                         EXPECT_TRUE(
                             CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])));

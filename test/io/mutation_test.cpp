@@ -1,4 +1,4 @@
-// Damaged files end in a mesh or in an error with words; never in a crash, a hang or a memory bill (run under sanitizers).
+// Damaged files give a mesh or an error with a message; never a crash, a hang or excessive memory (run under sanitizers).
 #include "io_examples.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
@@ -25,23 +25,23 @@ std::string big_endian_ply() {
     return bytes;
 }
 
-/// One file of each kind, small enough that a mutation hits something that matters.
+/// One file of each kind, small enough that a mutation affects relevant bytes.
 std::vector<std::pair<std::string, std::string>> base_files() {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
     std::vector<std::pair<std::string, std::string>> files;
-    const auto made = [&](const std::string& name, Encoding encoding, const MeshExtras& extras) {
+    const auto add_file = [&](const std::string& name, Encoding encoding, const MeshExtras& extras) {
         write_triangles(scratch / name, soup, extras, {encoding, "comment"});
         files.emplace_back(name, read_file(scratch / name));
     };
-    made("binary.ply", Encoding::binary, full_extras(soup));
-    made("ascii.ply", Encoding::ascii, full_extras(soup));
-    made("plain.ply", Encoding::binary, {});
-    made("full.obj", Encoding::binary, full_extras(soup));
-    made("full.off", Encoding::binary, full_extras(soup));
-    made("plain.off", Encoding::binary, {});
-    made("binary.stl", Encoding::binary, {});
-    made("ascii.stl", Encoding::ascii, {});
+    add_file("binary.ply", Encoding::binary, full_extras(soup));
+    add_file("ascii.ply", Encoding::ascii, full_extras(soup));
+    add_file("plain.ply", Encoding::binary, {});
+    add_file("full.obj", Encoding::binary, full_extras(soup));
+    add_file("full.off", Encoding::binary, full_extras(soup));
+    add_file("plain.off", Encoding::binary, {});
+    add_file("binary.stl", Encoding::binary, {});
+    add_file("ascii.stl", Encoding::ascii, {});
     files.emplace_back("big.ply", big_endian_ply());
     files.emplace_back(
         "strips.ply",

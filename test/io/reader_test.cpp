@@ -1,4 +1,4 @@
-// Each format's readings with known answers, and what is refused with which words.
+// Known contents of each format, and the messages of refusals.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/ply.h"

@@ -89,7 +89,7 @@ TEST(MeshInfoCommand, DistinguishesSoundFromDefective) {
 
 TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
     const Folder folder;
-    // Every triangle on corners of its own, each off its place by up to a thousandth of the radius.
+    // Every triangle with separate corners, each displaced by up to a thousandth of the radius.
     const TriangleSoup intact = sphere();
     TriangleSoup torn;
     std::uint32_t state = 1;
@@ -120,7 +120,7 @@ TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
     const Json report = parse_json(repaired.out, "stdout");
     EXPECT_TRUE(report["result"]["after"]["closed"].GetBool()) << repaired.err;
     EXPECT_EQ(report["result"]["after"]["component_count"].GetInt(), 1);
-    // Holes are no cracks.
+    // Holes are not cracks.
     TriangleSoup open = intact;
     open.triangles.resize(open.triangles.size() - 30);
     write_off(folder.file("open.off"), open);
@@ -231,7 +231,7 @@ TEST(MeshRepairCommand, EveryDefectiveFileIsRepairedOrRefused) {
                 const auto& after = report["result"]["after"];
                 EXPECT_EQ(report["result"]["sound"].GetBool(), r.code == 0) << file;
                 EXPECT_TRUE(after["manifold"].GetBool() && after["oriented"].GetBool()) << file;
-                EXPECT_NO_THROW({  // the reader takes it as a manifold
+                EXPECT_NO_THROW({  // the reader accepts it as a manifold
                     const auto mesh = read_mesh(out);
                     EXPECT_EQ(mesh.mesh.number_of_faces(), after["triangles"].GetUint()) << file;
                 }) << file;

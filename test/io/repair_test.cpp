@@ -17,7 +17,7 @@ Place place(const Mesh& mesh, Index v) {
     return {p.x(), p.y(), p.z()};
 }
 
-/// Laws of every repair: maps in range, there and back, and elements at the places of the old ones.
+/// Properties of every repair: maps in range and consistent, and elements at the positions of the old ones.
 void check_maps(const TriangleSoup& old, const RepairResult& r) {
     ASSERT_EQ(r.vertex_map.size(), old.points.size());
     ASSERT_EQ(r.face_map.size(), old.triangles.size());
@@ -76,7 +76,7 @@ TEST(Repair, SoundMeshComesOutUnchanged) {
     }
 }
 
-TEST(Repair, FlippedTrianglesAreTurnedBackAtAnyScaleAndPlace) {
+TEST(Repair, FlippedTrianglesAreReversedAtAnyScaleAndPosition) {
     for (const double scale : {1e-12, 1.0, 1e12})
         for (const double far : {0.0, 1e5}) {
             auto s = moved(sphere(), scale, {far * scale, far * scale, 0});
@@ -90,7 +90,7 @@ TEST(Repair, FlippedTrianglesAreTurnedBackAtAnyScaleAndPlace) {
         }
 }
 
-TEST(Repair, InsideOutIsTurnedAndCavitiesStay) {
+TEST(Repair, InsideOutMeshesAreReversedAndCavitiesStay) {
     auto inner = cube({0.25, 0.25, 0.25}, 0.5);
     for (std::size_t t = 0; t < 12; ++t) flip(inner, t);
     EXPECT_DOUBLE_EQ(repair(inner).after.volume, 0.125);
@@ -123,7 +123,7 @@ TEST(Repair, TriangleSoupIsJoined) {
     const auto cracked = repair(loose, {}, exact);
     EXPECT_FALSE(cracked.after.closed());
     EXPECT_TRUE(repair(loose).after.defects().empty()) << "cracks are far narrower than edges";
-    // What it says helps.
+    // The suggested distance closes the cracks.
     const std::string remedy = "--merge-distance ";
     const std::string& note = cracked.notes.front();
     ASSERT_NE(note.find(remedy), std::string::npos) << note;
@@ -135,8 +135,8 @@ TEST(Repair, TriangleSoupIsJoined) {
     EXPECT_EQ(joined.mesh.number_of_vertices(), sphere().points.size());
 }
 
-// Points of one place, up to 3.5 times `noise` apart, are told from those of the next where edges are about as short.
-TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
+// Copies of a point, up to 3.5 times `noise` apart, are distinguished from neighbouring points if edges are about as short.
+TEST(Repair, CracksAreClosedWhereEdgesAreEquallyShort) {
     auto intact = sphere(20, 40);
     const double noise = 1e-5 * diagnose(intact).diagonal;
     for (std::size_t t = 100; t < 1400; t += 130) {  // an end of an edge comes close to the other
@@ -169,7 +169,7 @@ TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
     }
 }
 
-TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallComeApart) {
+TEST(Repair, CubesThatShareAnEdgeAVertexOrAWallAreSeparated) {
     for (const auto& s :
          {welded(both(cube(), cube({1, 1, 0}))), welded(both(cube(), cube({1, 1, 1}))), welded(both(cube(), cube({1, 0, 0})))}) {
         const auto r = repair(s);
@@ -268,12 +268,12 @@ TEST(Repair, VerdictOnStlIsThatOfTheFile) {
     EXPECT_EQ(r.after.components.size(), 2u);
     EXPECT_NEAR(r.after.volume, 2, 1e-4);
     EXPECT_NE(r.notes.back().find("moved apart"), std::string::npos);
-    // Single precision is taken into account: far from the origin vertices fall together, and that is seen.
+    // Single precision is taken into account: far from the origin vertices coincide, and the check reports it.
     auto far = repair(moved(sphere(), 1e-6, {100, 100, 100}));
     ASSERT_TRUE(far.after.defects().empty());
     prepare_for_stl(far);
     EXPECT_FALSE(far.after.defects().empty());
-    // Where nothing falls together nothing moves.
+    // If no vertices coincide, nothing moves.
     auto sound = repair(cube());
     prepare_for_stl(sound);
     EXPECT_TRUE(sound.after.defects().empty());
@@ -523,13 +523,13 @@ TEST(Repair, ColoursLabelsAndTextureFollow) {
     for (Index f = 0; f < r.mesh.number_of_faces(); ++f) {
         EXPECT_EQ(r.extras.face_labels[f], static_cast<std::int32_t>(r.face_source[f]));
         const auto new_corners = corners(r.mesh, Face(f));
-        for (std::size_t k = 0; k < 3; ++k)  // texture stays with its corner even where the triangle was turned over
+        for (std::size_t k = 0; k < 3; ++k)  // texture stays with its corner even if the triangle was flipped
             EXPECT_EQ(static_cast<Index>(r.extras.corner_texture[3 * f + k][0]), r.vertex_source[new_corners[k]]);
     }
     check_maps(s, r);
 }
 
-// The law on random trouble: whatever comes in, an oriented manifold comes out, and the maps are right.
+// Random defects: any input gives an oriented manifold with valid maps.
 TEST(Repair, RandomSoupsBecomeOrientedManifolds) {
     std::mt19937 random(11);
     for (int trial = 0; trial < 300; ++trial) {
@@ -589,7 +589,7 @@ TEST(Repair, SlitIsClosedHoweverLong) {
     auto s = sphere(20, 40);
     const Index v = s.triangles[300][0];
     auto far = s.points[v];
-    far[2] += 1e-4;  // a vertex doubled and one of its fans moved a little: a slit
+    far[2] += 1e-4;  // a duplicated vertex with one of its fans slightly moved: a slit
     const auto copy = static_cast<Index>(s.points.size());
     s.points.push_back(far);
     int seen = 0;

@@ -1,4 +1,4 @@
-// What is written is read back to the bit, as far as the format holds it; what it does not hold is said.
+// Written data are read back to the bit if the format stores them; a note reports other data.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
 #include "scratch.h"
@@ -11,7 +11,7 @@ namespace {
 
 TriangulatedSoup reread(const Path& file) { return triangulate(read_polygons(file)); }
 
-/// Texture coordinates of every corner, wherever they are kept: where each vertex has one corner the two are the same.
+/// Texture coordinates of every corner, per vertex or per corner: if each vertex has one corner the two are equivalent.
 std::vector<std::array<float, 2>> texture_of_corners(const TriangleSoup& soup, const MeshExtras& extras) {
     if (extras.vertex_texture.empty()) return extras.corner_texture;
     std::vector<std::array<float, 2>> list;
@@ -21,9 +21,9 @@ std::vector<std::array<float, 2>> texture_of_corners(const TriangleSoup& soup, c
 }
 
 std::vector<TriangleSoup> soups() {
-    TriangleSoup one;
-    one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    one.triangles = {{0, 1, 2}};
+    TriangleSoup triangle;
+    triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.triangles = {{0, 1, 2}};
     TriangleSoup awkward = octahedron();  // extreme numbers, isolated vertices, a corner order that starts anywhere
     awkward.points[0] = {5e-324, -1.7976931348623157e308, 0.1};
     awkward.points[1] = {1e15 + 0.125, -1e-300, 1.0 / 3};
@@ -31,7 +31,7 @@ std::vector<TriangleSoup> soups() {
     for (auto& [a, b, c] : awkward.triangles) std::swap(a, b), std::swap(b, c);
     TriangleSoup fans = octahedron();  // not a manifold
     fans.triangles.push_back({0, 3, 2});
-    return {one, octahedron(), torus(20, 31), awkward, fans};
+    return {triangle, octahedron(), torus(20, 31), awkward, fans};
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ TEST(RoundTrip, OffKeepsGeometryColoursAndTexture) {
     }
 }
 
-TEST(RoundTrip, StlKeepsWhatSinglePrecisionHolds) {
+TEST(RoundTrip, StlKeepsSinglePrecision) {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
     for (const Encoding encoding : {Encoding::binary, Encoding::ascii}) {

@@ -32,10 +32,10 @@ inline TriangleSoup both(TriangleSoup a, const TriangleSoup& b) {
 /// Merges exactly equal points.
 inline TriangleSoup welded(const TriangleSoup& s) {
     TriangleSoup r;
-    std::map<Place, Index> known;
+    std::map<Place, Index> index_of;
     std::vector<Index> to;
     for (const auto& p : s.points) {
-        const auto [at, fresh] = known.emplace(p, static_cast<Index>(r.points.size()));
+        const auto [at, fresh] = index_of.emplace(p, static_cast<Index>(r.points.size()));
         if (fresh) r.points.push_back(p);
         to.push_back(at->second);
     }

@@ -1,4 +1,4 @@
-// Tetrahedral meshes: their surface, and what becomes of them when it moves.
+// Tetrahedral meshes: their surface, and their deformation with it.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
@@ -67,7 +67,7 @@ TEST(Tetrahedra, HaveTheirSurfaceOutward) {
     EXPECT_TRUE(CGAL::is_closed(file.mesh));
     EXPECT_NEAR(volume(file.mesh), 1, 1e-14);
     EXPECT_EQ(file.extras.tetrahedra.size(), 6U);
-    // Vertices keep their numbers, and triangles that were named their references.
+    // Vertices keep their numbers, and listed triangles their references.
     EXPECT_EQ(file.mesh.point(Vertex(6)), Point(1, 1, 1));
     EXPECT_EQ(std::count(file.extras.face_labels.begin(), file.extras.face_labels.end(), 7), 1);
     EXPECT_EQ(std::count(file.extras.face_labels.begin(), file.extras.face_labels.end(), 9), 1);
@@ -91,7 +91,7 @@ TEST(Tetrahedra, AreTheSameThroughBothFormats) {
     EXPECT_NE(notes[0].find("6 tetrahedra"), std::string::npos);
 }
 
-TEST(Tetrahedra, AnnotationsOfTheirSurfaceGoToAndFro) {
+TEST(Tetrahedra, AnnotationsOfTheirSurfaceAreTransferredBothWays) {
     const Scratch scratch;
     const MeshFile file = read_mesh(scratch.file("cube.mesh", cube));
     AnnotationSet set;

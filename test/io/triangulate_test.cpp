@@ -1,4 +1,4 @@
-// Cutting polygons: the triangles cover the polygon once, name no vertex twice and keep its orientation.
+// Triangulation of polygons: the triangles cover the polygon once, name no vertex twice and keep its orientation.
 #include "io_examples.h"
 #include "polygon_cutter_examples.h"
 
@@ -35,7 +35,7 @@ Point3 area_of(const std::vector<Point3>& points, const std::vector<Index>& corn
 
 double length(const Point3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
-/// A simple polygon in a plane: count, orientation and the sum of areas say that it is covered exactly once.
+/// A simple polygon in a plane: count, orientation and the sum of areas show that it is covered exactly once.
 void expect_exact_cover(const std::vector<Point3>& points, const std::string& name) {
     SCOPED_TRACE(name);
     const PolygonSoup soup = polygon(points);
@@ -57,7 +57,7 @@ void expect_exact_cover(const std::vector<Point3>& points, const std::string& na
 }
 
 std::vector<Point3> placed(const std::vector<std::array<double, 2>>& flat, bool mirrored, double scale, const Point3& shift) {
-    // Two orthonormal directions of a plane that stands askew.
+    // Two orthonormal directions of an oblique plane.
     const Point3 u{2.0 / 3, -1.0 / 3, 2.0 / 3}, v{2.0 / 3, 2.0 / 3, -1.0 / 3};
     std::vector<Point3> points;
     for (const auto& p : flat) {
@@ -116,7 +116,7 @@ TEST(Triangulate, RepeatedCornersGiveNoRepeatedVertices) {
 }
 
 TEST(Triangulate, APolygonWithABridgeToItsHoleIsCoveredOnce) {
-    // A square ring whose outer and inner outline are joined by one edge run through twice.
+    // A square ring whose outer and inner outline are joined by an edge that is traversed twice.
     PolygonSoup soup = polygon({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}});
     soup.corners = {0, 1, 2, 3, 0, 4, 5, 6, 7, 4};
     soup.polygon_begin = {0, 10};

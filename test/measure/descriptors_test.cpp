@@ -35,7 +35,7 @@ TEST(OrientedBox, IsExactOnBoxes) {
     }
 }
 
-/// The least volume over many directions, each with its smallest rectangle found by brute force over turns.
+/// The minimum volume over many directions, each with its smallest rectangle by brute force over rotations.
 double min_box_by_search(const std::vector<std::array<double, 3>>& points) {
     Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -47,7 +47,7 @@ double min_box_by_search(const std::vector<std::array<double, 3>>& points) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     double best = std::numeric_limits<double>::infinity();
-    for (int start = 0; start < 60; ++start) {  // from random orientations, downhill by random steps
+    for (int start = 0; start < 60; ++start) {  // from random orientations, by random descent
         Eigen::Quaterniond orientation =
             Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
         double current = volume(orientation);
@@ -81,13 +81,13 @@ TEST(OrientedBox, IsWithinOnePercentOfTheMinimum) {
             soup.points.push_back({p[0], p[1], p[2]});
         }
         const auto points = moved(soup, some_rotation(seed + 50), Vector3d::Zero()).points;
-        const double minimum = min_box_by_search(points), found = oriented_box(points).volume();
-        EXPECT_LE(found, 1.01 * minimum) << "kind " << kind;
-        RecordProperty("ratio_" + std::to_string(seed), std::to_string(found / minimum));
+        const double minimum = min_box_by_search(points), volume = oriented_box(points).volume();
+        EXPECT_LE(volume, 1.01 * minimum) << "kind " << kind;
+        RecordProperty("ratio_" + std::to_string(seed), std::to_string(volume / minimum));
     }
 }
 
-TEST(Solid, OnlyClosedMeshesHaveAVolumeOfTheirOwn) {
+TEST(Solid, OnlyClosedMeshesHaveAnExactVolume) {
     TriangleSoup soup = box(2, 1, 2, 3);
     EXPECT_NEAR(closed_volume(build_mesh(soup)), 6, 1e-12);
     for (auto& t : soup.triangles) std::swap(t[1], t[2]);
@@ -97,7 +97,7 @@ TEST(Solid, OnlyClosedMeshesHaveAVolumeOfTheirOwn) {
 }
 
 TEST(Solid, OpenRegionsAreClosedByTheirOutlines) {
-    // A cup: a box without its lid. The outline is plane: the fan closes it exactly and nothing is in doubt.
+    // A cup: a box without its lid. The outline is planar: the fan closes it exactly and the bound is zero.
     TriangleSoup soup = box(6, 1, 2, 3);
     std::erase_if(soup.triangles, [&](const auto& t) {
         return soup.points[t[0]][2] == 3 && soup.points[t[1]][2] == 3 && soup.points[t[2]][2] == 3;
@@ -111,7 +111,7 @@ TEST(Solid, OpenRegionsAreClosedByTheirOutlines) {
     EXPECT_NEAR(solid.volume, 6, 1e-12);
     EXPECT_NEAR(solid.volume_bound, 0, 1e-12);
     EXPECT_NEAR(solid.centroid.z(), 1.5, 1e-12);
-    // A cap cut from a sphere by a bent edge: whatever closes it inside the hull of its outline stays within the bound.
+    // A cap cut from a sphere by a curved edge: any closing surface inside the hull of its outline stays within the bound.
     const Mesh sphere = build_mesh(test::octahedron_sphere(5));
     std::vector<Index> cap, rest;
     for (const Face f : sphere.faces()) {
@@ -236,7 +236,7 @@ TEST(Describe, RegionsLinesPointsAndMaps) {
     line.polylines = {{0, no_index}};
     line.polylines[0][1] = mesh.source(mesh.halfedge(Vertex(0)));
     EXPECT_GT(search.describe(line).front().values.front(), 0);
-    // What is wrong is said.
+    // Errors are reported.
     heights.values[3] = std::nan("");
     EXPECT_THROW((void)search.describe(region, {heights}), Error);
     heights.values.pop_back();
@@ -270,10 +270,10 @@ TEST(Uncertainty, OfARulerFollowsFromItsPins) {
     Evaluated measured = evaluate_with_uncertainty(mesh, root, pins("ruler", {a, b}));
     EXPECT_DOUBLE_EQ(measured.value, 6);
     EXPECT_NEAR(measured.uncertainty, std::sqrt(2 * s), 1e-12);
-    // A pin in the middle of a straight way changes nothing; at a corner it counts twice.
+    // A pin in the middle of a straight path does not contribute; at a corner it counts twice.
     EXPECT_NEAR(evaluate_with_uncertainty(mesh, root, pins("ruler", {a, 5 * 11 + 5, b})).uncertainty, std::sqrt(2 * s), 1e-12);
     EXPECT_NEAR(evaluate_with_uncertainty(mesh, root, pins("ruler", {a, b, 2 * 11 + 8})).uncertainty, std::sqrt(4 * s), 1e-12);
-    // Picked again: the mean, and the spread of the mean added.
+    // Repeated picking: the mean, and the variance of the mean added.
     Measure repeated = pins("ruler", {a, b});
     repeated.repeats = {{a, c}};
     measured = evaluate_with_uncertainty(mesh, root, repeated);
@@ -292,8 +292,8 @@ TEST(Uncertainty, OfARulerFollowsFromItsPins) {
 }
 
 TEST(Uncertainty, CoversTheErrorOfPickingOnCoarseMeshes) {
-    // Two fixed places on a sphere, pinned to the nearest vertices of turned meshes: the error stays within three of what is said
-    // nearly always, and is not far below it on the whole.
+    // Two fixed points on a sphere, pinned to the nearest vertices of rotated meshes: the error is nearly always within three
+    // times the stated uncertainty, and on average not far below it.
     const Vector3d p(1, 0, 0), q = Vector3d(-0.3, 1, 0.4).normalized();
     const double truth = (p - q).norm();
     double squares = 0;

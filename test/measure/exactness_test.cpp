@@ -1,4 +1,4 @@
-// Measures and descriptors of polyhedra are exact to rounding, wherever they stand.
+// Measures and descriptors of polyhedra are exact to rounding, at any position.
 #include "measure/solids.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"
@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
-    // A box of 60,000 triangles: area, volume, centroid, box, ruler, tape along its edges, bounding: known, wherever it stands.
+    // A box of 60,000 triangles: area, volume, centroid, box, ruler, tape along its edges, bounding: known, at any position.
     const double a = 1, b = 2, c = 5, diagonal = std::sqrt(a * a + b * b + c * c);
     const TriangleSoup soup = box(70, a, b, c);
     const auto corner = [&](double x, double y, double z) {
@@ -31,8 +31,8 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
         const double tolerance = 1e-12 * (1 + offset / diagonal);
         DescriptorSearch search(mesh);
         const auto value = [&](const std::string& name) { return search.find(root, name)->values.front(); };
-        const auto expect_near = [&](double x, double exact, const char* what) {
-            EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << what << " at " << offset;
+        const auto expect_near = [&](double x, double exact, const char* quantity) {
+            EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << quantity << " at " << offset;
         };
         expect_near(value("area"), 2 * (a * b + b * c + c * a), "area");
         expect_near(value("volume"), a * b * c, "volume");
@@ -61,7 +61,7 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
     }
 }
 
-/// Each triangle in four, flat.
+/// Each triangle split into four, flat.
 TriangleSoup in_four(const TriangleSoup& soup) {
     TriangleSoup result{soup.points, {}};
     std::map<std::pair<Index, Index>, Index> middles;

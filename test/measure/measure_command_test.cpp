@@ -1,4 +1,4 @@
-// `ostraka measure` as people run it.
+// `ostraka measure` as users run it.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/io/mesh_file.h"
@@ -92,7 +92,7 @@ TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     EXPECT_NEAR(*measure.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);
     EXPECT_GT(*measure.uncertainty, 0);
     ASSERT_EQ(measure.repeats.size(), 1U);
-    // What is stored is enough to take it again: checking finds no defect, refreshing changes no digit.
+    // The stored data suffice to repeat the measurement: checking finds no defect, refreshing changes no digit.
     EXPECT_EQ(run_command("annotation check " + cube.string() + " " + out.string()).code, 0);
     result = run("refresh " + cube.string() + " --annotations " + out.string() + " --output " + last.string());
     EXPECT_EQ(result.code, 0) << result.err;
@@ -204,7 +204,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_EQ(check().code, 3);
     EXPECT_NE(check().out.find("is not there"), std::string::npos) << check().out;
 
-    // On another resolution the map is of the old one.
+    // At another resolution the map belongs to the old mesh.
     write_annotations(set_file, set, body, pot.string(), {});
     const Path finer = scratch / "finer.ply", carried = scratch / "finer.ant.json";
     const auto refined = run_command("mesh refine " + pot.string() + " " + finer.string() + " --vertices 500 --annotations " +

@@ -1,4 +1,4 @@
-// Operations that are cancelled at any moment end with that error, leave no file behind, and spoil nothing that is kept.
+// Operations cancelled at any time end with that error, leave no file behind, and damage no cached object.
 #include "ostraka/cage/cage.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/point_tree.h"
@@ -33,7 +33,7 @@ struct Step {
     const char* settings;
 };
 
-/// Each works on a mesh, and the later ones on what the earlier ones make.
+/// Each works on a mesh, the later ones on outputs of earlier ones.
 const std::vector<Step>& steps() {
     static const std::vector<Step> list{
         {"mesh make", R"({"object": "teapot", "output": "pot.ply", "vertices": 2500, "labels": "pot.labels.txt"})"},
@@ -99,10 +99,10 @@ std::map<std::string, std::string> files_below(const Path& folder) {
     return files;
 }
 
-/// The kind of error that a call ends with when it is cancelled after so long; none where it was done before.
-std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const Path& folder, Context& kept) {
+/// The kind of error of a call that is cancelled after the given time; nullopt if it had finished.
+std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const Path& folder, Context& cache) {
     Context context;
-    context.share_objects(kept);
+    context.share_objects(cache);
     std::atomic<bool> ended = false;
     std::thread other([&] {
         const auto begin = std::chrono::steady_clock::now();
@@ -124,17 +124,17 @@ std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const
 
 }  // namespace
 
-TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
+TEST(Cancelling, LeavesNoFileAndDamagesNoCachedObject) {
     const Scratch scratch;
     furnish(scratch);
-    Context kept;
-    kept.keep_objects = true;
+    Context cache;
+    cache.keep_objects = true;
     for (const Step& step : steps()) {
         SCOPED_TRACE(step.settings);
         const auto before = files_below(scratch.path());
         const auto begin = std::chrono::steady_clock::now();
         {
-            Context first;  // what the others keep is not known yet
+            Context first;  // the cache does not yet contain objects of the others
             static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(first));
         }
         const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -142,24 +142,24 @@ TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
         for (const auto& [name, sum] : after)
             if (!before.contains(name)) std::filesystem::remove(scratch / name);
         for (const double share : {0.1, 0.6}) {
-            const auto there = files_below(scratch.path());
-            if (cancelled_after(share * whole, step, scratch.path(), kept)) {
-                EXPECT_EQ(files_below(scratch.path()), there) << step.operation << " left something behind";
+            const auto existing_files = files_below(scratch.path());
+            if (cancelled_after(share * whole, step, scratch.path(), cache)) {
+                EXPECT_EQ(files_below(scratch.path()), existing_files) << step.operation << " left something behind";
             } else {
                 for (const auto& [name, sum] : files_below(scratch.path()))
                     if (!before.contains(name)) std::filesystem::remove(scratch / name);
             }
         }
-        // With what the cancelled ones have kept it makes the same.
+        // With the cache of the cancelled calls it gives the same result.
         Context last;
-        last.share_objects(kept);
+        last.share_objects(cache);
         static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(last));
         for (const auto& [name, sum] : files_below(scratch.path()))
             EXPECT_EQ(after.contains(name) ? after.at(name) : "nothing", sum) << step.operation << ": " << name;
     }
 }
 
-TEST(Cancelling, IsAskedForByEachAlgorithm) {
+TEST(Cancelling, EachAlgorithmChecksForIt) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
     const Scratch scratch;
     write_mesh(scratch / "sphere.obj", mesh);
@@ -185,13 +185,13 @@ TEST(Cancelling, IsAskedForByEachAlgorithm) {
         {"remesh", [&] { static_cast<void>(remesh(mesh, remeshed)); }},
         {"simplify",
          [&] {
-             Mesh own = mesh;
-             static_cast<void>(simplify(own, fewer));
+             Mesh copy = mesh;
+             static_cast<void>(simplify(copy, fewer));
          }},
         {"refine",
          [&] {
-             Mesh own = mesh;
-             static_cast<void>(refine(own, more));
+             Mesh copy = mesh;
+             static_cast<void>(refine(copy, more));
          }},
         {"distances", [&] { static_cast<void>(geodesic_distances(mesh, {0}, 10)); }},
         {"curve", [&] { static_cast<void>(geodesic_curve(mesh, vertex_point(0), vertex_point(far))); }},

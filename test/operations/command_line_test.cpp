@@ -1,4 +1,4 @@
-// What stands on the command line, right and wrong, whatever the operation.
+// Valid and invalid command lines, for any operation.
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/execution/child_process.h"
 #include "ostraka/files/json.h"
@@ -39,7 +39,7 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
     expect_refusal("mesh info " + vase + " --threads 1 --threads 2", "ostraka: mesh info: --threads");
 }
 
-TEST(CommandLine, WhatIsMissingIsNamedWithTheWayToGiveIt) {
+TEST(CommandLine, MissingInputsAreNamedWithTheirOption) {
     expect_refusal("annotation list " + vase,
                    "annotations is missing (give its annotations (.ant.json): ostraka annotation list MESH ANNOTATIONS");
     expect_refusal("mesh convert " + vase, "output is missing");
@@ -103,7 +103,7 @@ TEST(CommandLine, AFlagHasItsValue) {
     expect_refusal(edit + edited.string() + " --annotation 1 --tag ''", "--tag is ''");
 }
 
-TEST(CommandLine, DirectionsAndViewsAreTakenAsTheHelpNamesThem) {
+TEST(CommandLine, DirectionsAndViewsAreAcceptedAsInTheHelp) {
     const Scratch scratch;
     const auto select = [&](const std::string& flags) {
         std::filesystem::remove(scratch / "a.ant.json");
@@ -121,9 +121,9 @@ TEST(CommandLine, DirectionsAndViewsAreTakenAsTheHelpNamesThem) {
 TEST(CommandLine, NamesThatBeginWithADash) {
     const Scratch scratch;
     std::filesystem::copy_file(vase, scratch / "-dash.ply");
-    const std::string there = "cd " + scratch.path().string() + " && ";
-    EXPECT_EQ(run_command("mesh info --quiet -- -dash.ply", there).code, 0);
-    const auto result = run_command("mesh info -dash.ply", there);
+    const std::string in_folder = "cd " + scratch.path().string() + " && ";
+    EXPECT_EQ(run_command("mesh info --quiet -- -dash.ply", in_folder).code, 0);
+    const auto result = run_command("mesh info -dash.ply", in_folder);
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find("write ./-dash.ply"), std::string::npos) << result.err;
     expect_refusal("mesh convert " + vase + " memory:x.ply", "which is for programs");
@@ -166,7 +166,7 @@ TEST(CommandLine, PackingReplacesNoOtherFile) {
     EXPECT_EQ(run_command(pack).code, 0) << "what the template holds already is its own";
 }
 
-TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
+TEST(CommandLine, CompletionKnowsTheCommonOptions) {
     EXPECT_EQ(run_command("--complete mesh info --show ''").out, "csv\njson\nmarkdown\ntable\n");
     EXPECT_EQ(run_command("--complete mesh info --threads ''").out, "");
     EXPECT_EQ(run_command("--complete mesh info - x").code, 0);
@@ -178,7 +178,7 @@ TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
     EXPECT_EQ(run_command("--complete relation ''").out, "add\ncheck\nedit\nexport\nextract\nlist\nremove\n");
 }
 
-TEST(CommandLine, WhatPassesTheMemoryLimitIsRefusedInWords) {
+TEST(CommandLine, WorkBeyondTheMemoryLimitIsRefusedWithAMessage) {
     const std::string mesh = std::string(OSTRAKA_SOURCE_DIR) + "/data/statuette.ply";
     EXPECT_EQ(run_command("mesh info " + mesh + " --quiet --memory 8").code, 0);
     const auto small = run_command("mesh info " + mesh + " --memory 0.005");
@@ -186,7 +186,7 @@ TEST(CommandLine, WhatPassesTheMemoryLimitIsRefusedInWords) {
     EXPECT_NE(small.err.find("GB of memory"), std::string::npos) << small.err;
     EXPECT_NE(small.err.find("--memory"), std::string::npos) << small.err;
     EXPECT_EQ(run_command("mesh info " + mesh + " --memory -1").code, 2);
-    // What no estimate foresees ends in words too.
+    // Allocations beyond any estimate also end with a message.
     const Scratch scratch;
     const auto large = run_command("mesh make vase " + (scratch / "v.ply").string() + " --vertices 2000000 --memory 0.1");
     EXPECT_EQ(large.code, 1) << large.out;
@@ -194,7 +194,7 @@ TEST(CommandLine, WhatPassesTheMemoryLimitIsRefusedInWords) {
     EXPECT_EQ(count_files(scratch.path()), 0U);
 }
 
-TEST(CommandLine, StopsOnASignalAndLeavesNothingBehind) {
+TEST(CommandLine, StopsOnASignalAndLeavesNoFiles) {
     const Scratch scratch;
     const std::string mesh = (scratch / "v.ply").string();
     ASSERT_EQ(run_command("mesh make vase " + mesh + " --vertices 300000").code, 0);

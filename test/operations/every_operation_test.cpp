@@ -1,5 +1,5 @@
-// Laws of the whole table: every operation is declared soundly, its report keeps its schema, and from objects in memory it gives
-// the same bytes as from files.
+// Properties of the whole table: every operation has a valid declaration, its report satisfies its schema, and objects in memory
+// give the same bytes as files.
 #include "calls.h"
 #include "ostraka/files/json.h"
 #include "ostraka/framework/inputs.h"
@@ -22,7 +22,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Empty if the value keeps the schema; else where not.
+/// Empty if the value satisfies the schema, else the location of the violation.
 std::string against(const JsonValue& value, const JsonValue& schema) {
     const rapidjson::GenericSchemaDocument<JsonValue> document(schema);
     rapidjson::GenericSchemaValidator<rapidjson::GenericSchemaDocument<JsonValue>> validator(document);
@@ -163,7 +163,7 @@ const std::vector<Step>& steps() {
     return list;
 }
 
-/// A folder with what the steps begin with.
+/// A folder with the initial inputs of the steps.
 void furnish(const Scratch& scratch) {
     const Path data = Path(OSTRAKA_SOURCE_DIR) / "data";
     for (const char* name :
@@ -173,7 +173,7 @@ void furnish(const Scratch& scratch) {
                R"({"format": "ostraka-edit", "version": 1, "steps": [{"select": {"all": true}, "translate": [0, 0, 1]}]})");
 }
 
-/// Every file below a folder, with its bytes; without what remembers earlier runs.
+/// Every file below a folder, with its bytes; without the records of earlier runs.
 std::map<std::string, std::string> files_below(const Path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
@@ -197,7 +197,7 @@ protected:
 
 }  // namespace
 
-TEST_F(EveryOperation, IsDeclaredOnceAndSoundly) {
+TEST_F(EveryOperation, IsDeclaredOnceAndValidly) {
     std::set<std::string> names;
     const std::regex word("[a-z0-9]+(-[a-z0-9]+)*");
     for (const OperationEntry& entry : operations()) {
@@ -242,8 +242,8 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
     }
 }
 
-TEST_F(EveryOperation, RunsHereOrHasATestOfItsOwn) {
-    // What asks for data that takes long to make is run by the tests of its module.
+TEST_F(EveryOperation, RunsHereOrHasItsOwnTest) {
+    // Operations with inputs that take long to make are run by the tests of their modules.
     std::set<std::string> run{"study landmarks", "template turn",   "pair", "assemble", "run", "replay",
                               "conformance run", "conformance self"};
     for (const Step& step : steps()) run.insert(step.operation);
@@ -279,14 +279,14 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                 }
                 std::vector<std::string> files;
                 if (member.value.IsArray())
-                    for (const auto& one : member.value.GetArray()) files.emplace_back(one.GetString());
+                    for (const auto& item : member.value.GetArray()) files.emplace_back(item.GetString());
                 else files.emplace_back(member.value.GetString());
                 for (const std::string& file : files) {
                     if (slot->role == Role::output) {
                         call.want(name, file);
                         outputs.emplace_back(name, file);
                     } else {
-                        // What no step made is handed over as bytes.
+                        // Inputs that no step made are passed as bytes.
                         if (!objects.contains(file)) objects[file] = Object::of(read_file(other / file), file);
                         call.set_object(name, objects.at(file));
                     }
@@ -299,10 +299,10 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
             EXPECT_EQ(files_below(other.path()).size(), before) << "a file was touched";
             EXPECT_EQ(to_text(report.to_json()["provenance"]), to_text(expected["provenance"]));
             for (const auto& [slot, file] : outputs) {
-                if (!std::filesystem::exists(on_disk / file)) continue;  // not written where the answer is no
-                Object made = call.object(slot);
-                made.name = file;
-                if (const auto folder = made.as<Path>()) {
+                if (!std::filesystem::exists(on_disk / file)) continue;  // not written if the answer is no
+                Object object = call.object(slot);
+                object.name = file;
+                if (const auto folder = object.as<Path>()) {
                     for (const std::string& name : files_in(*folder)) {
                         if (name[0] == '.') continue;
                         EXPECT_EQ(read_file(*folder / name) == read_file(on_disk / (file + name)), true) << file << name;
@@ -310,8 +310,8 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                     continue;
                 }
                 const Path written = other / ("written-" + file);
-                if (made.write) made.write(written);
-                else if (const auto bytes = made.as<std::string>()) write_file(written, *bytes);
+                if (object.write) object.write(written);
+                else if (const auto bytes = object.as<std::string>()) write_file(written, *bytes);
                 else FAIL() << file << " cannot be written";
                 if (read_file(written) != read_file(on_disk / file)) {
                     ADD_FAILURE() << file << " differs";
@@ -321,7 +321,7 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
                     }
                 }
                 std::filesystem::remove(written);
-                objects[file] = made;
+                objects[file] = object;
             }
         } catch (const std::exception& error) {
             ADD_FAILURE() << step.operation << " in memory: " << error.what();
@@ -360,7 +360,7 @@ TEST(Completion, KnowsNamesFlagsChoicesTagsAndFiles) {
         EXPECT_NE(completion_script(shell).find("--complete"), std::string::npos);
 }
 
-TEST(Calls, RefuseWhatMakesNoSense) {
+TEST(Calls, RefuseInvalidArguments) {
     const auto message = [](const auto& work) {
         try {
             work();
@@ -397,7 +397,7 @@ TEST(Calls, RefuseWhatMakesNoSense) {
               std::string::npos);
 }
 
-TEST(Calls, AreCancelledInTheMiddleAndLeaveNothing) {
+TEST(Calls, AreCancelledDuringTheRunAndLeaveNoFiles) {
     const Scratch scratch;
     Context context;
     Call make(find_operation("mesh make"));
@@ -517,9 +517,9 @@ TEST(Calls, ShareOptionsOfInputsInEitherOrder) {
     const OperationEntry entry = entry_of<TakesBoth>("test both");
     for (const bool forced : {false, true}) {
         Call call(entry);
-        Object made = Object::of(Template(), "t.template.json");
-        made.sha256 = "known";
-        call.set_object("template", made);
+        Object object = Object::of(Template(), "t.template.json");
+        object.sha256 = "known";
+        call.set_object("template", object);
         call.set("force-mesh", forced);
         Context context;
         EXPECT_EQ(call.run(context).result()["forced"].GetBool(), forced);
@@ -541,7 +541,7 @@ TEST(Calls, AskForTheChecksumOfObjects) {
     EXPECT_EQ(inputs[0].second, "of these words");
 }
 
-TEST(Calls, MakeNoPartOfACollectionThatIsCancelled) {
+TEST(Calls, WriteNoPartOfACancelledCollection) {
     const Scratch scratch;
     Context context;
     context.watch.on_progress = [&](const std::string&, double share) {

@@ -1,4 +1,4 @@
-// Pages: what is within them is what was given, in its order, and text stays text.
+// Pages: their data equal the input, in its order, and text stays text.
 #include "ostraka/page/page.h"
 #include "meshes.h"
 #include "ostraka/annotation/curves.h"
@@ -19,7 +19,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// What stands between the tags of an element of a page.
+/// The content of an element of a page.
 std::string inside(const std::string& html, const std::string& id) {
     const std::size_t begin = html.find('>', html.find("id=\"" + id + "\"")) + 1;
     return html.substr(begin, html.find("</script>", begin) - begin);
@@ -39,7 +39,7 @@ std::string from_base64(const std::string& text) {
     return bytes;
 }
 
-/// A page taken apart by means of its own.
+/// The contents of a page, decoded with its own script.
 struct ReadPage {
     Json data;
     std::string bytes;
@@ -150,7 +150,7 @@ TEST(Page, HoldsTheShapeInItsOrderWithinTheQuantisation) {
                                         reinterpret_cast<const unsigned char*>(index_bytes.data()), index_bytes.size()),
               0);
     for (std::size_t f = 0; f < triangles.size(); ++f) {
-        auto rotated = triangles[f];  // the codec may turn the corners
+        auto rotated = triangles[f];  // the codec may rotate the corners
         for (int k = 0; k < 3 && rotated != annotated.soup.triangles[f]; ++k)
             std::rotate(rotated.begin(), rotated.begin() + 1, rotated.end());
         EXPECT_EQ(rotated, annotated.soup.triangles[f]);
@@ -377,7 +377,7 @@ TEST(Page, RunsOnlyTheScriptOfTheViewer) {
     for (const std::string& html : {Page("one").html(""), index.html("")}) {
         const std::string policy = policy_of(html);
         EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos) << policy;
-        // The checksum is that of the only script that is no data.
+        // The checksum is that of the only script that does not contain data.
         const std::string script_tag = "<script type=\"module\"";
         const std::size_t script = html.find('>', html.find(script_tag)) + 1;
         EXPECT_EQ(html.find(script_tag, script), std::string::npos);
@@ -472,7 +472,7 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     std::filesystem::create_directory(scratch / "empty");
     refuse((scratch / "empty").string(), 1, "nothing that a page can show");
     EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
-    // A folder: its cage is no object of its own, and a file that cannot be read is none of its results.
+    // A folder: its cage is not a separate object, and an unreadable file is not a result.
     write_file(scratch / "empty/broken.json", "[1,");
     for (const char* name : {"vase.ply", "vase.ant.json"})
         write_file(scratch / ("empty/" + std::string(name)), read_file(data + name));
@@ -502,7 +502,7 @@ TEST(ReportCommand, ShowsOutputsOfOtherCommands) {
     const Json written = read_json(scratch / "slices/slices.json");
     ASSERT_EQ(slices["levels"].Size(), 7U);
     EXPECT_EQ(slices["levels"][3]["height"].GetDouble(), written["slices"][3]["height"].GetDouble());
-    // A deformation: what became of its constraints is shown with its parts, the rest as tables.
+    // A deformation: the outcome of its constraints is shown with its parts, the rest as tables.
     write_file(scratch / "moved.json", R"({"format": "ostraka-report", "command": "deform", "result": {"rounds": 17,
         "constraints": [{"id": 4, "type": "same level", "parts": ["belly", "neck"], "weight": 1, "hard": true, "before": "holds",
                          "verdict": "fails", "text": "", "deviations": [{"quantity": "height", "before": 0, "value": 3,
@@ -519,7 +519,7 @@ TEST(ReportCommand, ShowsOutputsOfOtherCommands) {
     const JsonValue& moved = tables[tables.Size() - 1];
     EXPECT_STREQ(moved["title"].GetString(), "moved: moved");
     EXPECT_EQ(moved["annotations"][0].GetInt(), static_cast<int>(constraint["members"][1].GetUint())) << "by its tag";
-    // What 'relation check' says: a rule that is broken, relations, and a proportion that is a constraint (a canon).
+    // Output of 'relation check': a broken rule, relations, and a proportion that is a constraint (a canon).
     write_file(scratch / "checked.json", R"({"format": "ostraka-report", "command": "relation check", "result": {
         "relationships": [{"id": 0, "type": "adjacency", "annotations": [2, 5], "isConstraint": false, "verdict": "holds",
                            "text": "", "parameters": {}},
@@ -560,7 +560,7 @@ TEST(ReportCommand, ShowsOutputsOfOtherCommands) {
                R"({"format": "ostraka-reassembly", "fragments": [{"name": "rim"}, {"name": "foot"}]})");
     const ReadPage named = page_of(file("group-1.ply") + " " + file("assembly.json"));
     EXPECT_STREQ(named.data["objects"][0]["annotations"][1]["tag"].GetString(), "foot");
-    // A collection: the page is an index, each object a file that no other needs.
+    // A collection: the page is an index, and each object is an independent file.
     const auto collected =
         run_command("report " + vase + data + "statuette.ply " + file("all.html") + " --beside '" + file("all of it") + "'");
     ASSERT_EQ(collected.code, 0) << collected.err;

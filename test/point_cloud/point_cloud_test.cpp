@@ -172,7 +172,7 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).facets_from, "shape") << "closed, not annotated";
     options.facets = FacetSource::none;
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).fragment.facets.size(), 0U);
-    // A tenth of the faces are called a fracture, whatever they are.
+    // A tenth of the faces are annotated as fracture, regardless of their shape.
     AnnotationSet set;
     Annotation stated;
     stated.tag = "Fracture";

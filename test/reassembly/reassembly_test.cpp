@@ -35,7 +35,7 @@ Fragment fragment_of(const SyntheticSherd& sherd, const std::string& name, const
     return fragment;
 }
 
-/// Three sherds of a pot, side by side, and the two halves of a bar, each anywhere.
+/// Three adjacent sherds of a pot, and the two halves of a bar, each in a random pose.
 struct Mixture {
     std::vector<Fragment> fragments;
     std::vector<Motion> motions;
@@ -137,18 +137,18 @@ TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     memory.keep = [&](const PairResult& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
     const int before = threads();
     set_threads(1);
-    const Reassembly one = reassemble(three, quick(), memory);
+    const Reassembly single_threaded = reassemble(three, quick(), memory);
     set_threads(3);
     const Reassembly parallel = reassemble(three, quick());
     set_threads(before);
-    same(one, parallel);
+    same(single_threaded, parallel);
     EXPECT_EQ(tried, 3u);
     memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairResult> {
         for (const PairResult& pair : pairs)
             if (pair.first == i && pair.second == j) return pair;
         return {};
     };
-    same(one, reassemble(three, quick(), memory));
+    same(single_threaded, reassemble(three, quick(), memory));
     EXPECT_EQ(tried, 3u) << "none was tried again";
 }
 
@@ -223,7 +223,7 @@ TEST(SuspiciousFragments, WallThicknessRevealsAnotherUnitWhereSizesAreSimilar) {
     const auto suspicious = scaled(6.5 * equal);
     ASSERT_EQ(suspicious.size(), 1u);
     EXPECT_NE(suspicious[0].text.find("in another unit"), std::string::npos) << suspicious[0].text;
-    // As much larger with a wall as thick: no other unit.
+    // Larger by the same factor with the same wall thickness: not another unit.
     for (Facet& facet : two[0].facets) facet = Facet::outer;
     EXPECT_TRUE(scaled(6.5 * equal).empty()) << "no wall thickness to compare";
 }
@@ -282,8 +282,8 @@ TEST(AssembleCommand, TheOrderOfTheNamesAndThreadsDoNotMatter) {
         const Json report = read_json(scratch / folder / "assembly.json");
         return to_text(report["fragments"]) + to_text(report["joins"]) + to_text(report["undone"]);
     };
-    const std::string one = joins(files[0] + " " + files[1] + " " + files[2], "one", " --threads 1");
-    EXPECT_EQ(joins(files[2] + " " + files[0] + " " + files[1], "two", " --threads 2"), one);
+    const std::string expected_joins = joins(files[0] + " " + files[1] + " " + files[2], "one", " --threads 1");
+    EXPECT_EQ(joins(files[2] + " " + files[0] + " " + files[1], "two", " --threads 2"), expected_joins);
 }
 
 TEST(AssembleCommand, RejectsInvalidInput) {
@@ -294,9 +294,9 @@ TEST(AssembleCommand, RejectsInvalidInput) {
     const auto empty = test::run_command("assemble " + quoted(scratch / "empty") + out);
     EXPECT_EQ(empty.code, 1);
     EXPECT_NE(empty.err.find("holds no mesh files"), std::string::npos) << empty.err;
-    const auto one = test::run_command("assemble " + quoted(scratch / "bar.ply") + out);
-    EXPECT_EQ(one.code, 2);
-    EXPECT_NE(one.err.find("one fragment"), std::string::npos) << one.err;
+    const auto single = test::run_command("assemble " + quoted(scratch / "bar.ply") + out);
+    EXPECT_EQ(single.code, 2);
+    EXPECT_NE(single.err.find("one fragment"), std::string::npos) << single.err;
     const auto twice = test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "bar.ply") + out);
     EXPECT_EQ(twice.code, 2);
     EXPECT_NE(twice.err.find("two fragments are called"), std::string::npos) << twice.err;

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The part of a mesh whose faces' centres satisfy a condition, as a fragment that lies where it belongs.
+/// The part of a mesh whose faces' centres satisfy a condition, as a fragment in its true pose.
 PlacedFragment part(const Mesh& mesh, const std::function<bool(const Point&)>& inside) {
     std::vector<bool> keep(mesh.number_of_faces());
     for (const Face face : mesh.faces()) keep[face] = inside(centroid(mesh, face));
@@ -34,7 +34,7 @@ Mesh grown(Mesh mesh, double factor) {
     return mesh;
 }
 
-/// Sphere of another mesh than octahedron_sphere, turned so that no two vertices agree.
+/// Sphere meshed differently from octahedron_sphere, rotated so that no two vertices coincide.
 Mesh other_sphere(Index columns, double radius) {
     Mesh mesh = build_mesh(test::grid(columns, columns, true, false, [&](double u, double v) {
         const double a = 2 * M_PI * u, b = M_PI * (0.02 + 0.96 * v);
@@ -88,7 +88,7 @@ TEST(Complete, AnotherMeshOfTheSurfaceIsJoinedWithoutAGap) {
         expect_sound(object, true, 2);
         EXPECT_EQ(object.joined.at(0), cap.mesh.number_of_faces());
         EXPECT_NEAR(own_area(object, 0), surface_area(cap.mesh), 1e-9);
-        // Fragments' vertices are where they were; the rest of the ball is the template's or near the seam.
+        // Fragments' vertices are unchanged; the rest of the ball is the template's or near the seam.
         for (const Face face : object.mesh.faces())
             for (const Vertex v : corners(object.mesh, face)) {
                 const double r = eigen(object.mesh.point(v)).norm();
@@ -114,7 +114,7 @@ TEST(Complete, PiecesWithHolesAndSeveralFragmentsThatOverlap) {
     EXPECT_EQ(object.shared[0], 0);
     EXPECT_NEAR(object.shared[1], 0.5, 0.1);
     EXPECT_NEAR(surface_area(object.mesh), surface_area(ring), 1e-6 * surface_area(ring));
-    // In the other order it is as sound.
+    // In the other order the result is also valid.
     expect_sound(complete(ring, {front, half}), true, 0);
 }
 

@@ -135,7 +135,7 @@ TEST_F(FitCommand, InputsAndEarlierResultsAreNotMixedUp) {
     const auto over = fit(quoted(scratch / "out" / "completed.ply"));
     EXPECT_NE(over.code, 0);
     EXPECT_EQ(read_file(scratch / "out" / "completed.ply"), before) << over.err;
-    // Nothing placed: what an earlier run left goes. (What was changed since is kept: it is written again first.)
+    // Nothing placed: outputs of an earlier run are removed. (Changed files are kept, so they are written again first.)
     ASSERT_EQ(fit(quoted(scratch / "top.ply") + " --placed").code, 3);
     Json annotations = read_json(scratch / "top.ant.json");
     annotations["annotations"].Clear();
@@ -160,20 +160,20 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
     const auto first = fit(quoted(scratch / "bare.ply"));
     EXPECT_EQ(first.code, 3);
     EXPECT_EQ(first.err.find("earlier fit"), std::string::npos) << first.err;
-    const Json kept = read_json(scratch / "out" / "fit.searches.json");
-    validate(kept, "searches", "searches");
+    const Json searches = read_json(scratch / "out" / "fit.searches.json");
+    validate(searches, "searches", "searches");
     const auto before = contents();
     const auto repeated = fit(quoted(scratch / "bare.ply"));
     EXPECT_NE(repeated.err.find("1 of 1 pose searches are reused from an earlier fit"), std::string::npos) << repeated.err;
     EXPECT_EQ(contents(), before);
     EXPECT_EQ(repeated.out, first.out);
-    // Another one comes, and goes.
+    // Another fragment is added and removed.
     (void)fit(quoted(scratch / "bare.ply") + " " + quoted(scratch / "top.ply"));
     (void)fit(quoted(scratch / "bare.ply"));
     EXPECT_EQ(contents()[0], before[0]);
     EXPECT_EQ(contents()[2], before[2]);
     EXPECT_EQ(fit(quoted(scratch / "bare.ply") + " --fresh").err.find("earlier fit"), std::string::npos);
-    // Numbers that are not those that were written.
+    // Numbers that differ from the written ones.
     Json changed = read_json(scratch / "out" / "fit.searches.json");
     for (auto& entry : changed["searches"].GetArray()) entry["result"]["margin"].SetDouble(99);
     write_json(scratch / "out" / "fit.searches.json", changed);
@@ -190,7 +190,7 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
                   .code,
               0);
     EXPECT_EQ(fit(quoted(scratch / "bare.ply")).err.find("earlier fit"), std::string::npos);
-    // Nothing to search: no file of searches stays beside the new answer.
+    // Nothing to search: no file of searches remains next to the new answer.
     (void)fit(quoted(scratch / "top.ply") + " --fresh");
     EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "fit.searches.json"));
 }
@@ -201,7 +201,7 @@ TEST_F(FitCommand, FitsThroughACage) {
     EXPECT_EQ(generated.code, 3) << generated.err;
     EXPECT_NE(generated.err.find("has no cage"), std::string::npos) << generated.err;
     EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "completed.ply"));
-    // A cage of its own, and one that does not contain it.
+    // A cage of the template, and one that does not contain it.
     const std::string statuette = quoted(scratch / "made" / "statuette-1.ply");
     ASSERT_EQ(run_command("cage make " + statuette + " " + quoted(scratch / "made" / "cage.ply") + " --vertices 100").code, 0);
     const std::string pack = "template pack " + quoted(scratch / "made" / "caged.template.json") + " --mesh " + statuette +

@@ -57,7 +57,7 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
     for (std::size_t i = 0; i < observed.size(); ++i) observed[i] = result.distance[i] >= 0;
     const Mesh placed = moved(cut_piece.fragment.mesh, result.placement.fragments[0].pose);
     EXPECT_LT(worst_distance(mesh, result.points, observed, placed), 0.005 * diagonal);
-    // Where nothing was observed, no farther from the truth than the registered template, apart from the effect of the edge.
+    // The unobserved part is no farther from the truth than the registered template, apart from the effect of the edge.
     const Motion frame = result.placement.fragments[0].pose.after(cut_piece.piece.pose.inverse());
     double fitted = 0, rigid = 0;
     for (const Vertex v : mesh.vertices()) {
@@ -82,7 +82,7 @@ TEST(Fit, TheUnobservedPartKeepsItsSizeWhereTheFragmentIsNarrowAtTheFracture) {
     const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
     const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
-    // Of the end that is missing: how far its places are from their mean.
+    // Distances of the points of the missing end from their mean.
     std::vector<Vector3d> at_rest, fitted;
     for (const Vertex v : mesh.vertices())
         if (mesh.point(v).z() < -0.9) {
@@ -146,7 +146,7 @@ TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
         EXPECT_GT(std::count(observed.begin(), observed.end(), true), 50) << counterparts;
         const Mesh placed = moved(cut_piece.fragment.mesh, result.placement.fragments[0].pose);
         EXPECT_LT(worst_distance(mesh, result.points, observed, placed), 0.01 * diagonal) << counterparts;
-        // The rest of the surface lies no worse for it.
+        // The fit of the remaining surface does not become worse.
         EXPECT_NEAR(result.observed_share, 0.4, 0.1) << counterparts;
     }
 }

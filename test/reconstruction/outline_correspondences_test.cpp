@@ -16,12 +16,12 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-/// A sphere whose parts have slid on it: a surface that closest points cannot tell from the one before.
+/// A sphere whose parts have slid on it: closest points cannot distinguish it from the original surface.
 class SlidParts : public ::testing::Test {
 protected:
     SlidParts() : mesh(build_mesh(octahedron_sphere(5))) {}
 
-    /// Turned about the z axis by `degrees` within a polar angle, less and less beyond it.
+    /// Rotated about the z axis by `degrees` within a polar angle, decreasing beyond it.
     [[nodiscard]] Mesh slid(double degrees, double within) const {
         return deformed_by(mesh, [=](const Vector3d& p) {
             const double polar = std::acos(std::clamp(p.z(), -1.0, 1.0)),
@@ -42,7 +42,7 @@ protected:
         }
         return annotation;
     }
-    /// The vertex of the annotation's outlines nearest to a place.
+    /// The vertex of the annotation's outlines nearest to a point.
     [[nodiscard]] Index on_outline(const Annotation& region, const Vector3d& place) const {
         Index best = no_index;
         for (const Outline& loop : extract_outlines(mesh, region.faces))
@@ -52,7 +52,7 @@ protected:
                     best = v;
         return best;
     }
-    /// `kept`: of each face of the fragment; empty: all.
+    /// `kept`: one flag per face of the fragment; empty: all.
     struct Result {
         std::vector<Point> points;
         std::vector<bool> is_observed;  ///< vertices that the fragment has
@@ -84,7 +84,7 @@ protected:
                 std::vector<Index> part;
                 for (const Index v : line)
                     if (vertex[v] != no_index) part.push_back(vertex[v]);
-                std::reverse(part.begin(), part.end());  // told from the other end
+                std::reverse(part.begin(), part.end());  // in the opposite direction
                 if (part.size() > 1) other.polylines.push_back(part);
             }
             if (other.faces.empty() && other.points.empty() && other.polylines.empty()) continue;
@@ -102,7 +102,7 @@ protected:
         result.points = fit_template(mesh, set, fragments, options).points;
         return result;
     }
-    /// Root mean square distance of the vertices of a region from where they have gone, as far as the fragment has them.
+    /// Root mean square distance of the vertices of a region from their slid positions, for vertices on the fragment.
     [[nodiscard]] double error(const Result& result, const Mesh& original, const Annotation& region) const {
         double sum = 0, count = 0;
         for (const Index v : touched_vertices(mesh, region)) {
@@ -149,7 +149,7 @@ TEST_F(SlidParts, APartOfAnOutlineWithOneLandmarkHelps) {
 }
 
 TEST_F(SlidParts, LinesCorrespondInEitherDirection) {
-    // A meridian's part, and its end as a landmark; the fragment's line is told from its other end.
+    // A meridian's part, and its end as a landmark; the fragment's line runs in the opposite direction.
     Annotation line;
     line.id = 100;
     line.tag = "crease";

@@ -58,11 +58,11 @@ inline Cut cut(const Mesh& original, const AnnotationSet& set, const Point& cent
     Cut result{{"piece", {}, {}, {}}, generate_fragment(original, centre, options)};
     result.fragment.mesh = result.piece.mesh;
     for (const Annotation& annotation : set.annotations) {
-        const auto& kept = result.piece.vertices;
-        const auto entry = std::find(kept.begin(), kept.end(), annotation.points.front());
-        if (entry != kept.end())
+        const auto& original_vertices = result.piece.vertices;
+        const auto entry = std::find(original_vertices.begin(), original_vertices.end(), annotation.points.front());
+        if (entry != original_vertices.end())
             result.fragment.annotations.annotations.push_back(
-                landmark(annotation.id, annotation.tag, static_cast<Index>(entry - kept.begin())));
+                landmark(annotation.id, annotation.tag, static_cast<Index>(entry - original_vertices.begin())));
     }
     return result;
 }

@@ -25,7 +25,7 @@ Motion random_motion(Random& random, double scale = 1) {
     return motion;
 }
 
-/// Landmarks of a template that is `scale` times as large in truth, on a fragment that `pose` would carry back.
+/// Landmarks of a template that is `scale` times as large in truth, on a fragment that `pose` transforms back.
 std::vector<LandmarkPair> landmarks(Random& random, int count, double scale, const Motion& pose, double noise = 0) {
     std::vector<LandmarkPair> pairs;
     const Motion inverse_pose = pose.inverse();
@@ -55,7 +55,7 @@ TEST(Placement, FindsOneScaleAndThePoseOfEachFragment) {
     }
 }
 
-// The sum of squares over scale and poses can only grow by going elsewhere.
+// Any other scale and poses increase the sum of squares.
 TEST(Placement, MinimisesTheSumOfSquares) {
     Random random(5);
     const std::vector<std::vector<LandmarkPair>> pairs{landmarks(random, 4, 2, random_motion(random), 0.1),
@@ -109,7 +109,7 @@ TEST(Placement, ExchangedTagsAreNamed) {
     }
 }
 
-// Another shape than the template's is no mistake.
+// A shape that differs from the template's is not an error.
 TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
     Random random(9);
     const Motion pose = random_motion(random);

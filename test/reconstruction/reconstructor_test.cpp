@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-/// All that a reconstruction says, to the bit.
+/// All results of a reconstruction, to the bit.
 void expect_same(const Reconstruction& a, const Reconstruction& b, const std::string& context) {
     EXPECT_EQ(a.placement.scale, b.placement.scale) << context;
     ASSERT_EQ(a.placement.fragments.size(), b.placement.fragments.size()) << context;

@@ -44,7 +44,7 @@ TEST(RigidScale, PostureDoesNotChangeIt) {
         const auto bent = turned(marks, 1.3, bend);
         EXPECT_NEAR(rigid_scale(marks, bent), 1.3, 1e-9) << bend;
     }
-    // The similarity of all of them takes the bent arm for a smaller one.
+    // The similarity over all landmarks interprets the bent arm as a smaller one.
     Landmarks from(10, 3), to(10, 3);
     const auto bent = turned(marks, 1.3, 1.5);
     for (Eigen::Index i = 0; i < 10; ++i) {

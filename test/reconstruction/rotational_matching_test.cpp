@@ -29,7 +29,7 @@ PotOptions small_pot(std::uint64_t shape) {
     return options;
 }
 
-/// Sherds of a synthetic pot, each rotated about the axis at random and a little off its place, as a search leaves them.
+/// Sherds of a synthetic pot, each rotated about the axis at random and slightly displaced, as after a search.
 struct BrokenPot {
     Mesh vessel;
     std::vector<Fragment> fragments;
@@ -64,7 +64,7 @@ struct BrokenPot {
     [[nodiscard]] RotationMatch match(const RotationMatchOptions& options = {}) const {
         return match_rotations(vessel, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
     }
-    /// Root mean square way of the second sherd's vertices from where it belongs against the first.
+    /// Root mean square distance of the second sherd's vertices from their true position relative to the first.
     [[nodiscard]] double displacement(const RotationMatch& result, int a, int b) const {
         const Motion between =
             result.poses[static_cast<std::size_t>(a)].inverse().after(result.poses[static_cast<std::size_t>(b)]);
@@ -90,7 +90,7 @@ void expect_together(const BrokenPot& pot, const RotationMatch& result) {
     std::size_t carry = 0;
     for (const FractureJoint& joint : result.joints) {
         carry += joint.carries ? 1 : 0;
-        // To a wall's thickness: the poses given are off by a third of it.
+        // To within the wall thickness: the given poses are off by a third of it.
         if (!joint.decided) continue;
         EXPECT_LT(pot.displacement(result, joint.first, joint.second), result.wall);
     }
@@ -153,7 +153,7 @@ TEST(RotationMatch, AnUnrelatedSherdIsReportedAndOverlapsNothing) {
     const PotOptions shape = small_pot(4);
     BrokenPot pot(shape, breaking(4, 6));
     const std::vector<Sherd> others = shatter(make_pot(shape), breaking(77, 12));
-    // Two go, so that there is room for one that does not belong.
+    // Two are removed, so that there is room for an unrelated one.
     const auto smallest = static_cast<std::size_t>(
         std::min_element(others.begin(), others.end(),
                          [](const Sherd& x, const Sherd& y) { return surface_area(x.mesh) < surface_area(y.mesh); }) -

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Nothing of it looks like another part.
+/// No two parts of it are similar.
 Mesh potato() {
     Mesh mesh = build_mesh(test::octahedron_sphere(5));
     for (const Vertex v : mesh.vertices()) {
@@ -74,7 +74,7 @@ TEST(SearchPlacement, RunsOnlyWhereRequested) {
     options.search = SearchOptions::Search::never;
     EXPECT_FALSE(place_by_search(mesh, {&cut_piece.fragment}, options, scale, placed)[0].has_value());
     EXPECT_EQ(placed[0].problem, "has 0 landmarks");
-    // A mirror image, say, has landmarks enough: another pose would be no answer.
+    // A mirror image, for example, has enough landmarks: another pose would not be an answer.
     options.search = SearchOptions::Search::automatic;
     placed[0].landmarks.resize(4);
     EXPECT_FALSE(place_by_search(mesh, {&cut_piece.fragment}, options, scale, placed)[0].has_value());
@@ -116,7 +116,7 @@ TEST(SearchPlacement, AnUnrelatedFragmentIsNotPlaced) {
 }
 
 TEST(SearchPlacement, OneLandmarkDecidesTheRotationOfAVessel) {
-    // A vase, turned: its pieces are found, but for the turn about its axis.
+    // A rotated vase: its pieces are found up to the rotation about its axis.
     const Mesh mesh = test::deformed_by(build_mesh(test::octahedron_sphere(5)), [](const Vector3d& p) {
         const double r = 1 + 0.3 * std::sin(3 * p.z()) + 0.1 * p.z();
         return Vector3d(r * p.x(), r * p.y(), 2 * p.z());

@@ -1,4 +1,4 @@
-// What a class says of the part that a fragment does not show.
+// The class's prediction of the part that a fragment lacks.
 #include "ostraka/reconstruction/reconstruct.h"
 
 #include "pieces.h"

@@ -1,4 +1,5 @@
-// Vertices that slide along the fragment's surface: curves where parts meet, faces that both meshes share, and what comes of it.
+// Vertices that slide along the fragment's surface: curves where parts meet, faces that both meshes share, and the resulting
+// correspondences.
 #include "../../src/reconstruction/joint_curves.h"
 #include "../../src/reconstruction/shared_faces.h"
 
@@ -22,7 +23,7 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-/// The body of `pieces.h`, meshed irregularly from a sphere that was turned first: another mesh for each angle.
+/// The body of `pieces.h`, meshed irregularly from a rotated sphere: another mesh for each angle.
 Mesh meshed_body(std::size_t vertices, double angle) {
     Mesh mesh = deformed_by(build_mesh(octahedron_sphere(5)), [angle](const Vector3d& p) {
         const Vector3d q = Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized()) * p;
@@ -51,7 +52,7 @@ Vector3d member(const Vector3d& p) {
     return {1.12 * p.x() + 0.05 * z * z, 0.95 * p.y(), z};
 }
 
-/// Regions by labels, and landmarks at the vertices nearest to places.
+/// Regions by labels, and landmarks at the vertices nearest to given points.
 AnnotationSet annotated(const Mesh& mesh, const std::vector<int>& labels, const std::vector<Point>& marks) {
     AnnotationSet set;
     for (int part = 0; part <= *std::max_element(labels.begin(), labels.end()); ++part) {
@@ -72,7 +73,7 @@ AnnotationSet annotated(const Mesh& mesh, const std::vector<int>& labels, const 
 }
 
 struct Fitted {
-    double error = 0;  ///< mean distance of vertices from where they belong
+    double error = 0;  ///< mean distance of vertices from their true positions
     Reconstruction result;
 };
 
@@ -133,7 +134,7 @@ TEST(Sliding, IsTheDefaultAndAnOption) {
 TEST(Sliding, TinyFragmentsAreFitted) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    // One triangle, all of whose corners are landmarks; its region and the template's touch in no edge.
+    // One triangle, all of whose corners are landmarks; its region and the template's share no edge.
     Fragment fragment;
     fragment.name = "crumb";
     TriangleSoup soup;
@@ -165,7 +166,7 @@ TEST(Sliding, TinyFragmentsAreFitted) {
         EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], mesh.point(v))), 0.01 * box_diagonal(mesh));
 }
 
-/// A disc on a sphere, larger on the other one: closest places alone leave its rim where it was.
+/// A disc on a sphere, larger on the other one: closest points alone leave its rim unchanged.
 TEST(JointCurves, TheRimOfAPartMovesToTheRimOfItsCounterpart) {
     const Mesh mesh = build_mesh(octahedron_sphere(4)), other = build_mesh(octahedron_sphere(5));
     const auto disc = [](const Mesh& sphere, double height) {
@@ -241,7 +242,7 @@ TEST(SharedFaces, APieceOfTheMeshInAnotherShapeIsRecognised) {
     options.moved = false;
     const SyntheticFragment piece = generate_fragment(original, original.point(Vertex(7)), options);
     EXPECT_EQ(shared_vertices(mesh, piece.mesh), piece.vertices);
-    // Without a part that is broken; its faces need not be the template's.
+    // Without a broken part; its faces need not be the template's.
     std::vector<bool> broken(piece.mesh.number_of_faces(), false);
     for (const Face face : piece.mesh.faces()) broken[face] = centroid(piece.mesh, face).z() > 0.5;
     const std::vector<Index> rest = shared_vertices(mesh, piece.mesh, 1, broken);

@@ -1,4 +1,4 @@
-// What the sizes and landmarks of fragments say where these depend on posture.
+// Verdicts from sizes and landmarks of fragments if these depend on posture.
 #include "../../src/reconstruction/reconstruction_verdict.h"
 
 #include <gtest/gtest.h>
@@ -30,12 +30,12 @@ Reconstruction judged(const std::vector<std::vector<LandmarkPair>>& pairs, doubl
     Reconstruction result;
     result.placement = place_by_landmarks(pairs);
     ReconstructOptions options;
-    options.residual = residual;  // of 10: sizes alone are asked
+    options.residual = residual;  // of 10: only sizes are tested
     judge_reconstruction(result, pairs, {}, options);
     return result;
 }
 
-TEST(VerdictOfSizes, PostureIsNoOtherSize) {
+TEST(VerdictOfSizes, PostureIsNotAnotherSize) {
     const Reconstruction same = judged({bent(0, 1), bent(0, 1)});
     EXPECT_EQ(same.verdict, Compatibility::compatible) << same.undecided;
     const Reconstruction posture = judged({bent(0, 1), bent(1.2, 1)});
@@ -45,8 +45,8 @@ TEST(VerdictOfSizes, PostureIsNoOtherSize) {
     EXPECT_NE(posture.undecided.find("posture"), std::string::npos) << posture.undecided;
 }
 
-TEST(VerdictOfSizes, AFragmentFoundByItsShapeHasTheSizeThatTheOthersGaveIt) {
-    // Its two landmarks are a fifth farther apart than the template's: one distance says nothing of a size.
+TEST(VerdictOfSizes, AFragmentPlacedByItsShapeHasTheSizeOfTheOthers) {
+    // Its two landmarks are a fifth farther apart than the template's: one distance does not determine a size.
     auto two = bent(0, 1.2);
     two.resize(2);
     const std::vector<std::vector<LandmarkPair>> pairs{bent(0, 1), two};
@@ -62,7 +62,7 @@ TEST(VerdictOfSizes, AFragmentFoundByItsShapeHasTheSizeThatTheOthersGaveIt) {
     EXPECT_EQ(result.verdict, Compatibility::compatible) << result.undecided;
 }
 
-TEST(VerdictOfSizes, AnotherSizeStaysOne) {
+TEST(VerdictOfSizes, AnotherSizeIsDetected) {
     for (const double angle : {0.0, 0.2}) {
         const Reconstruction other = judged({bent(0, 1), bent(angle, 1.4)});
         EXPECT_EQ(other.verdict, Compatibility::incompatible) << angle;
@@ -71,7 +71,7 @@ TEST(VerdictOfSizes, AnotherSizeStaysOne) {
     }
 }
 
-TEST(VerdictOfLandmarks, PostureIsNoOtherShape) {
+TEST(VerdictOfLandmarks, PostureIsNotAnotherShape) {
     const Reconstruction posture = judged({bent(0, 1), bent(1.2, 1)}, 0.1);
     // A sixth of their spread of 4.2.
     EXPECT_GT(posture.placement.fragments[1].residual, 0.15 * 4.2) << "by all landmarks it is another shape";
@@ -79,14 +79,14 @@ TEST(VerdictOfLandmarks, PostureIsNoOtherShape) {
     EXPECT_TRUE(posture.objections.empty());
 }
 
-TEST(VerdictOfLandmarks, AnotherShapeStaysOne) {
+TEST(VerdictOfLandmarks, AnotherShapeIsDetected) {
     auto stretched = bent(0, 1);
     for (LandmarkPair& pair : stretched) pair.on_fragment = Vector3d(0.6, 2.5, 1).cwiseProduct(pair.on_fragment);
     const Reconstruction other = judged({bent(0, 1), stretched}, 0.1);
     EXPECT_EQ(other.verdict, Compatibility::incompatible);
     EXPECT_TRUE(std::any_of(other.objections.begin(), other.objections.end(),
                             [](const Objection& objection) { return objection.kind == ObjectionKind::landmarks; }));
-    // Of three landmarks nothing says that they belong to parts that move against each other.
+    // Three landmarks do not show whether they belong to parts that move relative to each other.
     std::vector<LandmarkPair> few = bent(1.2, 1);
     few.erase(few.begin() + 1, few.begin() + 5);
     few.erase(few.begin() + 3, few.end());

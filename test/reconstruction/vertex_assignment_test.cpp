@@ -1,4 +1,4 @@
-// Equation 5.1 against its full matrix, and against what it is for.
+// Equation 5.1 against its full matrix and its purpose.
 #include "ostraka/reconstruction/vertex_assignment.h"
 
 #include "meshes.h"
@@ -38,7 +38,7 @@ Annotation region(const Mesh& mesh, double x0, double x1, double y0, double y1) 
     return annotation;
 }
 
-/// The costs written down in full: of every pair of vertices of two regions whose outlines are one closed loop each.
+/// The full cost matrix of two regions, each with one closed outline.
 struct Full {
     std::vector<Index> ours, theirs;
     std::vector<std::vector<double>> cost;
@@ -165,7 +165,7 @@ TEST(VertexAssignment, LandmarksOnTheOutlineKeepArchesApart) {
             return std::array<double, 3>{x, height + rise * arch * (2 * v - 1) * 0.999 + 1e-3 * (2 * v - 1), 0};
         }));
     };
-    // Embedded in frames, so that outlines are no borders of the mesh: rows 1 to 4 of 6.
+    // Embedded in frames, so that outlines are not borders of the mesh: rows 1 to 4 of 6.
     const Mesh lower = eye(0, 0.6), upper = eye(0.5, 0.3);
     const auto middle = [](const Mesh& mesh) {
         Annotation annotation;

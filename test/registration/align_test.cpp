@@ -83,7 +83,7 @@ TEST(Align, AMissingPieceChangesLittle) {
 }
 
 TEST(Align, RegistersSurfacesThatSlideOnThemselves) {
-    // A ball can turn on itself: the motion is open, the distance is not.
+    // A ball can rotate on itself: the motion is undetermined, the distance is not.
     const AlignSurface ball(build_mesh(test::octahedron_sphere(4))),
         away(build_mesh(test::moved(test::octahedron_sphere(4), 1, {0.3, 0.1, 0})));
     const Alignment alignment = align(ball, away, {Motion()});

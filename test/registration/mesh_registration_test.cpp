@@ -57,7 +57,8 @@ Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
     return motion;
 }
 
-/// `source` and `target` are of one surface in one place: the source is moved, found again, and what is left compared.
+/// `source` and `target` are meshes of one surface in one pose: the source is moved and registered, and the remaining error is
+/// compared.
 void expect_found(const Mesh& source, const Mesh& target, std::uint64_t seed, double degrees, double scale) {
     const Motion motion = any_similarity(source, seed);
     const MeshRegistration registration = register_mesh(shaped(source, motion), target);
@@ -122,9 +123,9 @@ TEST(MeshRegistration, RefusesAndReportsMirrorImages) {
     const MeshRegistration registration = register_mesh(mirrored(hand), other);
     EXPECT_EQ(registration.verdict, RegistrationVerdict::mirrored);
     EXPECT_LT(registration.mirrored.rms, 0.2 * registration.agreement.rms);
-    // An axis turned over by an export, the faces as they were: mirrored and inside out.
+    // An axis reversed by an export, with unchanged faces: mirrored and inside out.
     EXPECT_EQ(register_mesh(flipped_mesh(hand, true), other).verdict, RegistrationVerdict::mirrored);
-    // What is its own mirror image is aligned; but for the very triangles, by which it was mirrored.
+    // A mirror-symmetric object is aligned, but not in its original triangles, from which it was mirrored.
     const Mesh pot = synthetic_mesh("teapot", 3000);
     EXPECT_EQ(register_mesh(mirrored(synthetic_mesh("teapot", 5000, 2)), pot).verdict, RegistrationVerdict::aligned);
     EXPECT_EQ(register_mesh(mirrored(pot), pot).verdict, RegistrationVerdict::mirrored);
@@ -202,7 +203,7 @@ TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHandled) {
         EXPECT_THROW(register_mesh(bad, pot), Error);
         EXPECT_THROW(register_mesh(pot, bad), Error);
     }
-    // Points in one place beside a sound surface, and faces without area.
+    // Coincident points next to a valid surface, and faces without area.
     TriangleSoup soup = to_soup(pot);
     const Index n = static_cast<Index>(soup.points.size());
     for (int k = 0; k < 3; ++k) soup.points.push_back(soup.points[0]);

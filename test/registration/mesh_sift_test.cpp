@@ -42,7 +42,7 @@ TEST(MeshSift, DirectionsAreTangentUnitVectors) {
 }
 
 TEST(MeshSift, ABallHasNoSalientPoints) {
-    // Curvature is the same everywhere but for the triangles.
+    // Curvature is constant up to the triangulation.
     EXPECT_EQ(mesh_sift(build_mesh(test::octahedron_sphere(5))).features.size(), 0U);
 }
 
@@ -51,8 +51,8 @@ TEST(MeshSift, AnIndependentMeshOfTheSameSurfaceHasTheSameFeatures) {
     SiftOptions options;
     options.size = 66;
     const FeatureSet fa = mesh_sift(a.mesh, options), fb = mesh_sift(b.mesh, options);
-    // Of the front features most have one of about their scale within half their sigma.
-    int front = 0, found = 0;
+    // Most front features have a counterpart of similar scale within half their sigma.
+    int front = 0, matched = 0;
     for (const Feature& feature : fa.features) {
         const auto part = a.face_labels[a.mesh.face(a.mesh.halfedge(Vertex(feature.vertex)))];
         if (part != static_cast<int>(HeadPart::nose) && part != static_cast<int>(HeadPart::mouth)) continue;
@@ -60,12 +60,12 @@ TEST(MeshSift, AnIndependentMeshOfTheSameSurfaceHasTheSameFeatures) {
         for (const Feature& other : fb.features) {
             if ((other.point - feature.point).norm() > 0.75 * feature.scale) continue;
             if (std::abs(std::log2(other.scale / feature.scale)) > 0.5) continue;
-            ++found;
+            ++matched;
             break;
         }
     }
     ASSERT_GT(front, 4);
-    EXPECT_GT(found, 0.6 * front);
+    EXPECT_GT(matched, 0.6 * front);
 }
 
 TEST(MeshSift, HasNoFeaturesAtTheBorder) {

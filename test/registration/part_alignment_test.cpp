@@ -66,7 +66,7 @@ TEST(PartAlignment, ConvergesFromNearby) {
 TEST(PartAlignment, ToleratesNoiseAndMissingSurface) {
     Mesh whole = potato();
     const SurfaceSearch search(whole);
-    // The fragment has a growth that the whole does not have.
+    // The fragment has a bump that the whole does not have.
     Mesh grown = whole;
     for (const Vertex v : grown.vertices()) {
         const Vector3d p = eigen(grown.point(v));
@@ -83,7 +83,7 @@ TEST(PartAlignment, ToleratesNoiseAndMissingSurface) {
         EXPECT_LT((alignment.pose(eigen(piece.mesh.point(v))) - piece.pose(eigen(piece.mesh.point(v)))).norm(), 0.02);
 }
 
-// A ball fits in any turn: anchors decide.
+// A ball fits in any rotation: anchors decide.
 TEST(PartAlignment, AnchorsFixTheSlippableMotions) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const SurfaceSearch search(ball);

@@ -26,7 +26,7 @@ Mesh shaped(const Mesh& mesh, const std::function<Vector3d(const Vector3d&)>& ma
 
 Mesh ball(int levels = 5) { return build_mesh(test::octahedron_sphere(levels)); }
 
-/// Nothing of it looks like another part.
+/// No two parts of it are similar.
 Mesh potato() {
     return shaped(ball(), [](const Vector3d& p) {
         const double r =
@@ -113,7 +113,7 @@ TEST(PoseSearch, OnlyMarkedFacesCount) {
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
     SyntheticFragment piece = broken(whole, Point(0, 0.5, 1.6), 0.3);
-    // A third of the piece is spoilt, and not marked.
+    // A third of the piece is damaged, and not marked.
     const Vector3d middle = middle_of(piece.mesh);
     std::vector<bool> marks(piece.mesh.number_of_faces(), true);
     std::vector<bool> spoilt(piece.mesh.number_of_vertices());
@@ -141,7 +141,7 @@ TEST(PoseSearch, ReportsTheSlippableMotionsOfABall) {
         EXPECT_TRUE(range.rotates);
         EXPECT_GT(range.maximum - range.minimum, 6);  // all around
     }
-    // But for that, the piece lies where it should.
+    // Up to that rotation, the piece has its true pose.
     ASSERT_TRUE(result.decided) << result.reason;
     EXPECT_TRUE(
         result.slippable.contains(result.candidates.front().pose.after(piece.pose.inverse()), Vector3d(1, 2, 3), 0.05, 0.05));
@@ -177,7 +177,7 @@ TEST(PoseSearch, ReportsWhenItCannotDecide) {
     EXPECT_FALSE(unrelated.reason.empty());
     EXPECT_LT(unrelated.confidence, 0.5);
 
-    // A lens: its two ends look alike.
+    // A lens: its two ends are identical.
     const Mesh lens = shaped(ball(), [](const Vector3d& p) {
         return Vector3d((1 + 0.2 * p.x() * p.x()) * p.x(), (0.6 + 0.1 * p.x() * p.x()) * p.y(), 0.35 * p.z());
     });
@@ -222,7 +222,7 @@ TEST(PoseSearch, RefusesInvalidInput) {
     PoseSearchOptions wrong;
     wrong.min_scale = 2;
     EXPECT_THROW(PoseSearch(surface, wrong), Error);
-    // One triangle has a place anywhere: nothing to decide by.
+    // One triangle fits anywhere: the pose is undetermined.
     Mesh triangle;
     triangle.add_face(triangle.add_vertex(Point(0, 0, 0)), triangle.add_vertex(Point(0.3, 0, 0)),
                       triangle.add_vertex(Point(0, 0.3, 0)));
@@ -250,7 +250,7 @@ TEST(SurfacePoints, AreEvenAndSmooth) {
     });
     const SurfacePoints same = spread_points(rough, {}, spacing, 2 * spacing);
     for (std::size_t i = 0; i < same.size(); ++i) EXPECT_GT(same.normals[i].dot(same.places[i].normalized()), 0.98);
-    // A large triangle is spread over as well; what is not marked is left out.
+    // Points are also spread over a large triangle; unmarked faces are left out.
     Mesh triangle;
     triangle.add_face(triangle.add_vertex(Point(0, 0, 0)), triangle.add_vertex(Point(3, 0, 0)),
                       triangle.add_vertex(Point(0, 3, 0)));

@@ -126,7 +126,7 @@ TEST(GeneralisedProcrustes, MovedCopiesHaveNoResidual) {
 TEST(GeneralisedProcrustes, OneAndTwoConfigurations) {
     const Landmarks x = random_landmarks(9, 8), y = random_landmarks(9, 9);
     EXPECT_LT(generalised_procrustes({x}).sum_of_squares, 1e-24);
-    // About the mean of two lies half of what lies between them.
+    // The deviation from the mean of two is half of their distance.
     EXPECT_NEAR(generalised_procrustes({x, y}).sum_of_squares, procrustes(x, y).sum_of_squares / 2, 1e-9);
 }
 

@@ -17,7 +17,7 @@ struct Cloud {
     std::vector<Vector3d> places, normals;
 };
 
-/// A piece of a surface given by two parameters, its normals by differences.
+/// A piece of a parametric surface, with normals from finite differences.
 Cloud cloud(const std::function<Vector3d(double, double)>& surface) {
     Cloud c;
     for (int i = 0; i < 20; ++i)
@@ -35,7 +35,7 @@ Vector3d on_sphere(double u, double v) {
     return 3 * Vector3d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
 }
 
-/// Moved, so that nothing stands in the axes.
+/// Moved, so that nothing is aligned with the axes.
 Motion tilted(double size) {
     Motion motion;
     motion.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
@@ -44,7 +44,7 @@ Motion tilted(double size) {
     return motion;
 }
 
-SlippableMotions of(Cloud c, const Motion& motion) {
+SlippableMotions motions_of(Cloud c, const Motion& motion) {
     for (Vector3d& p : c.places) p = motion(p);
     for (Vector3d& n : c.normals) n = motion.rotation * n;
     return slippable_motions_of(c.places, c.normals, 0.02);
@@ -65,13 +65,13 @@ TEST(SlippableMotionsTest, AreThoseOfTheSurface) {
         const auto near = [&](const Vector3d& p, const Vector3d& q) { return (p - q).norm() < 1e-4 * size; };
         const auto along = [](const Vector3d& a, const Vector3d& b) { return std::abs(a.dot(b)) > 1 - 1e-8; };
 
-        const SlippableMotions sphere = of(cloud(on_sphere), motion);
+        const SlippableMotions sphere = motions_of(cloud(on_sphere), motion);
         EXPECT_EQ(sphere.kind, SlippableKind::sphere);
         EXPECT_TRUE(near(sphere.point, origin));
         EXPECT_TRUE(sphere.contains(about(origin, Vector3d(1, -1, 2), 2), origin, 0.01, 1e-3 * size));
         EXPECT_FALSE(sphere.contains(about(origin + size * x, z, 2), origin, 0.01, 1e-3 * size));
 
-        const SlippableMotions plane = of(cloud([](double u, double v) { return Vector3d(2 * u, v, 0); }), motion);
+        const SlippableMotions plane = motions_of(cloud([](double u, double v) { return Vector3d(2 * u, v, 0); }), motion);
         EXPECT_EQ(plane.kind, SlippableKind::plane);
         EXPECT_TRUE(along(plane.direction, z));
         Motion translated;
@@ -81,7 +81,7 @@ TEST(SlippableMotionsTest, AreThoseOfTheSurface) {
         EXPECT_FALSE(plane.contains(about(origin, x, 0.5), origin, 0.01, 1e-3 * size));
 
         const SlippableMotions cylinder =
-            of(cloud([](double u, double v) { return Vector3d(std::cos(u), std::sin(u), 2 * v); }), motion);
+            motions_of(cloud([](double u, double v) { return Vector3d(std::cos(u), std::sin(u), 2 * v); }), motion);
         EXPECT_EQ(cylinder.kind, SlippableKind::cylinder);
         EXPECT_TRUE(along(cylinder.direction, z));
         translated.translation = size * z;
@@ -91,7 +91,7 @@ TEST(SlippableMotionsTest, AreThoseOfTheSurface) {
             const double r = 1 + 0.4 * std::sin(4 * v) + 0.2 * v;
             return Vector3d(r * std::cos(2 * u), r * std::sin(2 * u), 2 * v);
         };
-        const SlippableMotions revolution = of(cloud(vase), motion);
+        const SlippableMotions revolution = motions_of(cloud(vase), motion);
         EXPECT_EQ(revolution.kind, SlippableKind::rotation);
         EXPECT_TRUE(along(revolution.direction, z));
         EXPECT_NEAR((revolution.point - origin).cross(z).norm(), 0, 1e-4 * size);
@@ -99,27 +99,28 @@ TEST(SlippableMotionsTest, AreThoseOfTheSurface) {
         EXPECT_FALSE(revolution.contains(translated, origin, 0.01, 1e-3 * size));
 
         const SlippableMotions prism =
-            of(cloud([](double u, double v) { return Vector3d(u, 0.3 * std::sin(7 * u) + u * u, 2 * v); }), motion);
+            motions_of(cloud([](double u, double v) { return Vector3d(u, 0.3 * std::sin(7 * u) + u * u, 2 * v); }), motion);
         EXPECT_EQ(prism.kind, SlippableKind::translation);
         EXPECT_TRUE(along(prism.direction, z));
 
-        const SlippableMotions helix = of(cloud([](double u, double v) {
-                                              const double a = 5 * u, r = 1 + v * (1 - v);
-                                              return Vector3d(r * std::cos(a), r * std::sin(a), 0.4 * a + v);
-                                          }),
-                                          motion);
+        const SlippableMotions helix = motions_of(cloud([](double u, double v) {
+                                                      const double a = 5 * u, r = 1 + v * (1 - v);
+                                                      return Vector3d(r * std::cos(a), r * std::sin(a), 0.4 * a + v);
+                                                  }),
+                                                  motion);
         EXPECT_EQ(helix.kind, SlippableKind::helix);
         EXPECT_TRUE(along(helix.direction, z));
         EXPECT_NEAR(helix.pitch * (helix.direction.dot(z) < 0 ? 1 : 1), 0.4 * size, 1e-4 * size);
 
-        EXPECT_EQ(
-            of(cloud([](double u, double v) { return Vector3d(2 * u, v, std::sin(5 * u) * std::cos(4 * v + 1)); }), motion).kind,
-            SlippableKind::none);
+        EXPECT_EQ(motions_of(cloud([](double u, double v) { return Vector3d(2 * u, v, std::sin(5 * u) * std::cos(4 * v + 1)); }),
+                             motion)
+                      .kind,
+                  SlippableKind::none);
     }
 }
 
 TEST(SlippableMotionsTest, WaysStayInTheGroup) {
-    const SlippableMotions sphere = of(cloud(on_sphere), tilted(1));
+    const SlippableMotions sphere = motions_of(cloud(on_sphere), tilted(1));
     const auto ways = sphere.ways(1, 1, 4);
     EXPECT_EQ(ways.size(), 6u);
     for (const auto& way : ways)

@@ -1,4 +1,4 @@
-// Relationships that are planted in synthetic objects are found at every noise, and what is false is not.
+// Relationships planted in synthetic objects are found at every noise level, and false ones are not.
 #include "ostraka/relation/geometric.h"
 
 #include "meshes.h"
@@ -93,7 +93,7 @@ Relationship stated(const std::string& type, std::vector<int> members, const std
     return relationship;
 }
 
-/// Vertices moved along their normals, Gaussian with the given share of the diagonal as its deviation.
+/// Vertices moved along their normals, Gaussian with the given share of the diagonal as standard deviation.
 void add_noise(Mesh& mesh, double share, unsigned seed = 11) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, share * box_diagonal(mesh));
@@ -118,17 +118,17 @@ std::string words(const RelationCheck& check) {
 
 }  // namespace
 
-TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
+TEST(GeometricRelations, PlantedRelationsAreFoundAndFalseOnesAreNot) {
     for (const auto& [name, list] : planted())
         for (const auto& [noise, seed] :
              {std::pair{0.0, 0U}, {0.001, 11U}, {0.001, 71U}, {0.005, 11U}, {0.005, 72U}, {0.005, 73U}}) {
-            SyntheticMesh made = make_mesh(synthetic_object(name), {.vertices = 12000});
+            SyntheticMesh object = make_mesh(synthetic_object(name), {.vertices = 12000});
             const AnnotationSet set =
-                apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels);
-            add_noise(made.mesh, noise, seed);
+                apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), object.mesh, object.face_labels);
+            add_noise(object.mesh, noise, seed);
             RelationOptions options;
             if (noise > 0.004) options.ratio = 12;  // such noise alone makes the areas of small parts differ by up to 11 %
-            RelationMeter meter(made.mesh, set, options);
+            RelationMeter meter(object.mesh, set, options);
             for (const auto& [holds, type, members, attribute] : list) {
                 const RelationCheck check = meter.measure(stated(type, members, attribute));
                 std::string text = name + " " + std::to_string(noise) + " " + std::to_string(seed) + " " + type;
@@ -138,10 +138,10 @@ TEST(GeometricRelations, PlantedOnesAreFoundAndFalseOnesAreNot) {
         }
 }
 
-TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
-    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
-    RelationMeter meter(made.mesh, set);
+TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
+    const SyntheticMesh object = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
+    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", object.mesh, object.face_labels);
+    RelationMeter meter(object.mesh, set);
     RelationGraph graph;
     graph.relationships = meter.extract({}, 3);
     ASSERT_FALSE(graph.relationships.empty());
@@ -150,7 +150,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
         return std::any_of(graph.relationships.begin(), graph.relationships.end(),
                            [&](const auto& r) { return r.type == type && r.annotations == members; });
     };
-    // Whatever else is on their level: the five flowers are in one group.
+    // The five flowers are in one group, possibly with other parts on their level.
     const std::vector<int> flowers{7, 8, 9, 10, 11};
     EXPECT_TRUE(std::any_of(graph.relationships.begin(), graph.relationships.end(), [&](const auto& r) {
         return r.type == "same level" &&
@@ -158,16 +158,16 @@ TEST(GeometricRelations, ExtractionFindsThePlantedOnes) {
     }));
     EXPECT_TRUE(has("co-axiality", {1, 2}));
     EXPECT_FALSE(has("mirror symmetry", {5, 6}));
-    // What is extracted holds when it is checked.
-    for (const auto& check : check_relations(made.mesh, set, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
-    // Types alone.
+    // Extracted relationships hold when checked.
+    for (const auto& check : check_relations(object.mesh, set, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
+    // Selected types only.
     for (const auto& relationship : meter.extract({"same level"}, 0)) EXPECT_EQ(relationship.type, "same level");
 }
 
-TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
-    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", made.mesh, made.face_labels);
-    const ExtractedRelations all = extract_relations(made.mesh, set);
+TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
+    const SyntheticMesh object = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
+    AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", object.mesh, object.face_labels);
+    const ExtractedRelations all = extract_relations(object.mesh, set);
     EXPECT_TRUE(all.stated.empty());
     EXPECT_TRUE(all.not_looked_for.empty());
     RelationGraph old;
@@ -179,7 +179,7 @@ TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
     std::size_t stated = 0;
     for (const auto& relationship : old.relationships) stated += relationship.origin == "stated";
     ASSERT_GT(stated, 0U);
-    const ExtractedRelations again = extract_relations(made.mesh, set, old, {"Co-Axiality", "containment"});
+    const ExtractedRelations again = extract_relations(object.mesh, set, old, {"Co-Axiality", "containment"});
     EXPECT_EQ(again.stated.size(), stated);
     std::set<int> ids;
     for (const auto& relationship : again.graph.relationships) {
@@ -187,9 +187,9 @@ TEST(GeometricRelations, WhatIsStatedIsNotExtractedAgain) {
         EXPECT_EQ(relationship.type, relationship.origin == "stated" ? "co-axiality" : "containment");
     }
     set.up.reset();
-    EXPECT_EQ(extract_relations(made.mesh, set, {}, {"same level", "containment"}).not_looked_for,
+    EXPECT_EQ(extract_relations(object.mesh, set, {}, {"same level", "containment"}).not_looked_for,
               std::vector<std::string>{"same level"});
-    EXPECT_THROW(extract_relations(made.mesh, set, {}, {"proportion"}), Error);
+    EXPECT_THROW(extract_relations(object.mesh, set, {}, {"proportion"}), Error);
 }
 
 TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {
@@ -221,7 +221,7 @@ TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {
         EXPECT_NEAR(*bad.parameters.deviations[0].value, 0.18 * 180 / M_PI, 0.3 + 400 * noise);
         EXPECT_EQ(meter.measure(stated("parallel axes", {0, 1})).verdict, Verdict::holds);
         EXPECT_EQ(meter.measure(stated("perpendicular axes", {0, 1})).verdict, Verdict::fails);
-        // A tolerance of its own decides.
+        // The relationship's own tolerance decides.
         Relationship loose = stated("parallel axes", {0, 2});
         loose.parameters.deviations = {{"angle", {}, 20.0, "degree"}};
         EXPECT_EQ(meter.measure(loose).verdict, Verdict::holds);
@@ -262,7 +262,7 @@ TEST(GeometricRelations, PointsAndPlanes) {
     EXPECT_NEAR(mirrored.parameters.plane->point[2], 0.5, 1e-9);
     EXPECT_NEAR(std::abs(mirrored.parameters.plane->direction[2]), 1, 1e-9);
     EXPECT_LT(*mirrored.parameters.deviations[0].value, 1e-9);
-    // Nothing is known of what is up, until it is said.
+    // The upward direction is unknown until it is given.
     EXPECT_EQ(meter.measure(stated("same level", {0, 1})).verdict, Verdict::unknown);
     Relationship level = stated("same level", {0, 1});
     level.parameters.up = std::array<double, 3>{0, 0, 1};
@@ -277,19 +277,19 @@ TEST(GeometricRelations, PointsAndPlanes) {
     EXPECT_THROW(RelationMeter(mesh, set, wrong), Error);
 }
 
-TEST(GeometricRelations, VeryManyAreLeftOutInWords) {
-    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 4000});
+TEST(GeometricRelations, OmittedRelationsAreReported) {
+    const SyntheticMesh object = make_mesh(synthetic_object("teapot"), {.vertices = 4000});
     AnnotationSet set;
-    const auto faces = static_cast<Index>(made.mesh.number_of_faces());
+    const auto faces = static_cast<Index>(object.mesh.number_of_faces());
     for (int i = 0; i < 500; ++i) {
-        Annotation one;
-        one.id = i, one.tag = "r" + std::to_string(i);
-        for (Index f = static_cast<Index>(i % 2); f < faces; f += 2) one.faces.push_back(f);
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = i, annotation.tag = "r" + std::to_string(i);
+        for (Index f = static_cast<Index>(i % 2); f < faces; f += 2) annotation.faces.push_back(f);
+        set.annotations.push_back(annotation);
     }
-    const ExtractedRelations found = extract_relations(made.mesh, set, {}, {"adjacency", "containment", "side contact"});
-    EXPECT_LE(found.graph.relationships.size(), 60000U);
-    ASSERT_FALSE(found.notes.empty());
-    EXPECT_NE(found.notes.front().find("are reported"), std::string::npos) << found.notes.front();
-    for (const auto& check : check_relations(made.mesh, set, found.graph)) EXPECT_EQ(check.verdict, Verdict::holds);
+    const ExtractedRelations extracted = extract_relations(object.mesh, set, {}, {"adjacency", "containment", "side contact"});
+    EXPECT_LE(extracted.graph.relationships.size(), 60000U);
+    ASSERT_FALSE(extracted.notes.empty());
+    EXPECT_NE(extracted.notes.front().find("are reported"), std::string::npos) << extracted.notes.front();
+    for (const auto& check : check_relations(object.mesh, set, extracted.graph)) EXPECT_EQ(check.verdict, Verdict::holds);
 }

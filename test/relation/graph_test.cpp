@@ -41,7 +41,7 @@ const char* const own_file = R"({"format": "ostraka-graph", "version": 1, "relat
 
 RelationGraph read(const std::string& text) { return graph_from_json(parse_json(text, "g"), four(), "g"); }
 
-/// The words of the refusal.
+/// The message of the refusal.
 std::string refused(const std::string& entry) {
     try {
         read("{\"relationships\": [" + entry + "]}");
@@ -68,7 +68,7 @@ TEST(Graph, ThesisFileIsRead) {
     EXPECT_EQ(parse_json(graph.relationships[1].constraint, "c")["maxValue"].GetDouble(), 0.33);
 }
 
-TEST(Graph, WrittenAndReadAgainTheSame) {
+TEST(Graph, RoundTripIsExact) {
     const Scratch scratch;
     for (const char* text : {thesis_file, own_file}) {
         const RelationGraph graph = read(text);
@@ -87,7 +87,7 @@ TEST(Graph, WrittenAndReadAgainTheSame) {
     EXPECT_EQ(again.relationships[3].parameters.attribute, "area");
 }
 
-TEST(Graph, RefusedWithPlaceAndRemedy) {
+TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     const std::string rest = R"(, "isConstraint": false})", head = R"({"id": 0, "type": )";
     expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0, 9])" + rest,
                    "annotation 9, which does not exist");
@@ -112,13 +112,13 @@ TEST(Graph, RefusedWithPlaceAndRemedy) {
     std::string other = good;
     other.replace(other.find("\"id\": 0"), 7, "\"id\": 1");
     expect_refused(good + "," + other, "says the same as relationship 0");
-    // Of a proportion the first part changes: the other way round it says something else. One level is one level.
+    // The first part of a proportion changes, so that the order matters. For one level it does not.
     const auto both = [&](const std::string& type) {
-        const auto one = [&](const char* id, const char* members) {
+        const auto relationship_text = [&](const char* id, const char* members) {
             return std::string(R"({"id": )") + id + R"(, "isConstraint": true, "type": ")" + type +
                    R"(", "isDirected": false, "annotations": )" + members + "}";
         };
-        return one("0", "[2, 1]") + "," + one("1", "[1, 2]");
+        return relationship_text("0", "[2, 1]") + "," + relationship_text("1", "[1, 2]");
     };
     EXPECT_EQ(refused(both("proportion")), "read");
     EXPECT_EQ(refused(both("structural continuity")), "read");
@@ -136,7 +136,7 @@ TEST(Graph, NearestTypeIsSuggested) {
     EXPECT_EQ(find_relation_type("same levels"), nullptr);
 }
 
-TEST(Graph, TextStaysTextInDot) {
+TEST(Graph, TextIsEscapedInDot) {
     AnnotationSet set = four();
     set.annotations[0].tag = "a\"]; evil [label=\"<b>x</b>\\N &lt;i&gt;\n\x01 Ä \xC2\x9B \xE2\x80\xAE";
     RelationGraph graph = read(own_file);

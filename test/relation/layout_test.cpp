@@ -1,4 +1,4 @@
-// Drawings of graphs: no bracket lies on another, and the tree is that of the containment.
+// Drawings of graphs: no brackets overlap, and the tree is that of the containment.
 #include "ostraka/relation/layout.h"
 #include "ostraka/core/error.h"
 #include "ostraka/figures/bracket_graph.h"
@@ -15,9 +15,9 @@ namespace {
 AnnotationSet set_of(std::size_t count) {
     AnnotationSet set;
     for (std::size_t i = 0; i < count; ++i) {
-        Annotation& one = set.annotations.emplace_back();
-        one.id = static_cast<int>(10 * i);
-        one.tag = "part " + std::to_string(i);
+        Annotation& annotation = set.annotations.emplace_back();
+        annotation.id = static_cast<int>(10 * i);
+        annotation.tag = "part " + std::to_string(i);
     }
     return set;
 }
@@ -37,29 +37,29 @@ TEST(Layout, BracketsThatShareRowsLieInDifferentLanes) {
     RelationGraph graph;
     std::mt19937 random(4);
     for (int i = 0; i < 80; ++i) {
-        Relationship& one = graph.relationships.emplace_back();
-        one.id = i;
-        one.type = i % 9 == 0 ? "containment" : "adjacency";
-        for (int k = 0; k < 2 + i % 3; ++k) one.annotations.push_back(static_cast<int>(10 * (random() % n)));
+        Relationship& relationship = graph.relationships.emplace_back();
+        relationship.id = i;
+        relationship.type = i % 9 == 0 ? "containment" : "adjacency";
+        for (int k = 0; k < 2 + i % 3; ++k) relationship.annotations.push_back(static_cast<int>(10 * (random() % n)));
     }
-    graph.relationships.emplace_back().annotations = {12345};  // of nothing that is there
+    graph.relationships.emplace_back().annotations = {12345};  // of missing annotations
     const GraphLayout layout = layout_of(graph, set, chain_of(n));
     ASSERT_EQ(layout.rows.size(), n);
     std::map<int, std::size_t> row_of;
     for (std::size_t r = 0; r < n; ++r) row_of[set.annotations[layout.rows[r].annotation].id] = r;
     EXPECT_EQ(row_of.size(), n) << "each once";
-    std::set<std::pair<int, std::size_t>> taken;
+    std::set<std::pair<int, std::size_t>> occupied;
     for (std::size_t i = 0; i < graph.relationships.size(); ++i) {
-        const Relationship& one = graph.relationships[i];
-        EXPECT_EQ(layout.lanes[i].has_value(), one.type == "adjacency");
+        const Relationship& relationship = graph.relationships[i];
+        EXPECT_EQ(layout.lanes[i].has_value(), relationship.type == "adjacency");
         if (!layout.lanes[i]) continue;
         std::size_t low = n, high = 0;
-        for (const int id : one.annotations) low = std::min(low, row_of[id]), high = std::max(high, row_of[id]);
-        for (std::size_t r = low; r <= high; ++r) EXPECT_TRUE(taken.emplace(*layout.lanes[i], r).second) << i << " on another";
+        for (const int id : relationship.annotations) low = std::min(low, row_of[id]), high = std::max(high, row_of[id]);
+        for (std::size_t r = low; r <= high; ++r) EXPECT_TRUE(occupied.emplace(*layout.lanes[i], r).second) << i << " on another";
     }
 }
 
-TEST(BracketGraph, IsWrittenInThreeFormatsAndNoOther) {
+TEST(BracketGraph, IsWrittenInThreeFormatsOnly) {
     const test::Scratch scratch;
     BracketGraph graph;
     graph.title = "a pot";

@@ -1,4 +1,4 @@
-// Wholes and parts of a vocabulary, held against the selections.
+// Wholes and parts of a vocabulary, compared with the selections.
 #include "ostraka/relation/part_of.h"
 #include "meshes.h"
 #include "ostraka/core/error.h"
@@ -23,23 +23,23 @@ const char* const face = R"({"format": "ostraka-vocabulary", "version": 1, "uri"
 Vocabulary vocabulary() { return vocabulary_from_json(parse_json(face, "face"), "face"); }
 
 Annotation region(int id, const std::string& tag, Index first, Index last) {
-    Annotation one;
-    one.id = id;
-    one.tag = tag;
-    one.faces.resize(last - first);
-    std::iota(one.faces.begin(), one.faces.end(), first);
-    return one;
+    Annotation annotation;
+    annotation.id = id;
+    annotation.tag = tag;
+    annotation.faces.resize(last - first);
+    std::iota(annotation.faces.begin(), annotation.faces.end(), first);
+    return annotation;
 }
 
 }  // namespace
 
 TEST(PartOf, IsInheritedAndTransitive) {
-    const Vocabulary known = vocabulary();
-    const VocabularySearch search(known);
+    const Vocabulary concepts = vocabulary();
+    const VocabularySearch search(concepts);
     const auto levels = search.containing_concepts(*search.find("nose"));
     ASSERT_EQ(levels.size(), 2U);
-    EXPECT_EQ(known.concepts[levels[0].at(0)].id, "face");
-    EXPECT_EQ(known.concepts[levels[1].at(0)].id, "head");
+    EXPECT_EQ(concepts.concepts[levels[0].at(0)].id, "face");
+    EXPECT_EQ(concepts.concepts[levels[1].at(0)].id, "head");
     EXPECT_TRUE(search.containing_concepts(*search.find("hand")).empty());
 }
 
@@ -58,10 +58,10 @@ TEST(PartOf, PartsLieInTheirWholes) {
     EXPECT_EQ(relations[0].annotations, (std::vector<int>{5, 2}));  // the nose in the face, which is nearer than the head
     EXPECT_EQ(relations[0].id, 7);
     EXPECT_EQ(relations[1].annotations, (std::vector<int>{1, 5}));
-    for (const Relationship& one : relations) check_relationship(one, set, "extracted");
+    for (const Relationship& relationship : relations) check_relationship(relationship, set, "extracted");
 }
 
-TEST(PartOf, OfSeveralWholesTheSmallestThatContains) {
+TEST(PartOf, TheSmallestContainingWholeIsUsed) {
     const Mesh mesh = build_mesh(torus(20, 10));
     AnnotationSet set;
     set.annotations = {region(1, "head", 0, 200), region(2, "head", 0, 100), region(3, "nose", 10, 20),
@@ -71,11 +71,11 @@ TEST(PartOf, OfSeveralWholesTheSmallestThatContains) {
     EXPECT_EQ(relations[0].annotations, (std::vector<int>{2, 3}));
 }
 
-TEST(PartOf, GoesThroughSkosAndBack) {
-    const Vocabulary known = vocabulary();
+TEST(PartOf, SkosRoundTripIsExact) {
+    const Vocabulary original = vocabulary();
     for (const bool xml : {false, true}) {
-        const Vocabulary back = vocabulary_from_skos(vocabulary_to_skos(known, xml, "face"), xml, "face");
-        EXPECT_EQ(to_text(vocabulary_to_json(back)), to_text(vocabulary_to_json(known)));
+        const Vocabulary back = vocabulary_from_skos(vocabulary_to_skos(original, xml, "face"), xml, "face");
+        EXPECT_EQ(to_text(vocabulary_to_json(back)), to_text(vocabulary_to_json(original)));
     }
     const std::string narrower =
         "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix t: <http://purl.org/iso25964/skos-thes#> .\n"
@@ -90,7 +90,7 @@ TEST(PartOf, GoesThroughSkosAndBack) {
     EXPECT_EQ(search.containing_concepts(*nose).size(), 1U);
 }
 
-TEST(PartOf, RefusesWhatIsNotThere) {
+TEST(PartOf, RefusesMissingConcepts) {
     std::string text = face;
     text.replace(text.find("\"partOf\": \"head\""), 16, "\"partOf\": \"haed\"");
     EXPECT_THROW((void)vocabulary_from_json(parse_json(text, "face"), "face"), Error);

@@ -14,7 +14,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A box of 12 x 6^2 faces, its faces dealt out to parts in order: areas are as the numbers of faces.
+/// A box of 12 x 6^2 faces, its faces assigned to parts in order: areas are proportional to the numbers of faces.
 class Query : public ::testing::Test {
 protected:
     Query() : mesh(build_mesh(box(6))), face(face_area(mesh, Face(0))) {
@@ -32,11 +32,11 @@ protected:
         graph.relationships.push_back(related(1, "rests on", {1, 4}, true));
     }
     void add(const std::string& tag, std::size_t faces) {
-        Annotation one;
-        one.id = static_cast<int>(set.annotations.size()) + 1;
-        one.tag = tag;
-        for (std::size_t i = 0; i < faces; ++i) one.faces.push_back(next++);
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = static_cast<int>(set.annotations.size()) + 1;
+        annotation.tag = tag;
+        for (std::size_t i = 0; i < faces; ++i) annotation.faces.push_back(next++);
+        set.annotations.push_back(annotation);
     }
     void note(std::size_t at, const std::string& name, const std::string& word) {
         set.annotations[at].attributes.push_back({free_attribute(at), name, AttributeType::semantic, word, {}, {}});
@@ -49,9 +49,10 @@ protected:
     }
     [[nodiscard]] int free_attribute(std::size_t at) const { return static_cast<int>(set.annotations[at].attributes.size()); }
     static Relationship related(int id, const std::string& type, std::vector<int> annotations, bool directed) {
-        Relationship one;
-        one.id = id, one.type = type, one.annotations = std::move(annotations), one.directed = directed;
-        return one;
+        Relationship relationship;
+        relationship.id = id, relationship.type = type, relationship.annotations = std::move(annotations),
+        relationship.directed = directed;
+        return relationship;
     }
     QueryAnswer ask(const std::string& text) {
         QueriedObject object{&mesh, &set, &graph, words, {}};
@@ -62,7 +63,7 @@ protected:
         return AnnotationQuery(text).ask(object);
     }
     [[nodiscard]] bool holds(const std::string& text) { return ask(text).holds; }
-    std::vector<int> found(const std::string& text) { return ask(text).annotations; }
+    std::vector<int> annotations_of(const std::string& text) { return ask(text).annotations; }
 
     Mesh mesh;
     double face;
@@ -77,19 +78,19 @@ using Ids = std::vector<int>;
 }  // namespace
 
 TEST_F(Query, CountsParts) {
-    EXPECT_EQ(found("2 leg"), (Ids{4, 5}));
+    EXPECT_EQ(annotations_of("2 leg"), (Ids{4, 5}));
     EXPECT_FALSE(holds("3 leg"));
     EXPECT_TRUE(holds("count(leg) = 2"));
     EXPECT_FALSE(holds("count(leg) != 2"));
-    EXPECT_EQ(found("handle and \"left arm\""), (Ids{2, 6}));
+    EXPECT_EQ(annotations_of("handle and \"left arm\""), (Ids{2, 6}));
     EXPECT_TRUE(holds("not crown"));
     EXPECT_FALSE(holds("crown or horn"));
-    EXPECT_EQ(found("crown or handle"), (Ids{6}));
+    EXPECT_EQ(annotations_of("crown or handle"), (Ids{6}));
     EXPECT_TRUE(holds("has(body) and not (crown or 3 leg)"));
 }
 
 TEST_F(Query, ComparesQuantitiesInAnyUnit) {
-    EXPECT_EQ(found("area(handle) >= area(body) / 3"), (Ids{1, 6}));
+    EXPECT_EQ(annotations_of("area(handle) >= area(body) / 3"), (Ids{1, 6}));
     EXPECT_FALSE(holds("area(handle) > area(body) / 3"));
     EXPECT_TRUE(holds("height(body) > height(handle)"));  // 3 cm and 20 mm
     EXPECT_TRUE(holds("height(body) = 30 mm and height(handle) <= 0.02 m"));
@@ -101,10 +102,10 @@ TEST_F(Query, ComparesQuantitiesInAnyUnit) {
     EXPECT_TRUE(ask("height(leg) > 0").problems.empty());
 }
 
-TEST_F(Query, AWordStandsForOneAnnotationThroughout) {
+TEST_F(Query, AWordDenotesOneAnnotationThroughout) {
     EXPECT_TRUE(holds("related(\"same mould\", leg)"));
-    EXPECT_EQ(found("related(\"same mould\", leg, handle)"), (Ids{4, 6}));
-    // Both conditions hold, but not of one arm.
+    EXPECT_EQ(annotations_of("related(\"same mould\", leg, handle)"), (Ids{4, 6}));
+    // Both conditions hold, but not for the same arm.
     EXPECT_TRUE(holds("2 leg and area(leg) > 0"));
     note(3, "side", "left");
     note(4, "glaze", "none");
@@ -125,7 +126,7 @@ TEST_F(Query, WordsAndOtherObjects) {
     EXPECT_TRUE(holds("decoration(body) = painted"));
     EXPECT_TRUE(holds("\"PAINTED\" = Decoration(body)"));
     EXPECT_FALSE(holds("decoration(body) != painted"));
-    EXPECT_EQ(found("same(decoration, 17)"), (Ids{1}));
+    EXPECT_EQ(annotations_of("same(decoration, 17)"), (Ids{1}));
     EXPECT_FALSE(holds("same(height, 17)"));
     QueriedObject object{&mesh, &set, nullptr, nullptr, {}};
     EXPECT_EQ(values_of(object, "decoration"), std::vector<std::string>{"painted"});
@@ -143,14 +144,14 @@ TEST_F(Query, WordsOfAVocabularyInAnyLanguageAndNarrower) {
     arm.broader = {"limb"};
     vocabulary.concepts = {limb, arm};
     words = &vocabulary;
-    EXPECT_EQ(found("2 braccio"), (Ids{2, 3}));
-    EXPECT_EQ(found("2 arto"), (Ids{2, 3}));
+    EXPECT_EQ(annotations_of("2 braccio"), (Ids{2, 3}));
+    EXPECT_EQ(annotations_of("2 arto"), (Ids{2, 3}));
     EXPECT_TRUE(holds("area(limb) > 0"));
     words = nullptr;
     EXPECT_FALSE(holds("2 arto"));
 }
 
-TEST_F(Query, UnitsThatDoNotGoTogetherAreAProblemAndNoMatch) {
+TEST_F(Query, IncompatibleUnitsAreAProblemAndNoMatch) {
     for (const char* text : {"area(handle) > 5", "area(handle) > 5 mm", "height(body) + area(body) > 0 mm"}) {
         const QueryAnswer answer = ask(text);
         EXPECT_FALSE(answer.holds) << text;
@@ -161,7 +162,7 @@ TEST_F(Query, UnitsThatDoNotGoTogetherAreAProblemAndNoMatch) {
     EXPECT_TRUE(holds("area(handle) > 0.001"));
 }
 
-TEST(QueryText, WrongQueriesAreRefusedWithPlaceAndRemedy) {
+TEST(QueryText, InvalidQueriesAreRefusedWithLocationAndRemedy) {
     const std::pair<const char*, const char*> wrong[]{
         {"", "column 1"},
         {"2 arm and", "column 10"},

@@ -34,7 +34,7 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     ASSERT_EQ(run_command("relation extract --threads 1 " + pot + at("a.graph.json")).code, 0);
     EXPECT_EQ(read_file(scratch / "a.graph.json"), first);
 
-    // A constraint, a type of one's own, and one that is not so.
+    // A constraint, a user-defined type, and a relationship that does not hold.
     const std::string add = "relation add " + pot;
     ASSERT_EQ(run_command(add + at("b.graph.json") + " --graph " + at("a.graph.json") +
                           " --type Proportion --annotation spout --annotation 6 --weight 4 --directed --parameters "
@@ -45,9 +45,9 @@ TEST(RelationCommand, ExtractAddCheckExport) {
                           " --type 'glazed before' --own-type --directed --annotation body --annotation lid --annotation knob")
                   .code,
               0);
-    const auto held = run_command("relation check " + pot + at("c.graph.json"));
-    EXPECT_EQ(held.code, 0) << held.out;
-    EXPECT_NE(held.out.find(" 0 fail, 2 unknown"), std::string::npos) << held.out;
+    const auto checked = run_command("relation check " + pot + at("c.graph.json"));
+    EXPECT_EQ(checked.code, 0) << checked.out;
+    EXPECT_NE(checked.out.find(" 0 fail, 2 unknown"), std::string::npos) << checked.out;
     ASSERT_EQ(run_command(add + at("d.graph.json") + " --graph " + at("c.graph.json") +
                           " --type containment --annotation knob --annotation body")
                   .code,
@@ -60,7 +60,7 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     EXPECT_STREQ(last["verdict"].GetString(), "fails");
     EXPECT_EQ(last["parameters"]["deviations"][0]["value"].GetDouble(), 100) << "no face of the body lies in the knob";
 
-    // Stated relationships survive another extraction; extracted ones are not doubled.
+    // User-specified relationships survive another extraction; extracted ones are not duplicated.
     const auto again = run_command("relation extract --json " + pot + at("e.graph.json") + " --graph " + at("c.graph.json"));
     ASSERT_EQ(again.code, 0) << again.err;
     const Json before = parse_json(first, "a"), after = read_json(scratch / "e.graph.json");
@@ -71,18 +71,18 @@ TEST(RelationCommand, ExtractAddCheckExport) {
     EXPECT_NE(read_file(scratch / "c.dot").find("label=\"glazed before\""), std::string::npos);
 }
 
-TEST(RelationCommand, SeveralAtOnceOntoTheGraphItself) {
+TEST(RelationCommand, AddsSeveralRelationshipsToTheGraphInPlace) {
     const Scratch scratch;
     const std::string graph = (scratch / "g.graph.json").string();
     const auto added =
         run_command("relation add " + pot + "--graph " + graph +
                     " --relation 'same level: flower 1, 8 ,flower 3' --relation 'co-axiality: lid, body' --constraint");
     ASSERT_EQ(added.code, 0) << added.err;
-    Json made = read_json(graph);
-    ASSERT_EQ(made["relationships"].Size(), 2U);
-    EXPECT_EQ(to_text(made["relationships"][0]["annotations"]), "[7, 8, 9]\n");
-    EXPECT_STREQ(made["relationships"][1]["type"].GetString(), "co-axiality");
-    EXPECT_TRUE(made["relationships"][1]["isConstraint"].GetBool());
+    Json graph_file = read_json(graph);
+    ASSERT_EQ(graph_file["relationships"].Size(), 2U);
+    EXPECT_EQ(to_text(graph_file["relationships"][0]["annotations"]), "[7, 8, 9]\n");
+    EXPECT_STREQ(graph_file["relationships"][1]["type"].GetString(), "co-axiality");
+    EXPECT_TRUE(graph_file["relationships"][1]["isConstraint"].GetBool());
     ASSERT_EQ(run_command("relation add " + pot + "--graph " + graph + " --relation 'adjacency: lid, body'").code, 0);
     EXPECT_EQ(read_json(graph)["relationships"].Size(), 3U);
     const std::string before = read_file(graph);
@@ -131,7 +131,7 @@ TEST(RelationCommand, BadInput) {
     expect("relation extract " + data + "vase.ply " + data + "teapot.ant.json " + out, 1, "teapot.ant.json");
 }
 
-TEST(RelationCommand, TheLargestIdIsNoDeadEnd) {
+TEST(RelationCommand, IdsContinueAfterTheLargestId) {
     const Scratch scratch;
     const std::string graph = scratch
                                   .file("g.graph.json", R"({"relationships": [{"id": 2147483647, "type": "adjacency",
@@ -158,7 +158,7 @@ TEST(RelationCommand, ExportReports) {
     EXPECT_EQ(report["result"]["relationships"].GetInt(), 1);
 }
 
-TEST(RelationCommand, WhatWasExtractedIsStatedListedAndRemoved) {
+TEST(RelationCommand, ExtractedRelationshipsCanBeSpecifiedListedAndRemoved) {
     const Scratch scratch;
     const auto at = [&](const char* name) { return (scratch / name).string(); };
     (void)scratch.file("old.graph.json", R"({"relationships": [
@@ -173,7 +173,7 @@ TEST(RelationCommand, WhatWasExtractedIsStatedListedAndRemoved) {
     EXPECT_NE(listed.out.find("proportion (constraint, weight 3)"), std::string::npos) << listed.out;
     EXPECT_NE(run_command("relation check " + pot + at("old.graph.json")).out.find("equal attributes: area"), std::string::npos);
 
-    // The members of what has no direction may be named in any order.
+    // The members of an undirected relationship may be given in any order.
     const std::string state =
         "relation add " + pot + at("new.graph.json") + " --graph " + at("old.graph.json") +
         " --type 'equal attributes' --attribute area --annotation 2 --annotation 1 --tolerance difference=40";
@@ -223,7 +223,7 @@ TEST(RelationCommand, TolerancesAreInTheUnitOfTheMeshOrInPerCentOfItsDiagonal) {
     EXPECT_NEAR(tolerance("1%"), diagonal / 100, 1e-12 * diagonal);
 }
 
-TEST(RelationCommand, OptionsGivenSeveralTimesMakeAFileThatCanBeRead) {
+TEST(RelationCommand, RepeatedOptionsGiveAReadableFile) {
     const Scratch scratch;
     const std::string graph = (scratch / "g.graph.json").string();
     ASSERT_EQ(run_command("relation extract " + pot + graph + " --type adjacency --type containment").code, 0);
@@ -231,7 +231,7 @@ TEST(RelationCommand, OptionsGivenSeveralTimesMakeAFileThatCanBeRead) {
     EXPECT_EQ(run_command("relation check " + pot + graph).code, 0);
 }
 
-TEST(RelationCommand, WithoutUpItIsSaidWhatWasNotLookedFor) {
+TEST(RelationCommand, WithoutUpSkippedTypesAreReported) {
     const Scratch scratch;
     const auto at = [&](const char* name) { return (scratch / name).string(); };
     ASSERT_EQ(run_command("annotation edit " + pot + at("flat.ant.json") + " --set-up ''").code, 0);
@@ -278,14 +278,14 @@ TEST(RelationCommand, ChecksConstraintsOnTheObjectAsItIs) {
 
     // A leg that is half as long again, and its seat bent with it.
     ASSERT_EQ(run_command("deform " + chair + at("long.ply") + " --stretch 'front left leg=1.5'").code & ~3, 0);
-    const auto [wrong, found] = check(at("long.ply"), "--force-mesh --rest " + data + "chair.ply");
+    const auto [wrong, deformed_report] = check(at("long.ply"), "--force-mesh --rest " + data + "chair.ply");
     EXPECT_EQ(wrong, 3);
-    EXPECT_EQ(verdict(found, 0), "fails");
-    const auto& deviation = found["result"]["relationships"][0]["parameters"]["deviations"][0];
+    EXPECT_EQ(verdict(deformed_report, 0), "fails");
+    const auto& deviation = deformed_report["result"]["relationships"][0]["parameters"]["deviations"][0];
     EXPECT_GT(deviation["value"].GetDouble(), 10);
     EXPECT_STREQ(deviation["unit"].GetString(), "%");
-    EXPECT_NE(verdict(found, 1), "unknown");
-    EXPECT_FALSE(found["result"]["conforms"].GetBool());
+    EXPECT_NE(verdict(deformed_report, 1), "unknown");
+    EXPECT_FALSE(deformed_report["result"]["conforms"].GetBool());
     EXPECT_EQ(run_command("relation check " + chair + graph + " --rest " + data + "teapot.ply").code, 1);
 
     // The rules of a class in the same report.
@@ -305,20 +305,20 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     const std::vector<int> wanted{6, 5}, turned{5, 6};  // handle before spout, against the order of the annotations
     const auto expect_kept = [&](const char* name, std::size_t count = 1) {
         const Json graph = read_json(scratch / name);
-        std::size_t kept = 0;
-        for (const auto& one : graph["relationships"].GetArray()) {
-            if (!one["isConstraint"].GetBool()) continue;
+        std::size_t constraint_count = 0;
+        for (const auto& relationship : graph["relationships"].GetArray()) {
+            if (!relationship["isConstraint"].GetBool()) continue;
             std::vector<int> members;
-            for (const auto& id : one["annotations"].GetArray()) members.push_back(id.GetInt());
-            EXPECT_EQ(members, kept == 0 ? wanted : turned) << name;
-            ++kept;
+            for (const auto& id : relationship["annotations"].GetArray()) members.push_back(id.GetInt());
+            EXPECT_EQ(members, constraint_count == 0 ? wanted : turned) << name;
+            ++constraint_count;
         }
-        EXPECT_EQ(kept, count) << name;
+        EXPECT_EQ(constraint_count, count) << name;
     };
     const std::string state =
         " --constraint --parameters '{\"minValue\": 0.5, \"maxValue\": 2, \"measure1\": \"length\", "
         "\"measure2\": \"length\"}'";
-    // Stated by options and in one.
+    // Specified by separate options and by one.
     ASSERT_EQ(run_command("relation add " + pot + at("a.graph.json") +
                           " --type proportion --annotation handle --annotation spout" + state)
                   .code,
@@ -327,7 +327,7 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     ASSERT_EQ(run_command("relation add " + pot + at("b.graph.json") + " --relation 'proportion: handle, spout'" + state).code,
               0);
     expect_kept("b.graph.json");
-    // The other way round is another constraint, which is neither refused nor takes the place of the first.
+    // The reversed order is another constraint, which is neither refused nor replaces the first.
     const auto other = run_command("relation add " + pot + at("c.graph.json") + " --graph " + at("b.graph.json") +
                                    " --relation 'proportion: 5, 6'" + state);
     ASSERT_EQ(other.code, 0) << other.err;
@@ -336,13 +336,13 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
                           " --relation 'proportion: 6, 5'" + state)
                   .code,
               1);
-    // Beside what is extracted, after another was removed, in a package, and as it is checked.
+    // Next to extracted ones, after another was removed, in a template, and in a check.
     ASSERT_EQ(run_command("relation extract " + pot + at("e.graph.json") + " --graph " + at("c.graph.json")).code, 0);
     expect_kept("e.graph.json", 2);
     const Json extracted = read_json(scratch / "e.graph.json");
     std::string first;
-    for (const auto& one : extracted["relationships"].GetArray())
-        if (!one["isConstraint"].GetBool()) first = std::to_string(one["id"].GetInt());
+    for (const auto& relationship : extracted["relationships"].GetArray())
+        if (!relationship["isConstraint"].GetBool()) first = std::to_string(relationship["id"].GetInt());
     ASSERT_EQ(run_command("relation remove " + pot + at("e.graph.json") + " " + at("f.graph.json") + " --id " + first).code, 0);
     expect_kept("f.graph.json", 2);
     ASSERT_EQ(run_command("template pack " + at("t.template.json") + " --mesh " + data + "teapot.ply --annotations " + data +
@@ -352,11 +352,11 @@ TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
     expect_kept("f.graph.json", 2);
     const auto checked = run_command("relation check --json " + pot + at("f.graph.json"));
     const Json report = report_of(checked.out);
-    std::vector<std::vector<int>> told;
-    for (const auto& one : report["result"]["relationships"].GetArray()) {
-        if (!one["isConstraint"].GetBool()) continue;
-        told.emplace_back();
-        for (const auto& id : one["annotations"].GetArray()) told.back().push_back(id.GetInt());
+    std::vector<std::vector<int>> orders;
+    for (const auto& relationship : report["result"]["relationships"].GetArray()) {
+        if (!relationship["isConstraint"].GetBool()) continue;
+        orders.emplace_back();
+        for (const auto& id : relationship["annotations"].GetArray()) orders.back().push_back(id.GetInt());
     }
-    EXPECT_EQ(told, (std::vector<std::vector<int>>{wanted, turned}));
+    EXPECT_EQ(orders, (std::vector<std::vector<int>>{wanted, turned}));
 }

@@ -33,7 +33,7 @@ Annotation points(int id, std::vector<Index> list) {
     return a;
 }
 
-/// The six rules by the letter.
+/// The six rules literally.
 bool contained(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
     const auto vertices = [&](const Annotation& a) {
         std::set<Index> result(a.points.begin(), a.points.end());
@@ -57,7 +57,7 @@ bool contained(const Mesh& mesh, const Annotation& inner, const Annotation& oute
     return within(vertices(inner), vertices(outer));
 }
 
-/// A patch of faces around one, by breadth.
+/// A patch of faces around one face, by breadth-first search.
 std::vector<Index> patch_around(const Mesh& mesh, Index seed, std::size_t count) {
     std::vector<Index> list{seed};
     std::vector<bool> seen(mesh.number_of_faces(), false);
@@ -127,7 +127,7 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
         const Mesh mesh = build_mesh(seed % 3 == 0 ? patch(6, 5) : seed % 3 == 1 ? octahedron_sphere(2) : torus(10, 7));
         const AnnotationSet set = random_set(mesh, seed, 70);
         const std::size_t n = set.annotations.size();
-        const Topology found = topology(mesh, set);
+        const Topology computed = topology(mesh, set);
         std::vector<std::set<std::size_t>> above(n);
         for (std::size_t a = 0; a < n; ++a)
             for (std::size_t b = 0; b < n; ++b) {
@@ -141,23 +141,23 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
             for (const Index f : set.annotations[a].faces) area[a] += face_area(mesh, Face(f));
         for (std::size_t a = 0; a < n; ++a) {
             strict += above[a].size();
-            EXPECT_EQ(std::set<std::size_t>(found.order.containers[a].begin(), found.order.containers[a].end()), above[a]);
+            EXPECT_EQ(std::set<std::size_t>(computed.order.containers[a].begin(), computed.order.containers[a].end()), above[a]);
             std::set<std::size_t> direct;
             for (const std::size_t b : above[a]) {
                 bool between = false;
                 for (const std::size_t c : above[a]) between = between || above[c].count(b) > 0;
                 if (!between) direct.insert(b);
             }
-            EXPECT_EQ(std::set<std::size_t>(found.order.direct[a].begin(), found.order.direct[a].end()), direct);
+            EXPECT_EQ(std::set<std::size_t>(computed.order.direct[a].begin(), computed.order.direct[a].end()), direct);
             overlapping += direct.size() > 1;
             std::optional<std::size_t> parent;
             for (const std::size_t b : direct)
                 if (!parent || area[b] < area[*parent] ||
                     (area[b] == area[*parent] && set.annotations[b].id < set.annotations[*parent].id))
                     parent = b;
-            EXPECT_EQ(found.order.parent[a], parent);
+            EXPECT_EQ(computed.order.parent[a], parent);
         }
-        // Adjacency by the letter.
+        // Adjacency by its definition.
         std::map<std::pair<std::size_t, std::size_t>, double> lengths;
         for (std::size_t a = 0; a < n; ++a)
             for (std::size_t b = a + 1; b < n; ++b) {
@@ -173,12 +173,12 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
                             std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
                 }
             }
-        ASSERT_EQ(found.adjacent.size(), lengths.size());
+        ASSERT_EQ(computed.adjacent.size(), lengths.size());
         adjacent += lengths.size();
-        for (const auto& pair : found.adjacent)
+        for (const auto& pair : computed.adjacent)
             EXPECT_NEAR(pair.length, (lengths.at({pair.a, pair.b})), 1e-12 * (1 + pair.length));
     }
-    // The cases that matter did occur.
+    // All relevant cases occurred.
     EXPECT_GT(strict, 1000U);
     EXPECT_GT(equal, 100U);
     EXPECT_GT(overlapping, 50U);
@@ -192,14 +192,14 @@ TEST(Containment, EqualSelectionsAndTheRoot) {
     AnnotationSet set;
     set.annotations = {region(1, all), region(9, all), region(4, {3}), region(2, {3}), region(5, {})};
     set.annotations[1].all = true;  // the object itself, although its id is the higher one
-    const Topology found = topology(mesh, set);
-    EXPECT_EQ(found.order.parent, (std::vector<std::optional<std::size_t>>{1, {}, 3, 0, {}}));
-    EXPECT_EQ(found.order.equal, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}}));
-    EXPECT_TRUE(found.order.containers[4].empty()) << "nothing is said of an empty selection";
+    const Topology computed = topology(mesh, set);
+    EXPECT_EQ(computed.order.parent, (std::vector<std::optional<std::size_t>>{1, {}, 3, 0, {}}));
+    EXPECT_EQ(computed.order.equal, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}}));
+    EXPECT_TRUE(computed.order.containers[4].empty()) << "nothing is said of an empty selection";
     std::vector<std::pair<std::size_t, std::size_t>> tree;
-    for (const auto& [place, depth] : containment_tree(found.order)) tree.emplace_back(place, depth);
+    for (const auto& [place, depth] : containment_tree(computed.order)) tree.emplace_back(place, depth);
     EXPECT_EQ(tree, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 0}, {0, 1}, {3, 2}, {2, 3}, {4, 0}}));
-    const auto relationships = relationships_of(found, set, 10);
+    const auto relationships = relationships_of(computed, set, 10);
     ASSERT_EQ(relationships.size(), 5U);
     EXPECT_EQ(relationships[0].annotations, (std::vector<int>{9, 1})) << "container first";
     EXPECT_EQ(relationships[4].type, "equal selections");
@@ -221,13 +221,13 @@ TEST(Adjacency, NestedIsNotAdjacentAndACornerIsNotEnough) {
     set.unit = "mm";
     set.annotations = {region(0, cells({{0, 0}, {1, 0}, {0, 1}})), region(1, cells({{0, 0}})), region(2, cells({{2, 0}})),
                        region(3, cells({{1, 1}, {2, 1}}))};
-    const Topology found = topology(mesh, set);
+    const Topology computed = topology(mesh, set);
     std::vector<std::tuple<std::size_t, std::size_t, double>> pairs;
-    for (const auto& pair : found.adjacent) pairs.emplace_back(pair.a, pair.b, pair.length);
+    for (const auto& pair : computed.adjacent) pairs.emplace_back(pair.a, pair.b, pair.length);
     EXPECT_EQ(pairs, (std::vector<std::tuple<std::size_t, std::size_t, double>>{{0, 2, 1.0}, {0, 3, 2.0}, {2, 3, 1.0}}));
 }
 
-TEST(BrokenRules, RelationshipsAreThoseOfTheMeshUnlessAGraphStatesOthers) {
+TEST(BrokenRules, RelationshipsComeFromTheMeshUnlessAGraphIsGiven) {
     const Mesh mesh = build_mesh(grid(4, 4, false, false, [](double u, double v) {
         return std::array<double, 3>{4 * u, 4 * v, 0};
     }));
@@ -251,28 +251,29 @@ TEST(BrokenRules, RelationshipsAreThoseOfTheMeshUnlessAGraphStatesOthers) {
 
 TEST(Topology, EmptyMeshesSetsAndSingleFaces) {
     EXPECT_TRUE(topology(Mesh(), AnnotationSet()).adjacent.empty());
-    TriangleSoup one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}}};
+    TriangleSoup triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}}};
     AnnotationSet set;
     set.annotations = {region(0, {0}), points(1, {0}), points(2, {3}), line(3, {{0, 1}})};
-    const Topology found = topology(build_mesh(one), set);
-    EXPECT_EQ(found.order.direct[1], (std::vector<std::size_t>{3}));
-    EXPECT_EQ(found.order.direct[3], (std::vector<std::size_t>{0}));
-    EXPECT_TRUE(found.order.direct[2].empty()) << "a vertex without faces lies in no region";
+    const Topology computed = topology(build_mesh(triangle), set);
+    EXPECT_EQ(computed.order.direct[1], (std::vector<std::size_t>{3}));
+    EXPECT_EQ(computed.order.direct[3], (std::vector<std::size_t>{0}));
+    EXPECT_TRUE(computed.order.direct[2].empty()) << "a vertex without faces lies in no region";
     set.annotations[0].faces = {7};
-    EXPECT_ANY_THROW(topology(build_mesh(one), set));
+    EXPECT_ANY_THROW(topology(build_mesh(triangle), set));
 }
 
 TEST(Topology, DoesNotDependOnThreads) {
     const Mesh mesh = build_mesh(torus(40, 30));
     const AnnotationSet set = random_set(mesh, 5, 150);
     set_threads(1);
-    const Topology one = topology(mesh, set);
+    const Topology single_threaded = topology(mesh, set);
     set_threads(4);
     const Topology four = topology(mesh, set);
     set_threads(0);
-    EXPECT_EQ(one.order.direct, four.order.direct);
-    ASSERT_EQ(one.adjacent.size(), four.adjacent.size());
-    for (std::size_t i = 0; i < one.adjacent.size(); ++i) EXPECT_EQ(one.adjacent[i].length, four.adjacent[i].length);
+    EXPECT_EQ(single_threaded.order.direct, four.order.direct);
+    ASSERT_EQ(single_threaded.adjacent.size(), four.adjacent.size());
+    for (std::size_t i = 0; i < single_threaded.adjacent.size(); ++i)
+        EXPECT_EQ(single_threaded.adjacent[i].length, four.adjacent[i].length);
 }
 
 TEST(Topology, ManyOverlappingRegionsAreBounded) {
@@ -282,10 +283,10 @@ TEST(Topology, ManyOverlappingRegionsAreBounded) {
     std::vector<Index> even, odd;
     for (Index f = 0; f < faces; ++f) (f % 2 == 0 ? even : odd).push_back(f);
     for (int i = 0; i < 400; ++i) set.annotations.push_back(region(i, i % 2 == 0 ? even : odd));
-    const Topology found = topology(mesh, set);
-    EXPECT_EQ(found.adjacent.size(), 200U * 200U);
-    EXPECT_EQ(found.adjacent.front().edges, found.adjacent.back().edges);
-    EXPECT_EQ(relationships_of(found, set, 0, 100).size(), 100U + 2U + 100U);  // containment, equal selections, adjacency
+    const Topology computed = topology(mesh, set);
+    EXPECT_EQ(computed.adjacent.size(), 200U * 200U);
+    EXPECT_EQ(computed.adjacent.front().edges, computed.adjacent.back().edges);
+    EXPECT_EQ(relationships_of(computed, set, 0, 100).size(), 100U + 2U + 100U);  // containment, equal selections, adjacency
     AnnotationSet many;
     for (int i = 0; i < 30001; ++i) many.annotations.push_back(region(i, {}));
     EXPECT_THROW(topology(mesh, many), Error);

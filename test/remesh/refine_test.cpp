@@ -112,8 +112,8 @@ TEST(Refine, LevelsMultiplyFacesByFour) {
     }
 }
 
-// Loop's limit surface has continuous normals, so the octahedron's refinement rounds off: all faces turn less and less from one
-// to the next.
+// Loop's limit surface has continuous normals, so the octahedron's refinement rounds off: the angles between neighbouring faces
+// decrease.
 TEST(Refine, LoopSmooths) {
     Mesh mesh = build_mesh(octahedron_sphere(0));
     RefineOptions options;
@@ -185,7 +185,7 @@ TEST(Refine, InvalidRequests) {
     RefineOptions options;
     options.levels = 1;
     EXPECT_THROW(refine(empty_mesh, options), Error);
-    // All vertices in one place: there is nothing to halve.
+    // All vertices coincide: no edge can be halved.
     Mesh point = build_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}});
     options.levels = 0;
     options.vertices = 10;

@@ -24,7 +24,7 @@ TEST(Remesh, KeepsSurfaceAndTopologyAtAnyResolution) {
             EXPECT_EQ(border_loops(result.mesh), border_loops(mesh));
             EXPECT_EQ(components(result.mesh), components(mesh));
             EXPECT_NEAR(surface_area(result.mesh) / surface_area(mesh), 1, 0.03);
-            // Edges are of nearly one length.
+            // Edges have nearly equal lengths.
             const double mean = mean_edge_length(result.mesh);
             std::size_t outliers = 0;
             for (const Edge e : result.mesh.edges()) {
@@ -65,7 +65,7 @@ TEST(Remesh, APointFarAwayIsAnErrorNotAHang) {
 }
 
 TEST(Remesh, APieceWithoutAreaBesideTheObject) {
-    // Around none of its vertices there is a face with a normal.
+    // None of its vertices has a face with a normal.
     TriangleSoup soup = octahedron_sphere(3);
     const auto first = static_cast<Index>(soup.points.size());
     for (const double x : {2.0, 2.01, 2.03, 2.04}) soup.points.push_back({x, 0, 0});

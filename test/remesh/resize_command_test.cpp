@@ -1,4 +1,4 @@
-// The built command as people run it.
+// The built command as users run it.
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
@@ -100,7 +100,7 @@ TEST_F(ResizeCommand, RemeshReachesTheRequestedNumber) {
     const auto result = run("remesh " + path_of("ball.ply") + " " + path_of("new.off") + " --vertices 700");
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(read_mesh(path_of("new.off")).mesh.number_of_vertices(), 700u);
-    EXPECT_NE(result.err.find("labels"), std::string::npos) << result.err;  // says that they are left out
+    EXPECT_NE(result.err.find("labels"), std::string::npos) << result.err;  // a note reports that they are left out
 }
 
 TEST_F(ResizeCommand, TheSameBytesTwiceAndForAnyNumberOfThreads) {
@@ -166,7 +166,7 @@ TEST_F(ResizeCommand, InvalidUsage) {
     }
 }
 
-// A region that loses all its faces becomes a line or a point, keeps its tag and says so.
+// A region that loses all its faces becomes a line or a point, keeps its tag and has a note.
 TEST_F(ResizeCommand, RegionsWithoutFacesAreReported) {
     AnnotationSet set;
     for (int i = 0; i < 60; ++i) {

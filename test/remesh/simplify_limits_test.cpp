@@ -1,4 +1,4 @@
-// Where simplification ends, and what it refuses.
+// Limits of simplification, and refused input.
 #include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/remesh/simplify.h"
@@ -66,10 +66,10 @@ TEST(SimplifyLimits, FlatMeshesStayFlatWithTheirBorder) {
     EXPECT_TRUE(result.reached) << result.stop_reason;
     EXPECT_NEAR(surface_area(mesh), 6, 1e-3);
     for (const Vertex v : mesh.vertices()) EXPECT_NEAR(mesh.point(v).z(), 7, 1e-9);
-    for (const Face f : mesh.faces()) EXPECT_GT(area_vector(mesh, f).z(), 0);  // none turned over
+    for (const Face f : mesh.faces()) EXPECT_GT(area_vector(mesh, f).z(), 0);  // none flipped
 }
 
-// Faces without area, as duplicate positions make them, neither stop nor spoil the work.
+// Faces without area, as from duplicate positions, neither stop nor affect the simplification.
 TEST(SimplifyLimits, FlatFacesAndDuplicatePositions) {
     TriangleSoup soup = torus(40, 20);
     for (std::size_t i = 0; i + 1 < soup.points.size(); i += 37) soup.points[i + 1] = soup.points[i];
@@ -77,7 +77,7 @@ TEST(SimplifyLimits, FlatFacesAndDuplicatePositions) {
     EXPECT_TRUE(down_to(mesh, 150).reached);
     EXPECT_TRUE(is_sound(mesh));
     EXPECT_EQ(euler_number(mesh), 0);
-    Mesh point = build_mesh(moved(octahedron_sphere(2), 0, {1, 2, 3}));  // everything in one place
+    Mesh point = build_mesh(moved(octahedron_sphere(2), 0, {1, 2, 3}));  // all vertices coincide
     EXPECT_FALSE(down_to(point, 10).reached);
 }
 
@@ -187,7 +187,7 @@ TEST(SimplifyLimits, VerticesOfHighValence) {
     }
 }
 
-// Both metrics put the vertices of a sphere's approximation close to the sphere.
+// With both metrics the vertices of a simplified sphere are close to the sphere.
 TEST(SimplifyLimits, VolumeOfASphere) {
     for (const char* method : {"qem", "lindstrom-turk"}) {
         Mesh mesh = build_mesh(octahedron_sphere(6));

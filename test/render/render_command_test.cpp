@@ -25,7 +25,7 @@ std::string off_text(const Scene& scene) {
 
 std::uint32_t pixel(const Rgb& c) { return 0xFF000000U | std::uint32_t{c.red} << 16 | std::uint32_t{c.green} << 8 | c.blue; }
 
-/// A cube file, the name of a picture, and what to run.
+/// A cube file, the name of a picture, and the command.
 class RenderCommand : public ::testing::Test {
 protected:
     Scratch scratch;

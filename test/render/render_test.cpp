@@ -97,7 +97,7 @@ TEST(Render, ValuesTakeTheColoursOfTheScale) {
 }
 
 TEST(Render, ViewsShowTheSidesTheyName) {
-    // A cube with one colour a side, sides in the order front (-y), back, left (-x), right, bottom, top.
+    // A cube with one colour per side, sides in the order front (-y), back, left (-x), right, bottom, top.
     Scene scene = test::cube();
     const char* const names[] = {"front", "back", "left", "right", "bottom", "top"};
     for (std::size_t i = 0; i < 12; ++i) scene.face_colours.push_back(category_colour(i / 2));
@@ -296,7 +296,7 @@ TEST(Render, HiddenEdgesOfACubeAreNotDrawn) {
                 drawn_count += drawn(point);
             }
     EXPECT_EQ(drawn_count, 9U);
-    // Half way across the front, where a diagonal runs, is no line of a drawing, but one of a wire.
+    // The diagonal across the front is not drawn as a line of a drawing, but as an edge of a wire frame.
     const auto middle = *camera.project(Point(0, -1, 0));
     const auto column = static_cast<int>(middle[0]), row = static_cast<int>(middle[1]);
     EXPECT_EQ(rendering.picture.at(column, row) >> 24, 0U);

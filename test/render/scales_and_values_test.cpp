@@ -86,8 +86,8 @@ TEST(ColourScale, RoundLengths) {
     EXPECT_GT(round_length(1e-300), 0);
 }
 
-/// CIE L*a*b* of a colour as eyes of one kind see it: `eye` is a matrix on linear red, green and blue (Machado, Oliveira and
-/// Fernandes 2009).
+/// CIE L*a*b* of a colour as seen with one type of colour vision: `eye` is a matrix on linear red, green and blue (Machado,
+/// Oliveira and Fernandes 2009).
 std::array<double, 3> lab(const Rgb& colour, const std::array<std::array<double, 3>, 3>& eye) {
     std::array<double, 3> linear{}, perceived{};
     const std::array<int, 3> channels{colour.red, colour.green, colour.blue};
@@ -120,7 +120,7 @@ TEST(CategoryColours, AreDistinguishableForColourBlindReaders) {
     for (std::size_t i = 0; i < category_count; ++i) {
         const Rgb colour = category_colour(i);
         colours.insert({colour.red, colour.green, colour.blue});
-        // Calm: no channel stands at its end while another is at the other.
+        // Muted: no channel is at its maximum while another is at its minimum.
         EXPECT_LT(std::max({colour.red, colour.green, colour.blue}) - std::min({colour.red, colour.green, colour.blue}), 110);
     }
     EXPECT_EQ(colours.size(), category_count);

@@ -18,7 +18,7 @@ using test::run_command;
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-/// A coarse pot in three sherds, where they were.
+/// A coarse pot in three sherds, in their original poses.
 class RevolutionCommand : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -55,7 +55,7 @@ TEST_F(RevolutionCommand, ReportsAsInTheSchema) {
     EXPECT_EQ(result["vertices"].GetUint64(), mesh.number_of_vertices());
     const Template built = load_template(read_template(scratch / "out" / "turned.template.json"));
     for (const Finding& finding : built.findings) EXPECT_FALSE(finding.defect) << finding.text;
-    // What the schema does not allow is refused by it.
+    // The schema refuses invalid members.
     Json broken = parse_json(run.out, "report");
     broken["result"].RemoveMember("height");
     EXPECT_THROW(validate(broken["result"], "turned", "report"), Error);
@@ -76,7 +76,7 @@ TEST_F(RevolutionCommand, AFitMatchesRotationsByFractures) {
     validate(result, "assembly", "report");
     ASSERT_TRUE(result.HasMember("joints"));
     ASSERT_GT(result["joints"].Size(), 0U);
-    // The first one is turned back against the others.
+    // The first one is rotated back relative to the others.
     for (const auto& joint : result["joints"].GetArray())
         if (joint["carries"].GetBool() && joint["decided"].GetBool()) {
             const auto pose = [&](const std::string& name) {
@@ -132,7 +132,7 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     EXPECT_NE(words.out.find("left out: text"), std::string::npos) << words.out;
     EXPECT_NE(words.out.find("cut.ply"), std::string::npos) << words.out;
     EXPECT_NE(words.out.find("3 of 6 sherds"), std::string::npos) << words.out;
-    // Nothing but such: every one is named.
+    // Only such sherds: each is named.
     const auto none = run_command("template turn " + quoted(text) + " " + quoted(cut) + " --output " + quoted(scratch / "none"));
     EXPECT_EQ(none.code, 1);
     EXPECT_NE(none.err.find("text.ply"), std::string::npos) << none.err;

@@ -142,7 +142,7 @@ std::vector<const Fragment*> pointers(const std::vector<Fragment>& fragments) {
     return result;
 }
 
-/// Five sherds of the pot, from foot to rim, none with a third of the turn.
+/// Five sherds of the pot, from foot to rim, each below a third of the turn.
 std::vector<Fragment> five_sherds(const Motion& pose) {
     std::vector<Fragment> sherds;
     sherds.push_back(named("a", sherd(0, 1.2, 0, 0.6, pose)));

@@ -34,7 +34,7 @@ CreaseOptions fine() {
     return options;
 }
 
-TEST(Creases, ARingOfClayIsOneClosedRidgeAtItsPlace) {
+TEST(Creases, ARingOfClayIsOneClosedRidge) {
     for (const double scale : {1e-3, 1.0, 1e5}) {
         const Mesh mesh = build_mesh(ringed_tube(1, 0, scale));
         CreaseOptions options = fine();
@@ -62,7 +62,7 @@ TEST(Creases, AFurrowIsAHollow) {
     EXPECT_LT(creases[0].mean_curvature, 0);
 }
 
-TEST(Creases, NoiseHidesNothingAndAddsNothing) {
+TEST(Creases, NoiseHidesAndAddsNoCreases) {
     const Mesh mesh = build_mesh(ringed_tube(1, 0.1));
     CreaseOptions options = fine();
     options.kind = CreaseOptions::Kind::ridge;
@@ -108,32 +108,34 @@ TEST(Creases, JointsOfASyntheticObjectAreHollows) {
     MakeOptions options;
     options.vertices = 30000;
     const SyntheticObject& object = synthetic_object("teapot");
-    const SyntheticMesh made = make_mesh(object, options);
+    const SyntheticMesh object_mesh = make_mesh(object, options);
     const auto label = [&](const std::string& name) {
         return static_cast<int>(std::find(object.parts.begin(), object.parts.end(), name) - object.parts.begin());
     };
     CreaseOptions finding;
     finding.kind = CreaseOptions::Kind::hollow;
     finding.scale = 0.015;
-    std::vector<Point> found;
-    for (const Crease& crease : find_creases(made.mesh, finding))
-        for (const Index v : crease.line) found.push_back(made.mesh.point(Vertex(v)));
-    ASSERT_FALSE(found.empty());
-    const double tolerance = 0.02 * box_diagonal(made.mesh);
-    for (const auto& [one, other] : {std::pair{"handle", "body"}, {"spout", "body"}, {"base", "body"}, {"lid", "knob"}}) {
+    std::vector<Point> crest;
+    for (const Crease& crease : find_creases(object_mesh.mesh, finding))
+        for (const Index v : crease.line) crest.push_back(object_mesh.mesh.point(Vertex(v)));
+    ASSERT_FALSE(crest.empty());
+    const double tolerance = 0.02 * box_diagonal(object_mesh.mesh);
+    for (const auto& [part_name, neighbour_name] :
+         {std::pair{"handle", "body"}, {"spout", "body"}, {"base", "body"}, {"lid", "knob"}}) {
         std::size_t near = 0, total = 0;
-        for (const Edge e : made.mesh.edges()) {
-            const Halfedge h = made.mesh.halfedge(e);
-            const int a = made.face_labels[made.mesh.face(h)], b = made.face_labels[made.mesh.face(made.mesh.opposite(h))];
-            if (std::minmax(a, b) != std::minmax(label(one), label(other))) continue;
+        for (const Edge e : object_mesh.mesh.edges()) {
+            const Halfedge h = object_mesh.mesh.halfedge(e);
+            const int a = object_mesh.face_labels[object_mesh.mesh.face(h)],
+                      b = object_mesh.face_labels[object_mesh.mesh.face(object_mesh.mesh.opposite(h))];
+            if (std::minmax(a, b) != std::minmax(label(part_name), label(neighbour_name))) continue;
             double minimum = 1e300;
-            for (const Point& p : found)
-                minimum = std::min(minimum, CGAL::squared_distance(p, made.mesh.point(made.mesh.source(h))));
+            for (const Point& p : crest)
+                minimum = std::min(minimum, CGAL::squared_distance(p, object_mesh.mesh.point(object_mesh.mesh.source(h))));
             near += std::sqrt(minimum) < tolerance ? 1 : 0;
             ++total;
         }
-        ASSERT_GT(total, 10U) << one;
-        EXPECT_GT(double(near), 0.7 * double(total)) << one << " on " << other;
+        ASSERT_GT(total, 10U) << part_name;
+        EXPECT_GT(double(near), 0.7 * double(total)) << part_name << " on " << neighbour_name;
     }
 }
 
@@ -169,7 +171,7 @@ TEST(Creases, OptionsOutOfRangeAreRefused) {
     EXPECT_THROW(set_option(options, "kind", "groove"), Error);
 }
 
-TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
+TEST(CreasesCommand, WritesAnnotationsOrReportsThatThereAreNone) {
     const test::Scratch scratch;
     write_mesh(scratch / "tube.ply", build_mesh(ringed_tube(1)));
     write_mesh(scratch / "ball.ply", build_mesh(test::octahedron_sphere(6)));
@@ -192,7 +194,7 @@ TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
         EXPECT_EQ(result.out.find("mean curvature 1/mm") != std::string::npos, has_unit) << result.out;
         EXPECT_NE(result.out.find("robust deviations"), std::string::npos) << result.out;
     }
-    // What stood in the file stays.
+    // Earlier contents of the file are kept.
     const std::string before = read_file(scratch / "out.ant.json");
     const auto none = run("ball.ply", "");
     EXPECT_EQ(none.code, 3);
@@ -201,7 +203,7 @@ TEST(CreasesCommand, WritesAnnotationsOrSaysThatThereIsNothing) {
     const auto fine = run("tube.ply", " --scale 0.0001");
     EXPECT_EQ(fine.code, 2);
     EXPECT_NE(fine.err.find("too coarse"), std::string::npos) << fine.err;
-    // With the scale that it names it works.
+    // With the suggested scale it works.
     const auto at = fine.err.find("use --scale ");
     ASSERT_NE(at, std::string::npos) << fine.err;
     EXPECT_NE(run("tube.ply", " --scale " + fine.err.substr(at + 12, fine.err.find(' ', at + 12) - at - 12)).code, 2);

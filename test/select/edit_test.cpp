@@ -1,4 +1,4 @@
-// Lassos that cross themselves, and recipes that edit annotations that are there.
+// Self-intersecting lassos, and recipes that edit existing annotations.
 #include "annotation/example_meshes.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "select/follow.h"
@@ -25,7 +25,7 @@ const char* const tile_steps = R"(
 
 }  // namespace
 
-TEST(Lasso, OneThatCrossesItselfIsRefusedWhereItDoes) {
+TEST(Lasso, ASelfIntersectingLassoIsRefusedWithItsLocation) {
     const Mesh mesh = grid(10);
     // A bow tie about the middle (5, 5), which is vertex 60.
     expect_error(
@@ -37,7 +37,7 @@ TEST(Lasso, OneThatCrossesItselfIsRefusedWhereItDoes) {
     // The same picks in their order around the square do not.
     EXPECT_DOUBLE_EQ(
         area_of(R"({"lasso": {"points": [[2, 2, 0], [8, 2, 0], [8, 8, 0], [2, 8, 0]], "seed": [5.2, 5.1, 0]}})", mesh), 36);
-    // Legs that run together for a while at a pick do not cross: a spike from (8, 5) to (9, 5) and back.
+    // Segments that coincide near a pick do not cross: a spike from (8, 5) to (9, 5) and back.
     EXPECT_DOUBLE_EQ(
         area_of(R"({"lasso": {"points": [[2, 2, 0], [8, 2, 0], [8, 5, 0], [9, 5, 0], [8, 8, 0], [2, 8, 0]], "seed": [5.2, 5.1, 0],
                               "metric": "segment"}})",
@@ -115,8 +115,8 @@ TEST(Edit, EveryActionOnEveryType) {
     EXPECT_EQ(again.find(3)->points, std::vector<Index>{24});
 }
 
-TEST(Edit, WhatIsSaidOfOtherAnnotationsStays) {
-    // A descriptor that an operation of collections wrote cannot be computed here: other parts are selected all the same.
+TEST(Edit, OtherAnnotationsAreUnchanged) {
+    // A descriptor written by an operation on collections cannot be recomputed here: other parts can still be selected.
     const Mesh mesh = grid(4);
     RecipeStart start = start_with(tile_steps, mesh);
     Attribute height;
@@ -138,21 +138,21 @@ TEST(Edit, AddingAndRemovingUndoEachOther) {
     OSTRAKA_SCAN(mesh, "mannequin-devil.off");
     const std::string left = R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [0.4, 1, 1]}})",
                       right = R"({"invert": )" + left + "}";
-    const std::string made = R"({"id": 1, "tag": "a", "type": "region", "select": )" + left + "}";
-    const auto edited = [&](const std::string& action, const std::string& what, RecipeStart start) {
-        return follow(R"({"action": ")" + action + R"(", "id": 1, "select": )" + what + "}", mesh, "", std::move(start));
+    const std::string initial = R"({"id": 1, "tag": "a", "type": "region", "select": )" + left + "}";
+    const auto edited = [&](const std::string& action, const std::string& selection, RecipeStart start) {
+        return follow(R"({"action": ")" + action + R"(", "id": 1, "select": )" + selection + "}", mesh, "", std::move(start));
     };
-    AnnotationSet all = edited("add to", right, start_with(made, mesh));
+    AnnotationSet all = edited("add to", right, start_with(initial, mesh));
     EXPECT_EQ(all.find(1)->faces.size(), mesh.number_of_faces());
     RecipeStart from;
     from.annotations = std::move(all);
-    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, follow(made, mesh).find(1)->faces);
+    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, follow(initial, mesh).find(1)->faces);
 }
 
 TEST(Edit, ErrorsNameTheStep) {
     const Mesh mesh = grid(4);
-    const auto refuse = [&](const std::string& step, const std::string& pointer, const std::string& what) {
-        expect_refused(step, mesh, pointer, what, start_with(tile_steps, mesh));
+    const auto refuse = [&](const std::string& step, const std::string& pointer, const std::string& expected) {
+        expect_refused(step, mesh, pointer, expected, start_with(tile_steps, mesh));
     };
     refuse(R"({"action": "delete", "id": 9})", "/annotations/0/id", "no annotation has the id 9");
     refuse(R"({"action": "add to", "id": 1})", "/annotations/0", "without \"select\"");

@@ -19,7 +19,7 @@ inline Annotation select(const std::string& type, const std::string& expression,
         .annotations.at(0);
 }
 
-/// The faces selected as a whole.
+/// The selected faces.
 inline std::vector<Index> faces_of(const std::string& expression, const Mesh& mesh, const std::string& head = "") {
     return follow(R"({"id": 0, "tag": "t", "type": "region", "outline": "edges", "select": )" + expression + "}", mesh, head)
         .annotations.at(0)
@@ -31,7 +31,7 @@ inline double area_of(const std::string& expression, const Mesh& mesh) {
 }
 
 /// Expects that the steps are rejected with an error that names the file, the place and the problem, and has a remedy.
-inline void expect_refused(const std::string& steps, const Mesh& mesh, const std::string& pointer, const std::string& what,
+inline void expect_refused(const std::string& steps, const Mesh& mesh, const std::string& pointer, const std::string& expected,
                            RecipeStart start = {}) {
     try {
         (void)follow(steps, mesh, "", std::move(start));
@@ -40,15 +40,15 @@ inline void expect_refused(const std::string& steps, const Mesh& mesh, const std
         const std::string message = error.what();
         EXPECT_NE(message.find("r.json"), std::string::npos) << message;
         EXPECT_NE(message.find(pointer), std::string::npos) << message << "\n  for " << steps;
-        EXPECT_NE(message.find(what), std::string::npos) << message << "\n  for " << steps;
+        EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  for " << steps;
         EXPECT_FALSE(error.remedy().empty()) << message;
     }
 }
 
-inline void expect_error(const std::string& expression, const Mesh& mesh, const std::string& pointer, const std::string& what,
+inline void expect_error(const std::string& expression, const Mesh& mesh, const std::string& pointer, const std::string& expected,
                          const std::string& type = "region") {
     expect_refused(R"({"id": 0, "tag": "t", "type": ")" + type + R"(", "select": )" + expression + "}", mesh,
-                   "/annotations/0/select" + pointer, what);
+                   "/annotations/0/select" + pointer, expected);
 }
 
 }  // namespace ostraka::test

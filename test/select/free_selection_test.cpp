@@ -26,9 +26,9 @@ Annotation selected(const Mesh& mesh, const std::string& select, const std::stri
     return *set.find(1);
 }
 
-/// Errors at each refinement fall at least by three: they are of second order.
-void expect_second_order(const std::vector<double>& errors, const std::string& what) {
-    for (std::size_t i = 0; i + 1 < errors.size(); ++i) EXPECT_LT(errors[i + 1], errors[i] / 3) << what << ' ' << i;
+/// Errors decrease at least by a factor of three per refinement: second order.
+void expect_second_order(const std::vector<double>& errors, const std::string& name) {
+    for (std::size_t i = 0; i + 1 < errors.size(); ++i) EXPECT_LT(errors[i + 1], errors[i] / 3) << name << ' ' << i;
 }
 
 /// A torus of radii 2 and 1 about z.
@@ -47,7 +47,7 @@ TEST(FreeSelection, HalfspacesAndBallsOnASphereAreOfSecondOrder) {
             mesh, selected(mesh, R"({"halfspace": {"point": [0.1224, 0.1632, 0.272], "normal": [0.36, 0.48, 0.8]}})"));
         area.push_back(std::abs(cap.area / (2 * pi * (1 - 0.34)) - 1));
         perimeter.push_back(std::abs(cap.perimeter / (2 * pi * std::sqrt(1 - 0.34 * 0.34)) - 1));
-        // A ball of radius r about a place on the unit sphere cuts off a cap of area pi r^2 exactly.
+        // A ball of radius r about a point on the unit sphere cuts off a cap of area pi r^2 exactly.
         const RegionMeasures ball =
             measure_region(mesh, selected(mesh, R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})"));
         ball_area.push_back(std::abs(ball.area / (pi * 0.49) - 1));
@@ -76,7 +76,7 @@ TEST(FreeSelection, CirclesOnATorusAreOfSecondOrder) {
     std::vector<double> area, perimeter;
     for (const Index n : {16U, 32U, 64U}) {
         const Mesh mesh = round_torus(n);
-        // The radii as the mesh has them.
+        // The radii of the mesh.
         double outer = 0, top = 0;
         for (const Vertex v : mesh.vertices()) {
             outer = std::max(outer, std::hypot(mesh.point(v).x(), mesh.point(v).y()));
@@ -131,7 +131,7 @@ TEST(FreeSelection, PathsAreGeodesics) {
     EXPECT_NEAR(curve->length(mesh), geodesic_distance(mesh, node(10), node(200)), 1e-9);
 }
 
-TEST(FreeSelection, EditsKeepItFree) {
+TEST(FreeSelection, EditsKeepFreeOutlines) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [
         {"id": 1, "tag": "part", "type": "region", "outline": "free",
@@ -152,10 +152,10 @@ TEST(FreeSelection, EditsKeepItFree) {
     EXPECT_NEAR(area_of(mesh, part), both - area("[0.2, 0, 1]", 0.2), 1e-9);
 }
 
-TEST(FreeSelection, WhatMissesTheSurfaceIsRefused) {
+TEST(FreeSelection, SelectionsThatMissTheSurfaceAreRefused) {
     const Mesh mesh = build_mesh(octahedron_sphere(2));
     EXPECT_THROW(selected(mesh, R"({"sphere": {"centre": [9, 9, 9], "radius": 1}})"), Error);
-    // The whole is the whole, and has no outline.
+    // The whole mesh has no outline.
     EXPECT_TRUE(selected(mesh, R"({"sphere": {"centre": [0, 0, 0], "radius": 9}})").all);
 }
 
@@ -178,9 +178,9 @@ TEST(FreeSelection, GrowthByADistanceIsOfSecondOrder) {
     expect_second_order(length, "perimeter of the grown cap");
 }
 
-TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
+TEST(FreeSelection, SetsOfFacesEndAtIsolines) {
     const Mesh mesh = build_mesh(octahedron_sphere(5));
-    // Labels by a plane that follows no edges: their border is a saw, the isoline nearly the circle.
+    // Labels by a plane not aligned with edges: their border is a sawtooth line, the isoline nearly a circle.
     std::vector<std::int32_t> labels;
     for (const Face f : mesh.faces()) {
         const Point c = centroid(mesh, f);
@@ -199,7 +199,7 @@ TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
     EXPECT_GT(saw.perimeter, 1.15 * circle);
     EXPECT_LT(line.perimeter, 1.06 * circle);
     EXPECT_NEAR(line.area / cap, 1, 0.01);
-    // Both labels together are the whole, without a gap or an overlap; a ring more or less is along isolines as well.
+    // Both labels together cover the whole, without gap or overlap; growth and shrinkage by a ring also follow isolines.
     const RegionMeasures rest = region("free", R"({"invert": {"labels": [7]}})");
     EXPECT_NEAR((line.area + rest.area) / surface_area(mesh), 1, 1e-12);
     const RegionMeasures ring = region("free", R"({"grow": {"of": {"labels": [7]}, "rings": 1}})");
@@ -213,7 +213,7 @@ TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
 
 namespace {
 
-/// A region by a recipe that says nothing of its outline, after a first annotation of the label 7.
+/// A region from a recipe without `outline`, after a first annotation of label 7.
 AnnotationSet by_default(const Mesh& mesh, const std::vector<std::int32_t>& labels, const std::string& select,
                          const std::string& more = "") {
     const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [
@@ -233,7 +233,7 @@ std::vector<std::int32_t> labels_by_plane(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(FreeSelection, LevelsAreFreeAndSetsOfFacesKeepTheirEdges) {
+TEST(FreeSelection, LevelSetsAreFreeAndSetsOfFacesKeepTheirEdges) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
@@ -253,12 +253,12 @@ TEST(FreeSelection, LevelsAreFreeAndSetsOfFacesKeepTheirEdges) {
              R"({"threshold": {"thickness": true, "above": 0}})", "{\"grow\": {\"of\": " + ball + ", \"rings\": 1}}",
              "{\"lasso\": {" + around + ", \"metric\": \"combined\"}}", R"({"annotation": 1})", R"({"invert": {"labels": [7]}})"})
         EXPECT_FALSE(is_free(*by_default(mesh, labels, faces).find(2))) << faces;
-    // As asked, whatever it is.
+    // As requested, for any selection.
     EXPECT_FALSE(is_free(*by_default(mesh, labels, ball + R"(, "outline": "edges")").find(2)));
     EXPECT_TRUE(is_free(*by_default(mesh, labels, R"({"labels": [7]}, "outline": "free")").find(2)));
 }
 
-TEST(FreeSelection, WhatIsMixedKeepsTheEdgesOfSetsOfFaces) {
+TEST(FreeSelection, MixedSelectionsKeepTheEdgesOfSetsOfFaces) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})", of_label = R"({"labels": [7]})";
@@ -271,7 +271,7 @@ TEST(FreeSelection, WhatIsMixedKeepsTheEdgesOfSetsOfFaces) {
     EXPECT_NEAR(area("{\"difference\": " + both + "}"), labelled - area("{\"intersection\": " + both + "}"), 1e-12);
 }
 
-TEST(FreeSelection, EditsLeaveAnOutlineWhatItIsAndReplacementsAreNew) {
+TEST(FreeSelection, EditsKeepTheKindOfAnOutlineAndReplacementsAreNew) {
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const std::vector<std::int32_t> labels = labels_by_plane(mesh);
     const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
@@ -282,13 +282,13 @@ TEST(FreeSelection, EditsLeaveAnOutlineWhatItIsAndReplacementsAreNew) {
     EXPECT_TRUE(is_free(after(ball, R"("action": "add to", "select": {"faces": [1, 2, 3]})")));
     EXPECT_TRUE(is_free(after(R"({"faces": [1, 2, 3]})", R"("action": "replace", "select": )" + ball)));
     EXPECT_FALSE(is_free(after(ball, R"("action": "replace", "select": {"faces": [1, 2, 3]})")));
-    // Along the edges from now on, with what there was.
+    // Along the edges from now on, including the existing part.
     const Annotation both = after(ball, R"("action": "add to", "outline": "edges", "select": {"faces": [1, 2, 3]})");
     EXPECT_FALSE(is_free(both));
     EXPECT_GT(both.faces.size(), by_default(mesh, labels, ball).find(2)->faces.size());
 }
 
-TEST(FreeSelection, WhereNoFreeOutlineCanBeMadeItRunsAlongTheEdges) {
+TEST(FreeSelection, WithoutAFreeOutlineItRunsAlongTheEdges) {
     // A plate of 8 by 8 squares; some of its triangles have a neighbour without area along one side, which cannot be cut inside.
     constexpr Index n = 8;
     TriangleSoup soup;

@@ -39,7 +39,7 @@ void expect_laws(const Mesh& mesh, const std::vector<bool>& part) {
     EXPECT_TRUE(contains(grow_by(mesh, part, 2 * d), grow_by(mesh, part, d)));
 }
 
-/// Spheres of the radii 1 and 2 beside each other.
+/// Spheres of radii 1 and 2 side by side.
 Mesh two_sizes(int levels = 4) {
     TriangleSoup soup = to_soup(spheres(levels));
     const TriangleSoup large = to_soup(spheres(levels, {{6, 0, 0}}, 2));
@@ -79,7 +79,7 @@ TEST(Growth, RingsOnATile) {
     EXPECT_EQ(count(shrink(mesh, cell, 1)), 0U);
     EXPECT_EQ(grow_vertices(mesh, {60}, 1), (std::vector<Index>{48, 49, 59, 60, 61, 71, 72}));
     EXPECT_EQ(shrink_vertices(mesh, {48, 49, 59, 60, 61, 71, 72}, 1), std::vector<Index>{60});
-    // The border of the mesh is no edge of the selection.
+    // The border of the mesh is not a border of the selection.
     EXPECT_EQ(count(shrink(mesh, std::vector<bool>(200, true), 3)), 200U);
     EXPECT_DOUBLE_EQ(area_of(R"({"grow": {"of": {"faces": [110, 111]}, "rings": 1}})", mesh), 8);
     EXPECT_DOUBLE_EQ(area_of(R"({"grow": {"of": {"box": {"min": [0, 0, 0], "max": [4, 10, 0]}}, "distance": 2}})", mesh), 60);
@@ -112,7 +112,7 @@ TEST(Brush, IsAGeodesicDisc) {
         const double area = area_of(R"({"brush": {"points": [[0, 0, 1]], "radius": )" + std::to_string(r) + "}}", sphere);
         EXPECT_NEAR(area, 2 * pi * (1 - std::cos(r)), 0.02 * 2 * pi * (1 - std::cos(r)) + 0.01) << r;
     }
-    // It goes along the surface: the other sphere is near in space only.
+    // Distances are measured along the surface: the other sphere is near only in space.
     const Mesh two = spheres(4, {{0, 0, 0}, {2.02, 0, 0}});
     const auto faces = faces_of(R"({"brush": {"points": [[1, 0, 0]], "radius": 0.5}})", two);
     EXPECT_LT(faces.back(), two.number_of_faces() / 2);
@@ -123,7 +123,7 @@ TEST(Brush, IsAGeodesicDisc) {
                 0.02 * pi * 200);
 }
 
-TEST(Brush, OnAScanItIsWhatTheDistanceSays) {
+TEST(Brush, OnAScanItMatchesTheDistance) {
     OSTRAKA_SCAN(mesh, "lion-head.off");
     const double radius = 0.06 * box_diagonal(mesh);
     const Vertex centre(1000);
@@ -158,7 +158,7 @@ TEST(Threshold, OnEveryScalar) {
     EXPECT_EQ(faces_of(R"({"threshold": {"thickness": true, "below": 2.5}})", mesh), small);
     EXPECT_EQ(select("point", R"({"threshold": {"thickness": true, "below": 2.5}})", mesh).points.size(),
               mesh.number_of_vertices() / 2);
-    // The same numbers whatever the unit, where lengths are shares of the box's diagonal.
+    // The same numbers for any unit, if lengths are fractions of the box's diagonal.
     const double diagonal = box_diagonal(mesh);
     EXPECT_EQ(faces_of(R"({"frame": "box", "threshold": {"curvature": "mean", "scale": 0.03, "above": )" +
                            std::to_string(0.75 * diagonal) + "}}",
@@ -169,7 +169,7 @@ TEST(Threshold, OnEveryScalar) {
         small);
 }
 
-TEST(Threshold, OnAMapBesideTheRecipe) {
+TEST(Threshold, OnAMapNextToTheRecipe) {
     const Mesh mesh = grid(2);
     const Scratch scratch;
     (void)scratch.file("v.txt", "0\n1\n2\n0\n1\n2\n0\n1\nnan\n");
@@ -189,7 +189,7 @@ TEST(Threshold, OnAMapBesideTheRecipe) {
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "short.txt", "above": 1}})"), Error);
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "none.txt", "above": 1}})"), Error);
     EXPECT_THROW((void)from("region", R"({"threshold": {"map": "f.txt", "on": "vertex", "above": 1}})"), Error);
-    // A recipe of others reads what stands beside it and nothing else.
+    // A recipe reads only files in its own folder.
     std::filesystem::create_directory(scratch / "sub");
     std::filesystem::create_symlink("..", scratch / "sub" / "up");
     for (const std::string& name :
@@ -209,8 +209,8 @@ TEST(Threshold, OnAMapBesideTheRecipe) {
 TEST(Threshold, OnAScan) {
     OSTRAKA_SCAN(mesh, "elephant.off");
     for (const char* kind : {R"("curvature": "mean", "scale": 0.02)", R"("thickness": true)", R"("coordinate": [0, 1, 0])"}) {
-        const std::string of = R"({"threshold": {)" + std::string(kind) + R"(, "quantiles": true, )";
-        const auto low = faces_of(of + R"("below": 0.3}})", mesh), high = faces_of(of + R"("above": 0.3}})", mesh);
+        const std::string prefix = R"({"threshold": {)" + std::string(kind) + R"(, "quantiles": true, )";
+        const auto low = faces_of(prefix + R"("below": 0.3}})", mesh), high = faces_of(prefix + R"("above": 0.3}})", mesh);
         EXPECT_NEAR(measure_region(mesh, low).area / surface_area(mesh), 0.3, 0.01) << kind;
         std::vector<Index> both(low);
         both.insert(both.end(), high.begin(), high.end());
@@ -221,8 +221,8 @@ TEST(Threshold, OnAScan) {
 }
 
 TEST(Segments, TheBallsOfADumbbell) {
-    const SyntheticMesh made = dumbbell();
-    const Mesh& mesh = made.mesh;
+    const SyntheticMesh object = dumbbell();
+    const Mesh& mesh = object.mesh;
     const std::string by_seed = R"({"segments": {"clusters": 2, "smoothing": 0.3, "seeds": [[)";
     const std::vector<std::pair<std::string, int>> seeds{{"-70, 0, 0", 0}, {"70, 0, 0", 1}, {"0, 6, 0", 2}};
     for (const auto& [seed, label] : seeds) {
@@ -231,13 +231,13 @@ TEST(Segments, TheBallsOfADumbbell) {
         std::vector<bool> flag(mesh.number_of_faces(), false);
         for (const Index f : faces) flag[f] = true;
         for (const Face f : mesh.faces()) {
-            const bool truth = made.face_labels[f] == label;
+            const bool truth = object.face_labels[f] == label;
             if (flag[f] && truth) shared += face_area(mesh, f);
             if (flag[f] || truth) all += face_area(mesh, f);
         }
         EXPECT_GT(shared / all, 0.8) << seed;
     }
-    // Numbered from the largest on, and together the whole.
+    // Numbered from the largest, and together the whole mesh.
     const auto first = faces_of(R"({"segments": {"clusters": 2, "smoothing": 0.3, "numbers": [0]}})", mesh);
     const auto last = faces_of(R"({"segments": {"clusters": 2, "smoothing": 0.3, "numbers": [2]}})", mesh);
     EXPECT_GE(measure_region(mesh, first).area, measure_region(mesh, last).area);
@@ -255,7 +255,7 @@ TEST(Segments, OnAScan) {
     EXPECT_LT(share, 1);
 }
 
-TEST(Reckoned, ErrorsNameWhatIsWrong) {
+TEST(Reckoned, ErrorsNameTheProblem) {
     const Mesh mesh = grid(4);
     expect_error(R"({"brush": {"points": [0], "radius": -1}})", mesh, "/brush/radius", "minimum");
     expect_error(R"({"brush": {"points": [99], "radius": 1}})", mesh, "/brush/points/0", "99");

@@ -38,7 +38,7 @@ std::vector<Index> faces_of(const std::string& select, const Mesh& mesh, const s
 
 double area_of(const std::string& select, const Mesh& mesh) { return measure_region(mesh, faces_of(select, mesh)).area; }
 
-void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& what) {
+void expect_error(const std::string& text, const Mesh& mesh, const std::string& pointer, const std::string& expected) {
     try {
         follow(text, mesh);
         FAIL() << text;
@@ -46,7 +46,7 @@ void expect_error(const std::string& text, const Mesh& mesh, const std::string& 
         const std::string message = error.what();
         EXPECT_NE(message.find("r.json"), std::string::npos) << message;
         EXPECT_NE(message.find(pointer), std::string::npos) << message << "\n  for " << text;
-        EXPECT_NE(message.find(what), std::string::npos) << message << "\n  for " << text;
+        EXPECT_NE(message.find(expected), std::string::npos) << message << "\n  for " << text;
     }
 }
 
@@ -64,13 +64,13 @@ TEST(Recipe, VolumesSelectByCentroidAndByVertex) {
     EXPECT_EQ(points, (std::vector<Index>{1, 5, 6, 7, 11}));
 }
 
-TEST(Recipe, NormalsOfAnyLengthAndPlacesWithinReason) {
+TEST(Recipe, NormalsOfAnyLengthAndFinitePoints) {
     const Mesh ball = spheres(3);
     const std::vector<Index> plain = faces_of(R"({"halfspace": {"point": [0.1, 0, 0], "normal": [1, 1, -1]}})", ball);
     ASSERT_GT(plain.size(), 0U);
     for (const std::string n : {"1e308", "1e-320"})
         EXPECT_EQ(faces_of(R"({"halfspace": {"point": [0.1, 0, 0], "normal": [)" + n + "," + n + ", -" + n + "]}}", ball), plain);
-    // Squares of distances overflow long before: no face is nearest then.
+    // Squared distances would overflow: no face is nearest then.
     for (const std::string select :
          {R"({"component": {"seed": [1e155, 0, 0]}})", R"({"sphere": {"centre": [0, 1.1e60, 0], "radius": 1}})",
           R"({"halfspace": {"point": [0, 0, 1e200], "normal": [0, 0, 1]}})",
@@ -79,7 +79,7 @@ TEST(Recipe, NormalsOfAnyLengthAndPlacesWithinReason) {
         expect_error(recipe(step("region", select)), ball, "/annotations/0/select", "beyond what can be computed with");
 }
 
-TEST(Recipe, TheBoxFrameFitsAnyPlaceAndScale) {
+TEST(Recipe, TheBoxFrameFitsAnyPositionAndScale) {
     const std::string select = R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}})";
     const std::vector<Index> expected = faces_of(select, grid(4));
     EXPECT_EQ(expected.size(), 16U);
@@ -153,7 +153,7 @@ TEST(Recipe, PathsComponentsAndPicks) {
               std::vector<Index>{0});
 }
 
-TEST(Recipe, MeasuresAreTakenAndDescriptorsComputed) {
+TEST(Recipe, MeasuresAndDescriptorsAreComputed) {
     const Mesh mesh = grid(4);
     const AnnotationSet set =
         follow(recipe(step("region", R"({"box": {"min": [0, 0, 0], "max": [2, 3, 0]}})", R"(, "attributes": [
@@ -236,15 +236,15 @@ TEST(Recipe, EmptyAndTinyMeshes) {
     EXPECT_TRUE(follow(recipe(""), empty).annotations.empty());
     EXPECT_THROW(follow(recipe(step("point", R"({"nearest": [0, 0, 0]})")), empty), Error);
     EXPECT_THROW(follow(recipe(step("region", R"({"component": {"seed": [0, 0, 0]}})")), empty), Error);
-    TriangleSoup one;
-    one.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    one.triangles = {{0, 1, 2}};
-    const Mesh triangle = build_mesh(one);
+    TriangleSoup soup;
+    soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    soup.triangles = {{0, 1, 2}};
+    const Mesh triangle = build_mesh(soup);
     EXPECT_EQ(faces_of(R"({"all": true})", triangle), std::vector<Index>{0});
     expect_error(recipe(step("region", R"({"lasso": {"points": [0, 1, 2], "seed": 0}})")), triangle, "/lasso", "close off");
 }
 
-TEST(Selections, NearestFaceAndVertexSkipWhatHasNoSurface) {
+TEST(Selections, NearestFaceAndVertexSkipElementsWithoutSurface) {
     TriangleSoup soup;
     soup.points = {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
     soup.triangles = {{1, 2, 3}, {2, 4, 3}};
@@ -255,7 +255,7 @@ TEST(Selections, NearestFaceAndVertexSkipWhatHasNoSurface) {
     EXPECT_THROW((void)component_of(mesh, 9), Error);
 }
 
-TEST(Recipe, TheShippedOnesFitTheSchema) {
+TEST(Recipe, TheShippedRecipesSatisfyTheSchema) {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(Path(OSTRAKA_SOURCE_DIR) / "data")) {
         const std::string name = entry.path().filename().string();
@@ -270,18 +270,18 @@ TEST(Recipe, TheVaseDrawnOnItsPicturesHasItsTrueParts) {
     MakeOptions options;
     options.vertices = 12000;
     const SyntheticObject& vase = synthetic_object("vase");
-    const SyntheticMesh made = make_mesh(vase, options);
-    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json", made.mesh);
+    const SyntheticMesh object = make_mesh(vase, options);
+    const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json", object.mesh);
     for (std::size_t part = 0; part < vase.parts.size(); ++part) {
-        const auto found = std::find_if(set.annotations.begin(), set.annotations.end(),
-                                        [&](const Annotation& a) { return a.tag == vase.parts[part]; });
-        ASSERT_NE(found, set.annotations.end()) << vase.parts[part];
-        const std::vector<bool> chosen = face_flags(made.mesh, found->faces);
+        const auto annotation = std::find_if(set.annotations.begin(), set.annotations.end(),
+                                             [&](const Annotation& a) { return a.tag == vase.parts[part]; });
+        ASSERT_NE(annotation, set.annotations.end()) << vase.parts[part];
+        const std::vector<bool> chosen = face_flags(object.mesh, annotation->faces);
         double shared = 0, all = 0;
-        for (const Face f : made.mesh.faces()) {
-            const bool truth = made.face_labels[f] == static_cast<int>(part);
-            if (chosen[f] && truth) shared += face_area(made.mesh, f);
-            if (chosen[f] || truth) all += face_area(made.mesh, f);
+        for (const Face f : object.mesh.faces()) {
+            const bool truth = object.face_labels[f] == static_cast<int>(part);
+            if (chosen[f] && truth) shared += face_area(object.mesh, f);
+            if (chosen[f] || truth) all += face_area(object.mesh, f);
         }
         EXPECT_GT(shared / all, 0.9) << vase.parts[part];
     }

@@ -1,4 +1,4 @@
-// Every selection tool on a real scan, against what can be told independently.
+// Every selection tool on a real scan, against independent computations.
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/select/selections.h"
 #include "select/follow.h"
@@ -25,7 +25,7 @@ std::string list(const Point& p) {
 
 }  // namespace
 
-TEST(Scan, PlacesAndSets) {
+TEST(Scan, PointsAndSets) {
     OSTRAKA_SCAN(mesh, "lion-head.off");
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);

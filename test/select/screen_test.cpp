@@ -22,7 +22,7 @@ PictureCamera camera_of(const Mesh& mesh, const std::string& view, bool perspect
     return fit_camera(mesh, {parse_view(view), {0, 0, 1}, perspective, 1, plain_pane(width, height)});
 }
 
-/// Every triangle tried in turn (Moeller and Trumbore 1997), with a doubtful answer where a hit is close to an edge.
+/// Every triangle tried in turn (Moeller and Trumbore 1997), with an uncertain answer if a hit is close to an edge.
 enum class Sight { free, hidden, doubtful };
 Sight brute_force(const Mesh& mesh, Vertex vertex, const Vector& ray, double max_distance) {
     const Point& p = mesh.point(vertex);
@@ -83,7 +83,7 @@ void compare_with_brute_force(const Mesh& mesh) {
 
 }  // namespace
 
-TEST(Screen, ARectangleOnATileSeenFromAbove) {
+TEST(Screen, ARectangleOnATileFromAbove) {
     const Mesh mesh = grid(10);
     // 10 x 10 fill 92 % of a pane of 856 pixels' height about its middle (600, 428): 78.752 pixels a unit.
     const PictureCamera camera = camera_of(mesh, "top", false);
@@ -107,7 +107,7 @@ TEST(Screen, ARectangleOnATileSeenFromAbove) {
     EXPECT_EQ(named.faces, select("region", drawn(top, from, to), mesh).faces);
 }
 
-TEST(Screen, OfAConvexShapeWhatFacesTheEyeIsVisible) {
+TEST(Screen, OnAConvexShapeFacesTowardsTheEyeAreVisible) {
     const Mesh mesh = spheres(4);
     const SurfaceSearch search(mesh);
     const auto all = [](const Pixel&) { return true; };
@@ -154,7 +154,7 @@ TEST(Screen, AnIndependentRayTestAgreesOnAScan) {
     compare_with_brute_force(mesh);
 }
 
-TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
+TEST(Screen, APixelOfAPictureSelectsTheVisibleElement) {
     MakeOptions make;
     make.vertices = 4000;
     const Mesh mesh = make_mesh(synthetic_object("teapot"), make).mesh;
@@ -182,7 +182,7 @@ TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
                     const std::uint32_t argb = rendering.picture.at(x, y);
                     const int red = argb >> 16 & 255, green = argb >> 8 & 255, blue = argb & 255;
                     ++compared;
-                    if (red == green && green == blue) {  // the background, or too dark to tell
+                    if (red == green && green == blue) {  // the background, or too dark to classify
                         different += hit.has_value() && red > 200;
                         continue;
                     }
@@ -200,7 +200,7 @@ TEST(Screen, APixelOfAPictureSelectsWhatIsSeenThere) {
         }
 }
 
-TEST(Screen, AnEyeCanBePlaced) {
+TEST(Screen, TheEyeCanBeSpecified) {
     const Mesh mesh = spheres(4);
     const std::string camera =
         R"({"eye": [0, -10, 0], "target": [0, 0, 0], "projection": "perspective", "angle": 30, "picture": [400, 400],
@@ -223,7 +223,7 @@ TEST(Screen, AnEyeCanBePlaced) {
               select("region", drawn(R"({"projection": "perspective"})", "[400, 300]", "[800, 500]"), mesh).faces);
 }
 
-TEST(Screen, ErrorsNameWhatIsWrong) {
+TEST(Screen, ErrorsNameTheProblem) {
     const Mesh mesh = spheres(3);
     const std::string front = R"({"view": "front"})";
     expect_error(drawn(front, "[1300, 0]", "[1400, 100]"), mesh, "/rectangle", "outside the picture");
@@ -275,7 +275,7 @@ TEST(Screen, ThePlaceAndScaleOfTheObjectDoNotMatter) {
     }
 }
 
-TEST(Screen, MeshesWithoutMuchToSee) {
+TEST(Screen, MeshesWithFewVisibleElements) {
     TriangleSoup soup;
     const std::string everything = drawn(R"({"view": "top"})", "[0, 0]", "[1200, 900]");
     expect_error(everything, build_mesh(soup), "/rectangle/camera", "no vertices");
@@ -285,7 +285,7 @@ TEST(Screen, MeshesWithoutMuchToSee) {
     EXPECT_EQ(select("point", everything, build_mesh(soup)).points, (std::vector<Index>{0, 1, 2}));
     soup.points[2] = {2, 0, 0};  // without area
     expect_error(everything, build_mesh(soup), "/rectangle", "no face with an area");
-    // Two sheets in one place hide each other, which is said by selecting nothing.
+    // Two coincident sheets hide each other, so that nothing is selected.
     soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     soup.triangles = {{0, 1, 2}, {3, 4, 5}};
     expect_error(everything, build_mesh(soup), "", "selects no face");

@@ -1,4 +1,4 @@
-// 'annotation select' and 'annotation apply --edit', as people run them.
+// 'annotation select' and 'annotation apply --edit', as users run them.
 #include "annotation/example_meshes.h"
 #include "mutate.h"
 #include "ostraka/annotation/annotation_file.h"
@@ -59,7 +59,7 @@ TEST(SelectCommand, StepsAreRecordedAndReplayedToTheByte) {
     EXPECT_EQ(run_command("annotation check " + folder.at("ball.ply") + " " + folder.at("a.ant.json")).code, 0);
 }
 
-TEST(SelectCommand, ASecondPartOfOneTagIsSaid) {
+TEST(SelectCommand, ASecondPartWithATagIsReported) {
     const Folder folder;
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").err, "");
     const auto second = folder.select("--tag cap --sphere 0,0,-1,0.5");
@@ -67,12 +67,12 @@ TEST(SelectCommand, ASecondPartOfOneTagIsSaid) {
     EXPECT_NE(second.err.find("a second annotation 'cap' is added beside that of id 0"), std::string::npos) << second.err;
     EXPECT_NE(second.err.find("--action 'add to' --id 0"), std::string::npos) << second.err;
     EXPECT_EQ(folder.select("--action 'add to' --id 0 --sphere 1,0,0,0.5").err, "");
-    const auto taken = folder.select("--tag cap --id 0 --sphere 1,0,0,0.5");
-    EXPECT_EQ(taken.code, 1);
-    EXPECT_NE(taken.err.find("'add to'"), std::string::npos) << taken.err;
+    const auto duplicate = folder.select("--tag cap --id 0 --sphere 1,0,0,0.5");
+    EXPECT_EQ(duplicate.code, 1);
+    EXPECT_NE(duplicate.err.find("'add to'"), std::string::npos) << duplicate.err;
 }
 
-TEST(SelectCommand, ColoursTellPartsFromTheWhole) {
+TEST(SelectCommand, ColoursDistinguishPartsFromTheWhole) {
     const Folder folder;
     ASSERT_EQ(folder.select("--class ball --tag cap --sphere 0,0,1,0.5").code, 0);
     ASSERT_EQ(folder.select("--tag nearly --halfspace 0,0,-0.99,0,0,1").code, 0);
@@ -93,18 +93,18 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
         folder.select("--class ball --unit mm --up 0,1,0 --tag top --view top --rectangle 500,350,700,550" + record);
     ASSERT_EQ(first.code, 0) << first.err;
     const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
-    const AnnotationSet made = read_annotations(folder / "a.ant.json", mesh);
-    EXPECT_EQ(made.object_class, "ball");
-    EXPECT_EQ(made.unit, "mm");
+    const AnnotationSet created = read_annotations(folder / "a.ant.json", mesh);
+    EXPECT_EQ(created.object_class, "ball");
+    EXPECT_EQ(created.unit, "mm");
     EXPECT_NE(first.out.find("area mm^2"), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("perimeter / length mm"), std::string::npos) << first.out;
-    ASSERT_TRUE(made.up);
-    EXPECT_EQ(*made.up, (std::array<double, 3>{0, 1, 0}));
-    // The next step looks down the same direction without being told, and another --up turns its camera only.
+    ASSERT_TRUE(created.up);
+    EXPECT_EQ(*created.up, (std::array<double, 3>{0, 1, 0}));
+    // The next step uses the same direction by default, and another --up rotates only its camera.
     ASSERT_EQ(folder.select("--tag again --view top --rectangle 500,350,700,550" + record).code, 0);
     ASSERT_EQ(folder.select("--tag side --view top --up 0,0,1 --rectangle 500,350,700,550" + record).code, 0);
     const AnnotationSet set = read_annotations(folder / "a.ant.json", mesh);
-    EXPECT_EQ(*set.up, *made.up);
+    EXPECT_EQ(*set.up, *created.up);
     EXPECT_EQ(set.find(2)->faces, set.find(1)->faces);
     EXPECT_NE(set.find(3)->faces, set.find(1)->faces);
     ASSERT_EQ(run_command("annotation apply " + folder.at("ball.ply") + " " + folder.at("r.recipe.json") + " " +
@@ -112,7 +112,7 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
                   .code,
               0);
     EXPECT_EQ(read_file(folder / "replayed.ant.json"), read_file(folder / "a.ant.json"));
-    // A recipe that was there already does not hide what is said of a new file.
+    // An existing recipe does not override options for a new file.
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5 --record " + folder.at("s.recipe.json"), "b.ant.json").code, 0);
     ASSERT_EQ(folder
                   .select("--tag cap --unit m --up 1,0,0 --sphere 0,0,1,0.5 --id 5 --record " + folder.at("s.recipe.json"),
@@ -125,18 +125,18 @@ TEST(SelectCommand, ANewFileKeepsClassUnitAndUp) {
     EXPECT_FALSE(std::filesystem::exists(folder / "d.ant.json"));
 }
 
-TEST(SelectCommand, HelpSaysDefaultsAndUnits) {
+TEST(SelectCommand, HelpGivesDefaultsAndUnits) {
     const std::string help = run_command("annotation select --help").out;
     for (const char* words : {"=30,20", "=1200x900", "=orthographic", "=mesh", "in degrees", "in pixels", "any text"})
         EXPECT_NE(help.find(words), std::string::npos) << words << "\n" << help;
-    // Every order of the arguments, and each argument by its name.
+    // Every order of the arguments, and each argument by name.
     const std::string orders = run_command("annotation apply --help").out;
     for (const char* words : {"[OPTIONS] mesh recipe output\n", "[OPTIONS] mesh output\n", "\n  mesh FILE", "\n  recipe FILE"})
         EXPECT_NE(orders.find(words), std::string::npos) << words << "\n" << orders;
     EXPECT_EQ(orders.find("files"), std::string::npos) << orders;
 }
 
-TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
+TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnTheExistingAnnotations) {
     const Folder folder;
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5").code, 0);
     write_file(folder / "before.ant.json", read_file(folder / "a.ant.json"));
@@ -155,7 +155,7 @@ TEST(SelectCommand, EditsBegunWithoutARecipeReplayOnWhatWasThere) {
     EXPECT_EQ(read_annotations(folder / "a.ant.json", mesh).annotations.size(), 1U) << "--output leaves the file as it is";
 }
 
-TEST(SelectCommand, TheRecipeMayGoElsewhere) {
+TEST(SelectCommand, TheRecipeMayBeWrittenElsewhere) {
     const Folder folder;
     const std::string record = " --record " + folder.at("r.recipe.json");
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
@@ -194,7 +194,7 @@ TEST(SelectCommand, StepsOnValuesOfAFileReplayToTheByte) {
     }
 }
 
-TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
+TEST(SelectCommand, UpdatesObjectsInMemory) {
     Context context;
     const auto mesh = std::make_shared<const Mesh>(spheres(4));
     std::optional<Object> set, recipe;
@@ -228,16 +228,16 @@ TEST(SelectCommand, BringsObjectsInMemoryUpToDate) {
     EXPECT_TRUE(std::filesystem::exists(scratch / "r.recipe.json"));
 }
 
-TEST(SelectCommand, WhatIsRefusedLeavesTheFilesAsTheyWere) {
+TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
     const Folder folder;
     const std::string record = " --record " + folder.at("r.recipe.json");
     ASSERT_EQ(folder.select("--tag cap --sphere 0,0,1,0.5" + record).code, 0);
     const std::string before = read_file(folder / "a.ant.json"), recipe = read_file(folder / "r.recipe.json");
     const std::size_t files = test::count_files(folder.path());
-    const auto refuse = [&](const std::string& flags, int code, const std::string& what) {
+    const auto refuse = [&](const std::string& flags, int code, const std::string& expected) {
         const auto result = folder.select(flags + record);
         EXPECT_EQ(result.code, code) << flags << "\n" << result.err;
-        EXPECT_NE(result.err.find(what), std::string::npos) << flags << "\n" << result.err;
+        EXPECT_NE(result.err.find(expected), std::string::npos) << flags << "\n" << result.err;
         EXPECT_EQ(read_file(folder / "a.ant.json"), before);
         EXPECT_EQ(read_file(folder / "r.recipe.json"), recipe);
         EXPECT_EQ(test::count_files(folder.path()), files);
@@ -280,7 +280,7 @@ TEST(SelectCommand, APictureReportsItsCameras) {
     ASSERT_EQ(picture.code, 0) << picture.err;
     const Json report = parse_json(picture.out, "report");
     const JsonValue& pane = report["result"]["panes"][0];
-    // The middle of the pane shows the point nearest to the viewer, wherever the legend has pushed it.
+    // The middle of the pane shows the point nearest to the viewer, regardless of the legend.
     const double x = pane["camera"]["pane"][0].GetDouble() + pane["camera"]["pane"][2].GetDouble() / 2,
                  y = pane["camera"]["pane"][1].GetDouble() + pane["camera"]["pane"][3].GetDouble() / 2;
     EXPECT_LT(x, 299);
@@ -292,7 +292,7 @@ TEST(SelectCommand, APictureReportsItsCameras) {
     const Mesh mesh = read_mesh(folder / "ball.ply").mesh;
     const AnnotationSet set = apply_recipe(recipe, mesh);
     EXPECT_EQ(mesh.point(Vertex(set.annotations.at(0).points.at(0))), Point(0, -1, 0));
-    // The same by flags; the type is that of the tool.
+    // The same with flags; the type is that of the tool.
     const auto flags =
         folder.select("--tag nearest --camera '" + camera + "' --vertices @" + std::to_string(x) + "," + std::to_string(y));
     ASSERT_EQ(flags.code, 0) << flags.err;
@@ -348,7 +348,7 @@ TEST(SelectCommand, BrushThresholdAndSegment) {
 
 namespace {
 
-/// How many of 200 damaged copies can still be followed; the others are refused in words.
+/// Number of 200 damaged copies that can still be followed; the others are refused with a message.
 std::size_t survive(const std::string& recipe, const Mesh& mesh) {
     std::size_t done = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -388,7 +388,7 @@ TEST(SelectMutation, DamagedRecipesEndInSuccessOrAClearError) {
     const std::size_t done = survive(recipe, mesh);
     EXPECT_LT(done, 200U);
     EXPECT_GT(done, 5U);
-    // And one that is shipped, on its object.
+    // A shipped recipe on its object.
     MakeOptions options;
     options.vertices = 2000;
     EXPECT_LT(survive(read_file(Path(OSTRAKA_SOURCE_DIR) / "data/vase-drawn.recipe.json"),

@@ -46,34 +46,34 @@ double rectangle(double angle, double a, double b) {
 /// A round foot, a flat board in the middle, a round head.
 double three_parts(double share, double angle) { return share < 0.35 || share > 0.75 ? 10 : rectangle(angle, 20, 5); }
 
-TEST(SliceSegments, ProposesTheKindsThatAreThereAndFindsTheirBands) {
-    // Rings so close that no slice lies between two of different kinds.
+TEST(SliceSegments, ProposesTheNumberOfKindsAndFindsTheirBands) {
+    // Rings are so dense that no slice lies between rings of different kinds.
     const Mesh mesh = lofted(three_parts, 60, 1201, 36);
     for (const char* criterion : {"silhouette", "gap"}) {
         SliceSegmentOptions options;
         set_option(options.count, "criterion", criterion);
-        const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1), options);
-        EXPECT_EQ(found.count.proposed, 2) << criterion;
-        ASSERT_EQ(found.segments.size(), 3U) << criterion;
-        EXPECT_EQ(found.segments[0].cluster, found.segments[2].cluster);
-        EXPECT_NE(found.segments[0].cluster, found.segments[1].cluster);
-        EXPECT_NEAR(found.segments[0].high, 0.35 * 60, 1.5);
-        EXPECT_NEAR(found.segments[1].high, 0.75 * 60, 1.5);
-        EXPECT_DOUBLE_EQ(found.segments[0].low, 0);
-        EXPECT_NEAR(found.segments[2].high, 60, 1e-9);
+        const SliceSegments segments = segment_by_slices(mesh, Vector(0, 0, 1), options);
+        EXPECT_EQ(segments.count.proposed, 2) << criterion;
+        ASSERT_EQ(segments.segments.size(), 3U) << criterion;
+        EXPECT_EQ(segments.segments[0].cluster, segments.segments[2].cluster);
+        EXPECT_NE(segments.segments[0].cluster, segments.segments[1].cluster);
+        EXPECT_NEAR(segments.segments[0].high, 0.35 * 60, 1.5);
+        EXPECT_NEAR(segments.segments[1].high, 0.75 * 60, 1.5);
+        EXPECT_DOUBLE_EQ(segments.segments[0].low, 0);
+        EXPECT_NEAR(segments.segments[2].high, 60, 1e-9);
     }
 }
 
-TEST(SliceSegments, RegionsPartTheMesh) {
+TEST(SliceSegments, RegionsPartitionTheMesh) {
     const Mesh mesh = lofted(three_parts, 60);
-    const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1));
-    const AnnotationSet set = annotate_segments(mesh, found);
+    const SliceSegments segments = segment_by_slices(mesh, Vector(0, 0, 1));
+    const AnnotationSet set = annotate_segments(mesh, segments);
     ASSERT_EQ(set.annotations.size(), 3U);
     std::vector<int> covered(mesh.number_of_faces(), 0);
     for (const Annotation& region : set.annotations) {
         for (const Index face : region.faces) {
             ++covered[face];
-            const SliceSegment& segment = found.segments[static_cast<std::size_t>(region.id)];
+            const SliceSegment& segment = segments.segments[static_cast<std::size_t>(region.id)];
             EXPECT_GE(centroid(mesh, Face(face)).z(), segment.low - 1e-9);
             EXPECT_LE(centroid(mesh, Face(face)).z(), segment.high + 1e-9);
         }
@@ -86,14 +86,14 @@ TEST(SliceSegments, RegionsPartTheMesh) {
 
 TEST(SliceSegments, AgreementIsOverTheFacesThatHaveALabel) {
     const Mesh mesh = lofted(three_parts, 60);
-    const SliceSegments found = segment_by_slices(mesh, Vector(0, 0, 1));
-    std::vector<std::int32_t> known = found.face_segments;
-    EXPECT_DOUBLE_EQ(*segment_agreement(found, known), 1);
-    for (std::size_t f = 0; f < known.size(); f += 2) known[f] = -1;
-    EXPECT_DOUBLE_EQ(*segment_agreement(found, known), 1);
-    known[1] = (known[1] + 1) % 3;
-    EXPECT_LT(*segment_agreement(found, known), 1);
-    EXPECT_FALSE(segment_agreement(found, {}));
+    const SliceSegments segments = segment_by_slices(mesh, Vector(0, 0, 1));
+    std::vector<std::int32_t> labels = segments.face_segments;
+    EXPECT_DOUBLE_EQ(*segment_agreement(segments, labels), 1);
+    for (std::size_t f = 0; f < labels.size(); f += 2) labels[f] = -1;
+    EXPECT_DOUBLE_EQ(*segment_agreement(segments, labels), 1);
+    labels[1] = (labels[1] + 1) % 3;
+    EXPECT_LT(*segment_agreement(segments, labels), 1);
+    EXPECT_FALSE(segment_agreement(segments, {}));
 }
 
 TEST(SliceSegments, ShortRunsJoinTheirLongerNeighbour) {
@@ -109,7 +109,7 @@ TEST(SliceSegments, ShortRunsJoinTheirLongerNeighbour) {
     EXPECT_EQ(segment_by_slices(mesh, Vector(0, 0, 1), options).segments.size(), 2U);
 }
 
-TEST(SliceSegments, SameAfterScaleAndTurnAndForAnyNumberOfThreads) {
+TEST(SliceSegments, SameAfterScalingAndRotationAndForAnyNumberOfThreads) {
     Mesh mesh = lofted(three_parts, 60);
     const SliceSegments before = segment_by_slices(mesh, Vector(0, 0, 1));
     for (const Vertex v : mesh.vertices()) {
@@ -117,23 +117,23 @@ TEST(SliceSegments, SameAfterScaleAndTurnAndForAnyNumberOfThreads) {
         mesh.point(v) = Point(7 + 1e-3 * p.z(), -3 + 1e-3 * p.x(), 1e-3 * p.y());
     }
     set_threads(1);
-    const SliceSegments one = segment_by_slices(mesh, Vector(1, 0, 0));
+    const SliceSegments single_threaded = segment_by_slices(mesh, Vector(1, 0, 0));
     set_threads(3);
     const SliceSegments three = segment_by_slices(mesh, Vector(1, 0, 0));
     set_threads(0);
-    EXPECT_EQ(one.face_segments, three.face_segments);
-    EXPECT_EQ(one.labels, before.labels);
+    EXPECT_EQ(single_threaded.face_segments, three.face_segments);
+    EXPECT_EQ(single_threaded.labels, before.labels);
 }
 
-TEST(SliceSegments, OneKindOnlyGivesOneSegmentWhereAskedFor) {
+TEST(SliceSegments, OneKindGivesOneSegmentIfRequested) {
     SliceSegmentOptions options;
     options.clusters = 1;
-    const SliceSegments one = segment_by_slices(lofted(three_parts, 60), Vector(0, 0, 1), options);
-    EXPECT_EQ(one.segments.size(), 1U);
-    EXPECT_EQ(one.clusters, 1);
+    const SliceSegments single_segment = segment_by_slices(lofted(three_parts, 60), Vector(0, 0, 1), options);
+    EXPECT_EQ(single_segment.segments.size(), 1U);
+    EXPECT_EQ(single_segment.clusters, 1);
 }
 
-TEST(SliceSegments, NonsenseIsRefused) {
+TEST(SliceSegments, InvalidOptionsAreRefused) {
     const Mesh mesh = lofted(three_parts, 60);
     SliceSegmentOptions options;
     options.slices = 3;

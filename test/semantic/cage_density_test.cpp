@@ -1,4 +1,4 @@
-// What annotations ask of a cage.
+// Influence of annotations on cages.
 #include "ostraka/semantic/cage_density.h"
 
 #include "annotation/example_meshes.h"
@@ -9,7 +9,7 @@
 
 using namespace ostraka;
 
-TEST(CageDensity, MoreVerticesWhereThingsAreAnnotated) {
+TEST(CageDensity, MoreVerticesNearAnnotations) {
     const Mesh mesh = example::spheres(3);
     AnnotationSet set;
     Annotation& mark = set.annotations.emplace_back();

@@ -18,17 +18,17 @@ inline Edit edit(const std::string& steps, const std::string& name = "e") {
 
 /// A synthetic object with the annotations of its recipe, a cage and mean value coordinates.
 struct Caged {
-    SyntheticMesh made;
+    SyntheticMesh synthetic;
     AnnotationSet set;
     Mesh cage;
     Coordinates coordinates;
     Caged(const std::string& name, std::uint64_t vertices, std::uint64_t cage_vertices)
-        : made(make_mesh(synthetic_object(name), {.vertices = vertices})),
-          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)),
-          cage(make_cage(made.mesh, {.vertices = cage_vertices}).cage),
-          coordinates(compute_coordinates("mean-value", cage, made.mesh)) {}
-    [[nodiscard]] HandleSpace handles() const { return {made.mesh, set, &cage, &coordinates}; }
-    [[nodiscard]] HandleSpace bare() const { return {made.mesh, set}; }
+        : synthetic(make_mesh(synthetic_object(name), {.vertices = vertices})),
+          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), synthetic.mesh, synthetic.face_labels)),
+          cage(make_cage(synthetic.mesh, {.vertices = cage_vertices}).cage),
+          coordinates(compute_coordinates("mean-value", cage, synthetic.mesh)) {}
+    [[nodiscard]] HandleSpace handles() const { return {synthetic.mesh, set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace bare() const { return {synthetic.mesh, set}; }
 };
 
 inline const Caged& teapot() {

@@ -1,4 +1,4 @@
-// Cylinders and a sheet, annotated, with ways to place them rightly and wrongly, on which every type of constraint is judged.
+// Cylinders and a sheet, annotated, with shapes that satisfy or violate each type of constraint.
 #pragma once
 
 #include "caged.h"
@@ -18,7 +18,7 @@ using Shape = std::function<void(Places&, double wrong)>;
 inline constexpr int a = 1, b = 2, a_lower = 3, a_upper = 4, a_line = 5, b_line = 6, ring = 7, cross = 8, corner = 9, solid = 10,
                      two_rings = 11, a_sides = 12, sheet = 13, neighbour = 14, above = 15, lying = 16;
 
-/// Closed cylinders about z and a flat sheet, each a piece of its own: 13 rings of 24 vertices from below, then the middles of
+/// Closed cylinders about z and a flat sheet, each a separate component: 13 rings of 24 vertices from below, then the centres of
 /// the ends.
 struct Bench {
     static constexpr Index around = 24, levels = 13;
@@ -85,9 +85,9 @@ struct Bench {
         region(a_upper, faces[a], [](double z) { return z > 3; });
         region(a_sides, faces[a], [](double z) { return z > 1 && z < 5; });
         add(sheet, AnnotationType::region).faces = inside;
-        for (const auto& [id, of] : {std::pair{a_line, a}, {b_line, b}}) {
+        for (const auto& [id, tube] : {std::pair{a_line, a}, {b_line, b}}) {
             std::vector<Index> way;
-            for (Index j = 0; j < levels; ++j) way.push_back(first[of] + j * around);
+            for (Index j = 0; j < levels; ++j) way.push_back(first[tube] + j * around);
             add(id, AnnotationType::line).polylines.push_back(way);
         }
         const auto at = [&](Index i, Index j) { return first[a] + j * around + i; };
@@ -101,17 +101,17 @@ struct Bench {
     }
 
     Annotation& add(int id, AnnotationType type) {
-        Annotation one;
-        one.id = id;
-        one.tag = "part " + std::to_string(id);
-        one.type = type;
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = id;
+        annotation.tag = "part " + std::to_string(id);
+        annotation.type = type;
+        set.annotations.push_back(annotation);
         return set.annotations.back();
     }
     void region(int id, std::pair<std::size_t, std::size_t> range, const std::function<bool(double)>& has) {
-        Annotation& one = add(id, AnnotationType::region);
+        Annotation& annotation = add(id, AnnotationType::region);
         for (std::size_t f = range.first; f < range.second; ++f)
-            if (has(centroid(mesh, Face(static_cast<Index>(f))).z())) one.faces.push_back(static_cast<Index>(f));
+            if (has(centroid(mesh, Face(static_cast<Index>(f))).z())) annotation.faces.push_back(static_cast<Index>(f));
     }
     void add_height(int id) {
         Attribute height;
@@ -120,8 +120,8 @@ struct Bench {
         height.measure.tool = "bounding";
         height.measure.points = {first[id], first[id] + (levels - 1) * around};
         height.measure.direction = {0, 0, 1};
-        for (Annotation& one : set.annotations)
-            if (one.id == id) one.attributes.push_back(height);
+        for (Annotation& annotation : set.annotations)
+            if (annotation.id == id) annotation.attributes.push_back(height);
     }
     [[nodiscard]] std::vector<Index> vertices(int id) const { return vertices_of(mesh, *set.find(id)); }
     [[nodiscard]] Places at_rest() const {
@@ -135,7 +135,7 @@ struct Bench {
         return box.diagonal().norm();
     }
 
-    // What positions say, in the test's own words.
+    // Quantities computed from positions, independently of the library.
     [[nodiscard]] Vector3d end(const Places& p, int id, bool upper) const {
         Vector3d sum(0, 0, 0);
         for (Index i = 0; i < around; ++i) sum += p[first.at(id) + (upper ? (levels - 1) * around : 0) + i] / around;
@@ -158,15 +158,15 @@ struct Bench {
 };
 
 inline const Bench& bench() {
-    static const Bench one;
-    return one;
+    static const Bench instance;
+    return instance;
 }
 
 inline double degrees(const Vector3d& p, const Vector3d& q) {
     return std::atan2(p.cross(q).norm(), std::abs(p.dot(q))) * 180 / std::numbers::pi;
 }
 
-/// All points of a part about its middle.
+/// All points of a part relative to its mean.
 inline Shape each(int id, const std::function<Vector3d(const Vector3d& from_middle, double wrong)>& to) {
     return [=](Places& p, double wrong) {
         const Vector3d middle = bench().middle(p, id);
@@ -181,7 +181,7 @@ inline Shape rotated(int id, const Vector3d& about, double first = 0) {
 inline Shape moved(int id, const Vector3d& way) {
     return each(id, [=](const Vector3d& d, double wrong) -> Vector3d { return d + wrong * way; });
 }
-/// By 1 + wrong along each coordinate that `along` has.
+/// Scaled by 1 + wrong along the coordinates in `along`.
 inline Shape stretched(int id, const Vector3d& along) {
     return each(id, [=](const Vector3d& d, double wrong) -> Vector3d { return d + wrong * along.cwiseProduct(d); });
 }
@@ -208,7 +208,7 @@ inline double sides_differ(const Places& p, int id) {
     const auto [low, high] = std::minmax_element(sides.begin(), sides.end());
     return 100 * (*high / *low - 1);
 }
-/// Greatest distance of two shapes' points, as a share of the part's size, once both are about their middles.
+/// Maximum distance between the points of two centred shapes, relative to the part's size.
 inline double changed(const Places& p, int id) {
     const Places rest = bench().at_rest();
     const Vector3d now = bench().middle(p, id), then = bench().middle(rest, id);

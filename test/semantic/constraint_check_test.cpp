@@ -1,4 +1,4 @@
-// Constraints judged on an object as it is: every type against what positions say by themselves.
+// Constraints judged on an object as it is: every type against quantities computed from positions.
 #include "constraint_bench.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/io/mesh_file.h"
@@ -20,10 +20,10 @@ std::vector<Case> axes_and_places() {
     const auto apart = [](auto height) { return [=](const Places& p) { return std::abs(height(p, a) - height(p, b)); }; };
     const auto mean_height = [](const Places& p, int id) { return bench().middle(p, id).z(); };
     const auto base_height = [](const Places& p, int id) { return bench().end(p, id, false).z(); };
-    const auto between = [](int one, int other, double right) {
-        return [=](const Places& p) { return std::abs(right - degrees(bench().axis(p, one), bench().axis(p, other))); };
+    const auto between = [](int first_part, int other, double right) {
+        return [=](const Places& p) { return std::abs(right - degrees(bench().axis(p, first_part), bench().axis(p, other))); };
     };
-    // Of the ring between the halves of the first cylinder.
+    // The ring between the halves of the first cylinder.
     const auto tilt = [](const Places& p) {
         return degrees(
             (bench().point(p, ring, 0) - bench().point(p, ring, 2)).cross(bench().point(p, ring, 1) - bench().point(p, ring, 3)),
@@ -31,8 +31,8 @@ std::vector<Case> axes_and_places() {
     };
     const auto off_axis = [](const Places& p) {
         const Vector3d way = bench().axis(p, a), from = bench().end(p, a, false);
-        const Vector3d other = bench().axis(p, above), there = bench().end(p, above, false);
-        return std::max(way.cross(bench().middle(p, above) - from).norm(), other.cross(bench().middle(p, a) - there).norm());
+        const Vector3d other = bench().axis(p, above), end_point = bench().end(p, above, false);
+        return std::max(way.cross(bench().middle(p, above) - from).norm(), other.cross(bench().middle(p, a) - end_point).norm());
     };
     return {
         {"parallel axes", {b, a}, "{}", rotated(b, y), {0, 3, 30}, between(b, a, 0), 5},
@@ -136,8 +136,8 @@ std::vector<Case> axes_and_places() {
 std::vector<Case> measures_and_shapes() {
     const auto height = [](const Places& p) { return bench().height(p, b); };
     const auto off_mean = [](const Places& p) {
-        const double one = bench().height(p, a), other = bench().height(p, b);
-        return 100 * (std::max(one, other) / ((one + other) / 2) - 1);
+        const double first_height = bench().height(p, a), second_height = bench().height(p, b);
+        return 100 * (std::max(first_height, second_height) / ((first_height + second_height) / 2) - 1);
     };
     const auto out_of = [](double value, double low, double high) {
         return value < low ? 100 * (low - value) / low : value > high ? 100 * (value - high) / high : 0;
@@ -229,7 +229,7 @@ std::vector<Case> measures_and_shapes() {
 }
 
 std::vector<Case> kinds_of_the_solver() {
-    // How far off a few points are, in per cent of their size; 2 % and more is far beyond the tolerance of 1 % of a residual.
+    // Deviation of a few points, in per cent of their size; 2 % and more is far beyond the tolerance of 1 % of a residual.
     const Shape out = pulled(ring, 0, x), up = pulled(ring, 0, z);
     const auto lifted = [](const Places& p) {
         return 100 *
@@ -356,13 +356,13 @@ std::vector<Case> cases() {
     return list;
 }
 
-RelationGraph graph_of(const Case& one) {
+RelationGraph graph_of(const Case& test_case) {
     RelationGraph graph;
-    graph.relationships.push_back(constraint(0, one.type, one.members, one.parameters));
+    graph.relationships.push_back(constraint(0, test_case.type, test_case.members, test_case.parameters));
     return graph;
 }
 
-/// A shape of the bench as a file has it.
+/// A shape of the bench as read from a file.
 Mesh from_file(const Scratch& scratch, const std::vector<Point>& points) {
     write_mesh(scratch / "shape.ply", with_points(bench().mesh, points));
     return read_mesh(scratch / "shape.ply").mesh;
@@ -372,36 +372,37 @@ Places places_of(const Mesh& mesh) {
     for (const Vertex v : mesh.vertices()) places.push_back(eigen(mesh.point(v)));
     return places;
 }
-std::vector<Point> wrong_by(const Case& one, double wrong) {
+std::vector<Point> wrong_by(const Case& test_case, double wrong) {
     Places places = bench().at_rest();
-    one.shape(places, wrong);
+    test_case.shape(places, wrong);
     return points_of(places);
 }
 
 }  // namespace
 
-TEST(ConstraintCheck, EveryTypeIsJudgedByWhatPositionsSay) {
+TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
     const Scratch scratch;
-    for (const Case& one : cases()) {
+    for (const Case& test_case : cases()) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const Mesh object = from_file(scratch, wrong_by(one, one.wrong.at(i)));
-            const double value = one.value(places_of(object));
-            EXPECT_EQ(value <= one.tolerance, i < 2) << one.type << ", " << one.wrong.at(i) << ": " << value;
-            const RelationGraph graph = graph_of(one);
-            const std::string what =
-                std::string(one.type) + " " + one.parameters + ", wrong by " + std::to_string(one.wrong.at(i));
+            const Mesh object = from_file(scratch, wrong_by(test_case, test_case.wrong.at(i)));
+            const double value = test_case.value(places_of(object));
+            EXPECT_EQ(value <= test_case.tolerance, i < 2) << test_case.type << ", " << test_case.wrong.at(i) << ": " << value;
+            const RelationGraph graph = graph_of(test_case);
+            const std::string name =
+                std::string(test_case.type) + " " + test_case.parameters + ", wrong by " + std::to_string(test_case.wrong.at(i));
             const ConstraintReport alone = judge_constraints(object, bench().set, graph).at(0);
-            if (one.rest) {
-                EXPECT_EQ(alone.verdict, Verdict::unknown) << what;
-                EXPECT_NE(alone.text.find("--rest"), std::string::npos) << what << ": " << alone.text;
+            if (test_case.rest) {
+                EXPECT_EQ(alone.verdict, Verdict::unknown) << name;
+                EXPECT_NE(alone.text.find("--rest"), std::string::npos) << name << ": " << alone.text;
             }
-            // Against the shape at rest the verdict is that of deformations.
-            const ConstraintReport judged = one.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
-            ASSERT_FALSE(judged.deviations.empty()) << what << ": " << judged.text;
-            EXPECT_EQ(judged.verdict, value <= one.tolerance ? Verdict::holds : Verdict::fails)
-                << what << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
-            if (one.exact) {
-                EXPECT_NEAR(*judged.deviations[0].value, value, 0.02 * one.tolerance + 0.02 * value) << what;
+            // With the rest shape the verdict is that of `deform`.
+            const ConstraintReport judged =
+                test_case.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
+            ASSERT_FALSE(judged.deviations.empty()) << name << ": " << judged.text;
+            EXPECT_EQ(judged.verdict, value <= test_case.tolerance ? Verdict::holds : Verdict::fails)
+                << name << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
+            if (test_case.exact) {
+                EXPECT_NEAR(*judged.deviations[0].value, value, 0.02 * test_case.tolerance + 0.02 * value) << name;
             }
         }
     }
@@ -409,7 +410,7 @@ TEST(ConstraintCheck, EveryTypeIsJudgedByWhatPositionsSay) {
 
 TEST(ConstraintCheck, EveryTypeIsInTheTable) {
     std::set<std::string> judged{"containment", "equal selections"};
-    for (const Case& one : cases()) judged.insert(one.type);
+    for (const Case& test_case : cases()) judged.insert(test_case.type);
     for (const RelationType& type : relation_types()) EXPECT_TRUE(judged.count(type.name) > 0) << type.name;
 }
 
@@ -424,28 +425,28 @@ TEST(ConstraintCheck, SelectionsAreJudgedByTheirFaces) {
     EXPECT_EQ(judged.at(2).verdict, Verdict::fails);
 }
 
-TEST(ConstraintCheck, WhatIsSolvedIsWhatIsMeasured) {
+TEST(ConstraintCheck, TheSolvedQuantityIsTheMeasuredOne) {
     // From a very wrong shape: the verdict on the result is that of its file, and the same as the check's against the rest.
     const Scratch scratch;
     DeformOptions options;
     options.conflicts = 0;
-    for (const Case& one : cases()) {
-        RelationGraph graph = graph_of(one);
+    for (const Case& test_case : cases()) {
+        RelationGraph graph = graph_of(test_case);
         graph.relationships[0].weight = 1000;
-        const std::vector<Point> start = wrong_by(one, one.wrong[2]);
-        const std::vector<bool> held(start.size(), false);
-        DeformResult result = restore_constraints(bench().mesh, bench().set, graph, start, held, options);
+        const std::vector<Point> start = wrong_by(test_case, test_case.wrong[2]);
+        const std::vector<bool> fixed(start.size(), false);
+        DeformResult result = restore_constraints(bench().mesh, bench().set, graph, start, fixed, options);
         const Mesh object = from_file(scratch, result.points);
-        const double value = one.value(places_of(object)), before = one.value(places_of(from_file(scratch, start)));
-        const std::string what = std::string(one.type) + " " + one.parameters;
+        const double value = test_case.value(places_of(object)), before = test_case.value(places_of(from_file(scratch, start)));
+        const std::string name = std::string(test_case.type) + " " + test_case.parameters;
         const ConstraintReport &solved = result.constraints.at(0),
                                judged = judge_constraints(object, bench().set, graph, &bench().mesh).at(0);
-        EXPECT_EQ(solved.verdict, judged.verdict) << what;
-        std::cout << what << ": " << before << " -> " << value << " (at most " << one.tolerance << "), "
+        EXPECT_EQ(solved.verdict, judged.verdict) << name;
+        std::cout << name << ": " << before << " -> " << value << " (at most " << test_case.tolerance << "), "
                   << to_string(solved.verdict) << "\n";
-        if (one.exact) {
-            EXPECT_EQ(solved.verdict, value <= one.tolerance ? Verdict::holds : Verdict::fails)
-                << what << ": " << value << " against " << *solved.deviations.at(0).value;
+        if (test_case.exact) {
+            EXPECT_EQ(solved.verdict, value <= test_case.tolerance ? Verdict::holds : Verdict::fails)
+                << name << ": " << value << " against " << *solved.deviations.at(0).value;
         }
     }
 }
@@ -457,7 +458,7 @@ TEST(ConstraintCheck, AShapeAtRestHasTheVerticesOfTheMesh) {
     EXPECT_THROW(judge_constraints(bench().mesh, bench().set, graph, &other), Error);
 }
 
-TEST(ConstraintCheck, WhatCannotBeReadIsSaidAndTheOthersAreJudged) {
+TEST(ConstraintCheck, UnreadableConstraintsAreReportedAndOthersJudged) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {a}, R"({"measure": "girth"})"));
     graph.relationships.push_back(constraint(1, "same level", {a, b}, "{}"));
@@ -467,7 +468,7 @@ TEST(ConstraintCheck, WhatCannotBeReadIsSaidAndTheOthersAreJudged) {
     EXPECT_EQ(judged.at(1).verdict, Verdict::holds);
 }
 
-TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsWhole) {
+TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsIntact) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(3, "keep direction", {b}, R"({"angle": 0, "direction": [0, 0, 1], "hard": true})"));
     graph.relationships.push_back(

@@ -1,4 +1,4 @@
-// 'ostraka cage make', 'cage check' and 'deform', as people run them.
+// 'ostraka cage make', 'cage check' and 'deform' as users run them.
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/files/json.h"
 #include "ostraka/io/mesh_file.h"
@@ -22,8 +22,8 @@ const std::string pot = data + "teapot.ply ", parts = data + "teapot.ant.json ";
 struct Caged : Scratch {
     [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
     Caged() {
-        const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80");
-        EXPECT_EQ(made.code, 0) << made.err;
+        const auto command = run_command("cage make " + pot + at("cage.ply") + " --vertices 80");
+        EXPECT_EQ(command.code, 0) << command.err;
         const auto weights = run_command("cage weights " + pot + at("cage.ply") + " " + at("w.npy"));
         EXPECT_EQ(weights.code, 0) << weights.err;
         static_cast<void>(file("lift.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
@@ -41,9 +41,9 @@ struct Caged : Scratch {
 TEST(CageCommand, MakesAndChecks) {
     const Scratch scratch;
     const std::string cage = (scratch / "cage.ply").string();
-    const auto made = run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --json");
-    ASSERT_EQ(made.code, 0) << made.err;
-    const Json report = parse_json(made.out, "report");
+    const auto result = run_command("cage make " + pot + cage + " --levels 120,60 --mirror auto --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     EXPECT_EQ(report["result"]["cages"].Size(), 2U);
     const std::string fine = (scratch / "cage-120.ply").string(), coarse = (scratch / "cage-60.ply").string();
@@ -60,10 +60,10 @@ TEST(CageCommand, MakesAndChecks) {
 TEST(CageCommand, CagesWithinACageAreEditedLevelByLevel) {
     const Scratch scratch;
     const auto at = [&](const std::string& name) { return (scratch / name).string(); };
-    const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80 --annotations " + parts +
-                                  "--parts spout handle --part-vertices 30 --json");
-    ASSERT_EQ(made.code, 0) << made.err;
-    const Json report = parse_json(made.out, "report");
+    const auto result = run_command("cage make " + pot + at("cage.ply") + " --vertices 80 --annotations " + parts +
+                                    "--parts spout handle --part-vertices 30 --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     const auto& cages = report["result"]["cages"];
     ASSERT_EQ(cages.Size(), 3U);
@@ -113,13 +113,13 @@ TEST(CageCommand, OnlyASymmetryOfTheWholeMirrorsTheCage) {
         const auto stated =
             run_command("relation add " + pot + parts + at("s.graph.json") + " --type 'mirror symmetry' " + members);
         EXPECT_EQ(stated.code, 0) << stated.err;
-        const auto made = run_command("cage make " + pot + at("c.ply") + " --vertices 60 --annotations " + parts + "--graph " +
-                                      at("s.graph.json"));
-        EXPECT_EQ(made.code, 0) << made.err;
+        const auto result = run_command("cage make " + pot + at("c.ply") + " --vertices 60 --annotations " + parts + "--graph " +
+                                        at("s.graph.json"));
+        EXPECT_EQ(result.code, 0) << result.err;
         return read_mesh(at("c.ply")).mesh;
     };
     const Mesh plain = read_mesh(at("plain.ply")).mesh;
-    // Two flowers mirror each other in a plane that says nothing of the pot.
+    // Two flowers mirror each other in a plane that is not a symmetry plane of the pot.
     EXPECT_EQ(mesh_checksum(with_graph("--annotation 7 --annotation 8")), mesh_checksum(plain));
     EXPECT_NE(mesh_checksum(with_graph("--annotation 0")), mesh_checksum(plain));
 }
@@ -147,17 +147,17 @@ TEST(CageCommand, BadInput) {
     EXPECT_EQ(count_files(scratch.path()), 0U);
 }
 
-TEST(DeformCommand, KeepsWhatIsAsked) {
+TEST(DeformCommand, SatisfiesTheConstraints) {
     const Caged folder;
     const std::string base = "deform " + pot + parts + folder.at("lift.edit.json") + " ";
     const auto plain = run_command(base + folder.at("plain.ply") + folder.handles());
     EXPECT_EQ(plain.code, 0) << plain.err;
     EXPECT_NE(plain.out.find("no constraints"), std::string::npos);
-    const auto kept =
+    const auto result =
         run_command(base + folder.at("out.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") +
                     " --annotations-out " + folder.at("out.ant.json") + " --cage-out " + folder.at("out-cage.ply") + " --json");
-    ASSERT_EQ(kept.code, 0) << kept.err << kept.out;
-    const Json report = parse_json(kept.out, "report");
+    ASSERT_EQ(result.code, 0) << result.err << result.out;
+    const Json report = parse_json(result.out, "report");
     validate(report, "report", "report");
     const JsonValue& constraint = report["result"]["constraints"][0];
     EXPECT_STREQ(constraint["verdict"].GetString(), "holds");
@@ -171,7 +171,7 @@ TEST(DeformCommand, KeepsWhatIsAsked) {
             .code,
         0);
     EXPECT_EQ(read_file(folder / "out.ply"), first);
-    // Through the cage, and without one.
+    // With and without the cage.
     EXPECT_NE(
         run_command(base + folder.at("c.ply") + folder.handles() + " --graph " + folder.at("k.graph.json") + " --space cage")
             .code,
@@ -195,9 +195,9 @@ TEST(DeformCommand, ADeformedCageIsAnEdit) {
     EXPECT_EQ(run_command("deform " + pot + folder.at("x.ply") + " --deformed-cage " + folder.at("there.obj")).code, 2);
 }
 
-TEST(DeformCommand, AnUnsoundCageIsCalledOne) {
+TEST(DeformCommand, AnInvalidCageIsReported) {
     const Caged folder;
-    // One vertex of the cage is drawn through the object: faces cross, and vertices of the mesh are outside.
+    // One vertex of the cage is moved through the object: faces cross, and vertices of the mesh are outside.
     Mesh cage = read_mesh(folder.at("cage.ply")).mesh;
     const Mesh mesh = read_mesh(data + "teapot.ply").mesh;
     const CGAL::Bbox_3 box = bounding_box(mesh);
@@ -215,7 +215,7 @@ TEST(DeformCommand, AnUnsoundCageIsCalledOne) {
                                   folder.at("bad.ply") + " --weights " + folder.at("bad.npy"));
     EXPECT_EQ(bent.code, 3) << bent.out;
     EXPECT_NE(bent.out.find("the cage is not fit for deformation"), std::string::npos) << bent.out;
-    // An object with a hole may stand for a solid: it is told what the cage goes around.
+    // An object with a hole may be treated as a solid: a note reports it.
     Mesh open = mesh;
     CGAL::Euler::remove_face(open.halfedge(Face(0)), open);
     open.collect_garbage();
@@ -226,7 +226,7 @@ TEST(DeformCommand, AnUnsoundCageIsCalledOne) {
 
 TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     const Scratch scratch;
-    // What the first column of the table in the page says.
+    // The first column of the table in the page.
     const std::string page = read_file(Path(OSTRAKA_SOURCE_DIR) / "doc/deformation.md");
     const std::size_t begin = page.find("| type | members | parameters"), end = page.find("\n\n", begin);
     ASSERT_NE(begin, std::string::npos);
@@ -245,15 +245,15 @@ TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     EXPECT_GT(types.size(), 30U);
     for (const std::string& type : types) {
         const std::string graph = (scratch / (type + ".graph.json")).string();
-        const bool one = type == "keep measure" || type == "keep position";
+        const bool has_one_member = type == "keep measure" || type == "keep position";
         const auto added = run_command("relation add " + pot + parts + "'" + graph + "' --type '" + type + "' --annotation 5" +
-                                       (one ? "" : " --annotation 1") +
+                                       (has_one_member ? "" : " --annotation 1") +
                                        (type == "equal attributes" ? " --attribute height" : "") + " --constraint");
         EXPECT_EQ(added.code, 0) << type << added.err;
     }
 }
 
-TEST(DeformCommand, ATemplateIsAllItNeeds) {
+TEST(DeformCommand, ATemplateIsSufficientInput) {
     const Caged folder;
     const std::string package = folder.at("pot.template.json");
     const auto packed = run_command("template pack " + package + " --mesh " + pot + " --annotations " + parts + " --graph " +
@@ -267,7 +267,7 @@ TEST(DeformCommand, ATemplateIsAllItNeeds) {
                           folder.handles() + " --graph " + folder.at("k.graph.json"))
                   .code,
               0);
-    // The files differ in the inputs that they name.
+    // The files differ in their recorded inputs.
     EXPECT_EQ(mesh_checksum(read_mesh(folder / "whole.ply").mesh), mesh_checksum(read_mesh(folder / "pieces.ply").mesh));
     // A template without a cage is deformed by its own vertices.
     ASSERT_EQ(
@@ -294,10 +294,10 @@ TEST(DeformCommand, StatesAndEditedCages) {
     const Mesh rest = read_mesh(data + "teapot.ply").mesh, first = read_mesh(folder / "out-step1.ply").mesh;
     for (const Vertex v : rest.vertices()) ASSERT_NEAR(first.point(v).x(), rest.point(v).x() + 1, 1e-9);
     EXPECT_EQ(read_file(folder / "out-step2.ply"), read_file(folder / "out.ply"));
-    const auto taken = run_command("deform " + pot + parts + two + " " + folder.at("out.ply") + folder.handles() +
-                                   " --states --cage-out " + folder.at("out-step2.ply"));
-    EXPECT_EQ(taken.code, 2);
-    EXPECT_NE(taken.err.find("two outputs have the name"), std::string::npos) << taken.err;
+    const auto refused = run_command("deform " + pot + parts + two + " " + folder.at("out.ply") + folder.handles() +
+                                     " --states --cage-out " + folder.at("out-step2.ply"));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("two outputs have the name"), std::string::npos) << refused.err;
     ASSERT_EQ(run_command("cage edit " + folder.at("cage.ply") + " " + two + " " + folder.at("moved.ply")).code, 0);
     const Mesh cage = read_mesh(folder / "cage.ply").mesh, moved = read_mesh(folder / "moved.ply").mesh;
     EXPECT_NEAR(moved.point(Vertex(5)).y(), cage.point(Vertex(5)).y() + 2, 1e-12);
@@ -324,7 +324,7 @@ TEST(DeformCommand, StatesInMemory) {
     for (const std::size_t i : {0, 2}) EXPECT_NEAR(x(i).y(), rest.point(Vertex(5)).y() + 2, 1e-9);
     EXPECT_THROW(static_cast<void>(call.object("output", 3)), Error);
     EXPECT_NE(call.object("annotations-out").as<AnnotationSet>(), nullptr);
-    // Nothing is asked; or a part is named, and there are no annotations.
+    // No edit is given; or a part is named without annotations.
     Call half(find_operation("deform"));
     half.set_file("mesh", data + "teapot.ply");
     EXPECT_THROW(static_cast<void>(half.run(context)), Error);

@@ -1,4 +1,4 @@
-// What a deformation says of its result is what is there.
+// The report of a deformation agrees with its result.
 #include "caged.h"
 #include "io/soups.h"
 #include "ostraka/geom/with_points.h"
@@ -16,20 +16,21 @@ namespace {
 
 /// A synthetic object with the annotations of its recipe.
 struct Annotated {
-    SyntheticMesh made;
+    SyntheticMesh synthetic;
     AnnotationSet set;
     explicit Annotated(const std::string& name, std::uint64_t vertices = 6000)
-        : made(make_mesh(synthetic_object(name), {.vertices = vertices})),
-          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)) {}
-    [[nodiscard]] HandleSpace space() const { return {made.mesh, set}; }
+        : synthetic(make_mesh(synthetic_object(name), {.vertices = vertices})),
+          set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), synthetic.mesh, synthetic.face_labels)) {}
+    [[nodiscard]] HandleSpace space() const { return {synthetic.mesh, set}; }
     [[nodiscard]] Annotation& tagged(const std::string& tag) {
-        return *std::find_if(set.annotations.begin(), set.annotations.end(), [&](const auto& one) { return one.tag == tag; });
+        return *std::find_if(set.annotations.begin(), set.annotations.end(),
+                             [&](const auto& annotation) { return annotation.tag == tag; });
     }
     void take(const std::string& tag, const std::string& name, const std::array<double, 3>& direction) {
         Measure measure;
         measure.tool = "bounding";
         measure.direction = direction;
-        const auto pins = extremes(made.mesh, tagged(tag), direction);
+        const auto pins = extremes(synthetic.mesh, tagged(tag), direction);
         measure.points.assign(pins.begin(), pins.end());
         add_measure(tagged(tag), name, measure);
     }
@@ -58,7 +59,7 @@ bool objects(const DeformResult& result, const std::string& to) {
 
 TEST(DeformVerdict, AnEditThatIsUndoneIsNotAcceptable) {
     Annotated hand("hand");
-    const double far = 0.05 * box_diagonal(hand.made.mesh);
+    const double far = 0.05 * box_diagonal(hand.synthetic.mesh);
     RelationGraph graph;
     graph.relationships = {constraint(0, "closeness", {hand.tagged("little finger").id}, R"({"hard": true})")};
     const DeformResult result = deform(hand.space(), graph, edit(translated("little finger", 0, 0, far)), "e");
@@ -73,23 +74,23 @@ TEST(DeformVerdict, AnEditThatIsUndoneIsNotAcceptable) {
 
 TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) {
     Annotated hand("hand");
-    const double far = 0.03 * box_diagonal(hand.made.mesh);
+    const double far = 0.03 * box_diagonal(hand.synthetic.mesh);
     const DeformResult result = deform(hand.space(), {}, edit(translated("ring finger", 0, 0, far)), "e");
     EXPECT_TRUE(result.acceptable);
     EXPECT_EQ(result.followed.share, 1);
-    EXPECT_EQ(result.followed.vertices, vertices_of(hand.made.mesh, hand.tagged("ring finger")).size());
-    const Mesh now = with_points(hand.made.mesh, result.points);
+    EXPECT_EQ(result.followed.vertices, vertices_of(hand.synthetic.mesh, hand.tagged("ring finger")).size());
+    const Mesh now = with_points(hand.synthetic.mesh, result.points);
     for (const Index v : vertices_of(now, hand.tagged("ring finger")))
-        ASSERT_NEAR(now.point(Vertex(v)).z(), hand.made.mesh.point(Vertex(v)).z() + far, 1e-6);
-    // Nothing is torn: no edge is more than three times as long.
+        ASSERT_NEAR(now.point(Vertex(v)).z(), hand.synthetic.mesh.point(Vertex(v)).z() + far, 1e-6);
+    // No edge is stretched by more than a factor of three.
     const auto length = [](const Mesh& mesh, Halfedge h) {
         return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
     };
-    for (const Edge e : now.edges()) ASSERT_LT(length(now, now.halfedge(e)), 3 * length(hand.made.mesh, now.halfedge(e)));
+    for (const Edge e : now.edges()) ASSERT_LT(length(now, now.halfedge(e)), 3 * length(hand.synthetic.mesh, now.halfedge(e)));
 }
 
-TEST(DeformVerdict, OtherCrossingsThanAtRestAreNotAcceptable) {
-    // Two spheres that cross move apart until they cross in a smaller circle: fewer pairs, and others.
+TEST(DeformVerdict, NewCrossingsAreNotAcceptable) {
+    // Two intersecting spheres are moved apart until they intersect in a smaller circle: fewer pairs, and different ones.
     const Mesh mesh = build_mesh(soups::both(soups::sphere(16, 32), soups::sphere(16, 32, 0.8, {0.9, 0, 0})));
     const auto half = static_cast<Index>(soups::sphere(16, 32).points.size());
     std::string vertices;
@@ -108,8 +109,8 @@ TEST(DeformVerdict, CrossingsAreNotAcceptable) {
     const Annotation &ring = hand.tagged("ring finger"), &middle = hand.tagged("middle finger");
     const auto centre = [&](const Annotation& part) {
         Vector sum(0, 0, 0);
-        for (const Index v : vertices_of(hand.made.mesh, part)) sum += hand.made.mesh.point(Vertex(v)) - CGAL::ORIGIN;
-        return sum / static_cast<double>(vertices_of(hand.made.mesh, part).size());
+        for (const Index v : vertices_of(hand.synthetic.mesh, part)) sum += hand.synthetic.mesh.point(Vertex(v)) - CGAL::ORIGIN;
+        return sum / static_cast<double>(vertices_of(hand.synthetic.mesh, part).size());
     };
     const Vector way = (centre(middle) - centre(ring)) * 0.7;
     const DeformResult result = deform(hand.space(), {}, edit(translated("ring finger", way.x(), way.y(), way.z())), "e");
@@ -119,12 +120,12 @@ TEST(DeformVerdict, CrossingsAreNotAcceptable) {
     EXPECT_TRUE(objects(result, "cross"));
 }
 
-TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
+TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
     // The finger is rotated, so that other vertices are outermost than at rest.
     Annotated hand("hand");
     hand.take("little finger", "reach", {0, 0, 1});
     const Annotation& finger = hand.tagged("little finger");
-    const double at_rest = extent(hand.made.mesh, finger, {0, 0, 1});
+    const double at_rest = extent(hand.synthetic.mesh, finger, {0, 0, 1});
     RelationGraph graph;
     graph.relationships = {constraint(0, "keep measure", {finger.id}, R"({"measure": "reach"})", 200)};
     DeformOptions options;
@@ -132,14 +133,14 @@ TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
     const DeformResult result =
         deform(hand.space(), graph,
                edit(R"({"select": {"annotation": "little finger"}, "rotate": {"axis": [1, 0, 0], "angle": 25}})"), "e", options);
-    const Mesh now = with_points(hand.made.mesh, result.points);
+    const Mesh now = with_points(hand.synthetic.mesh, result.points);
     const double measured = extent(now, finger, {0, 0, 1});
     const double off = 100 * std::abs(measured - at_rest) / at_rest;
     EXPECT_NEAR(*result.constraints[0].deviations[0].value, off, 1e-6);
     EXPECT_LT(off, result.constraints[0].before_values[0]);
-    // As the annotations of the result say, with their pins where they are now.
+    // As in the annotations of the result, with their pins at the new positions.
     AnnotationSet set = hand.set;
-    move_extents(hand.made.mesh, hand.set, now, set);
+    move_extents(hand.synthetic.mesh, hand.set, now, set);
     refresh_measures(now, set);
     for (const Attribute& attribute : set.find(finger.id)->attributes)
         if (attribute.name == "reach") {
@@ -147,12 +148,12 @@ TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
         }
 }
 
-TEST(DeformVerdict, LevelsStayAsTheyAreAtRest) {
-    // Feet that stand 0.3 % of the diagonal apart stay so, whatever the back does.
+TEST(DeformVerdict, LevelsStayAsAtRest) {
+    // Feet whose heights differ by 0.3 % of the diagonal keep this difference, regardless of the back.
     Annotated chair("chair");
-    const double diagonal = box_diagonal(chair.made.mesh);
-    for (const Index v : vertices_of(chair.made.mesh, chair.tagged("front left leg"))) {
-        Point& p = chair.made.mesh.point(Vertex(v));
+    const double diagonal = box_diagonal(chair.synthetic.mesh);
+    for (const Index v : vertices_of(chair.synthetic.mesh, chair.tagged("front left leg"))) {
+        Point& p = chair.synthetic.mesh.point(Vertex(v));
         p = p + Vector(0, 0, -0.003 * diagonal);
     }
     EditWords words;
@@ -164,15 +165,15 @@ TEST(DeformVerdict, LevelsStayAsTheyAreAtRest) {
     EXPECT_EQ(graph.relationships[0].annotations.size(), 4U);
     const DeformResult result = deform(chair.space(), graph, edit_of(words, chair.set), "e");
     EXPECT_TRUE(result.acceptable) << (result.objections.empty() ? "" : result.objections.front());
-    const Mesh now = with_points(chair.made.mesh, result.points);
+    const Mesh now = with_points(chair.synthetic.mesh, result.points);
     for (const char* leg : {"front left leg", "rear right leg"})
         for (const Index v : vertices_of(now, chair.tagged(leg)))
-            ASSERT_NEAR(now.point(Vertex(v)).z(), chair.made.mesh.point(Vertex(v)).z(), 5e-3 * diagonal);
-    EXPECT_NEAR(extent(now, chair.tagged("back"), {0, 0, 1}) / extent(chair.made.mesh, chair.tagged("back"), {0, 0, 1}), 1.2,
+            ASSERT_NEAR(now.point(Vertex(v)).z(), chair.synthetic.mesh.point(Vertex(v)).z(), 5e-3 * diagonal);
+    EXPECT_NEAR(extent(now, chair.tagged("back"), {0, 0, 1}) / extent(chair.synthetic.mesh, chair.tagged("back"), {0, 0, 1}), 1.2,
                 0.01);
 }
 
-TEST(EditWords, PartsByWords) {
+TEST(EditWords, PartsAreFoundByWords) {
     Annotated chair("chair", 2000);
     const auto count = [&](const std::string& words) { return parts_named(chair.set, words).size(); };
     EXPECT_EQ(count("legs"), 4U);
@@ -204,10 +205,12 @@ TEST(EditWords, StepsAndConstraints) {
     RelationGraph graph;
     EXPECT_THROW(add_constraints(words, chair.set, graph), Error) << "the seat has no such measure yet";
     graph.relationships.clear();
-    take_measures(words, chair.made.mesh, chair.set);
-    take_measures(words, chair.made.mesh, chair.set);
-    const auto& taken = chair.tagged("seat").attributes;
-    EXPECT_EQ(std::count_if(taken.begin(), taken.end(), [](const Attribute& one) { return one.name == "thickness"; }), 1);
+    take_measures(words, chair.synthetic.mesh, chair.set);
+    take_measures(words, chair.synthetic.mesh, chair.set);
+    const auto& attributes = chair.tagged("seat").attributes;
+    EXPECT_EQ(std::count_if(attributes.begin(), attributes.end(),
+                            [](const Attribute& attribute) { return attribute.name == "thickness"; }),
+              1);
     add_constraints(words, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 2U);
     EXPECT_EQ(graph.relationships[0].type, "keep measure");
@@ -236,7 +239,7 @@ TEST(EditWords, StepsAndConstraints) {
     counted.stretch = {"part 0=1.2,up"};
     chair.tagged("seat").tag = "part 0";
     graph.relationships.clear();
-    take_measures(counted, chair.made.mesh, chair.set);
+    take_measures(counted, chair.synthetic.mesh, chair.set);
     add_constraints(counted, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 1U);
     EXPECT_NE(graph.relationships[0].constraint.find("\"thickness\""), std::string::npos) << graph.relationships[0].constraint;

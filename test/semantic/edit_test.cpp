@@ -1,4 +1,4 @@
-// Edits through cages and without.
+// Edits with and without cages.
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/coords/nested.h"
@@ -10,13 +10,14 @@
 using namespace ostraka;
 using namespace ostraka::test;
 
-TEST(Edit, OfAWholeCageIsThatOfTheMesh) {
+TEST(Edit, AnEditOfTheWholeCageMovesTheMeshEqually) {
     const Caged& object = teapot();
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     const auto expect = [&](const std::string& operation, auto&& move) {
         const DeformResult result = deform(object.handles(), {}, edit(R"({"select": {"all": true}, )" + operation + "}"), "e");
-        for (const Vertex v : object.made.mesh.vertices())
-            ASSERT_LT((eigen(result.points[v]) - move(eigen(object.made.mesh.point(v)))).norm(), 1e-9 * diagonal) << operation;
+        for (const Vertex v : object.synthetic.mesh.vertices())
+            ASSERT_LT((eigen(result.points[v]) - move(eigen(object.synthetic.mesh.point(v)))).norm(), 1e-9 * diagonal)
+                << operation;
     };
     using V = Eigen::Vector3d;
     expect(R"("translate": [1, 2, 3])", [](const V& p) -> V { return p + V(1, 2, 3); });
@@ -36,13 +37,14 @@ TEST(Edit, SelectsByInfluence) {
     EXPECT_EQ(rows, w.rowwise().maxCoeff().minCoeff());
     EXPECT_EQ(columns, w.colwise().maxCoeff().minCoeff());
     for (Index v = 0; v < 50; ++v) EXPECT_FALSE(influential(object.coordinates, {v}, rows).empty());
-    std::vector<Index> everything(object.made.mesh.number_of_vertices());
+    std::vector<Index> everything(object.synthetic.mesh.number_of_vertices());
     for (Index v = 0; v < everything.size(); ++v) everything[v] = v;
     EXPECT_EQ(influential(object.coordinates, everything, columns).size(), object.cage.number_of_vertices());
-    // A part's own handles move it more than the rest.
+    // A part's own handles move it more than other handles.
     const auto states = follow_edit(edit(R"({"select": {"annotation": "spout", "threshold": 0.2}, "translate": [0, 0, 5]})"),
                                     object.handles(), "e");
-    EXPECT_EQ(states.front().selected, influential(object.coordinates, vertices_of(object.made.mesh, *object.set.find(5)), 0.2));
+    EXPECT_EQ(states.front().selected,
+              influential(object.coordinates, vertices_of(object.synthetic.mesh, *object.set.find(5)), 0.2));
     EXPECT_NE(error_of(object.handles(), R"({"select": {"annotation": "spout", "threshold": 2}, "translate": [0, 0, 5]})")
                   .find("the largest is"),
               std::string::npos);
@@ -55,14 +57,14 @@ TEST(Edit, StepsFollowEachOther) {
         {"select": {"vertices": [3]}, "moveTo": [[7, 8, 9]]})"),
                                     object.bare(), "e");
     ASSERT_EQ(states.size(), 3U);
-    const Point p = object.made.mesh.point(Vertex(4));
+    const Point p = object.synthetic.mesh.point(Vertex(4));
     EXPECT_EQ(states[0].handles[4], Point(p.x() + 1, p.y(), p.z()));
     EXPECT_EQ(states[1].handles[4], Point(p.x() + 1, p.y() + 1, p.z()));
     EXPECT_EQ(states[2].handles[3], Point(7, 8, 9));
     EXPECT_EQ(std::count(states[0].touched.begin(), states[0].touched.end(), true), 2);
 }
 
-TEST(Edit, WhatMakesNoSenseIsRefused) {
+TEST(Edit, InvalidEditsAreRefused) {
     const Caged& object = teapot();
     const auto refused = [&](const std::string& step, const std::string& words) {
         const std::string text = error_of(object.handles(), step);
@@ -87,7 +89,7 @@ TEST(Edit, WhatMakesNoSenseIsRefused) {
 
 namespace {
 
-/// The teapot in a cage, with one of its own around the spout within it.
+/// The teapot in a cage, with a nested cage around the spout.
 struct Nested {
     const Caged& whole = teapot();
     std::size_t spout = 0;
@@ -98,13 +100,13 @@ struct Nested {
         while (whole.set.annotations[spout].tag != "spout") ++spout;
         CageOptions options;
         options.vertices = 40;
-        const auto parts = make_part_cages(whole.made.mesh, whole.set, {spout}, options, {}, "graph");
+        const auto parts = make_part_cages(whole.synthetic.mesh, whole.set, {spout}, options, {}, "graph");
         EXPECT_TRUE(parts[0].check.valid());
         cage = together({&whole.cage, &parts[0].made.cage});
-        coordinates = compute_coordinates("mean-value", cage, whole.made.mesh);
+        coordinates = compute_coordinates("mean-value", cage, whole.synthetic.mesh);
         levels = cage_levels(cage);
     }
-    [[nodiscard]] HandleSpace handles() const { return {whole.made.mesh, whole.set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace handles() const { return {whole.synthetic.mesh, whole.set, &cage, &coordinates}; }
     [[nodiscard]] std::vector<EditState> follow(const std::string& steps) const {
         return follow_edit(edit(steps), handles(), "e");
     }
@@ -126,23 +128,23 @@ TEST(NestedEdit, APartIsMovedByItsOwnCage) {
     EXPECT_FALSE(states[0].selected.empty());
     const auto outer = n.follow(R"({"select": {"annotation": "spout", "level": 0}, "translate": [1, 2, 3]})");
     for (const Index v : outer[0].selected) EXPECT_LT(v, first);
-    // As in the cage of the whole alone.
+    // As with the outer cage alone.
     const HandleSpace alone = n.whole.handles();
     EXPECT_EQ(outer[0].selected,
               follow_edit(edit(R"({"select": {"annotation": "spout"}, "translate": [1, 2, 3]})"), alone, "e")[0].selected);
 }
 
-TEST(NestedEdit, InnerCagesAreCarriedAlong) {
+TEST(NestedEdit, InnerCagesFollowOuterCages) {
     const Nested& n = nested();
-    // All of the outer cage: the inner goes with it, and so does the whole object.
+    // The whole outer cage: the inner cage follows, and so does the whole object.
     const auto states = n.follow(R"({"select": {"all": true, "level": 0}, "translate": [5, 0, 0]},
         {"select": {"all": true, "level": 1}, "translate": [0, 7, 0]})");
     const std::vector<Point> first = deformed(n.coordinates, n.cage, states[0].handles);
-    for (const Vertex v : n.whole.made.mesh.vertices())
-        ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.made.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
+    for (const Vertex v : n.whole.synthetic.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.synthetic.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
     for (const Vertex v : n.cage.vertices())
         ASSERT_LT(std::sqrt(CGAL::squared_distance(states[0].handles[v], n.cage.point(v) + Vector(5, 0, 0))), 1e-9);
-    // Both levels in one edit; what is carried does not count as touched.
+    // Both levels in one edit; handles that follow do not count as selected.
     const Index inner = n.levels[1].cage.vertices.front();
     EXPECT_FALSE(states[0].touched[inner]);
     EXPECT_TRUE(states[1].touched[inner]);
@@ -152,7 +154,7 @@ TEST(NestedEdit, InnerCagesAreCarriedAlong) {
     EXPECT_LT(std::sqrt(CGAL::squared_distance(all[0].handles[inner], n.cage.point(Vertex(inner)) + Vector(5, 0, 0))), 1e-12);
 }
 
-TEST(NestedEdit, LevelsThatAreNotThereAreRefused) {
+TEST(NestedEdit, MissingLevelsAreRefused) {
     EXPECT_NE(error_of(nested().handles(), R"({"select": {"annotation": "spout", "level": 2}, "translate": [1, 2, 3]})")
                   .find("the cage has 2 levels"),
               std::string::npos);
@@ -193,7 +195,7 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
     }
     EXPECT_TRUE(cages[0].check.valid());
     EXPECT_TRUE(cages[1].check.valid());
-    // Without the plane it is found.
+    // Without a given plane it is estimated.
     graph.relationships[0].parameters.plane.reset();
     const auto plane = symmetry_plane(mesh, set, graph, {1, 2}, "graph");
     ASSERT_TRUE(plane);
@@ -202,12 +204,13 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
 }
 
 TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
-    // The spout is turned and is to keep its direction: through one cage that moves the body as well, through its own hardly.
+    // The spout is rotated and must keep its direction: with a single cage this moves the body as well, with the spout's own cage
+    // hardly.
     const Nested& n = nested();
     RelationGraph graph;
     int spout = 0;
-    for (const Annotation& one : n.whole.set.annotations)
-        if (one.tag == "spout") spout = one.id;
+    for (const Annotation& annotation : n.whole.set.annotations)
+        if (annotation.tag == "spout") spout = annotation.id;
     graph.relationships.push_back(constraint(1, "keep direction", {spout}, "{}"));
     DeformOptions options;
     options.space = DeformOptions::Space::cage;

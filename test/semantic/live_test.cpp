@@ -1,4 +1,4 @@
-// Handles of a cage that are dragged while constraints hold.
+// Dragging of cage handles under constraints.
 #include "caged.h"
 
 #include "ostraka/geom/with_points.h"
@@ -19,9 +19,9 @@ double farthest(const std::vector<Point>& a, const std::vector<Point>& b) {
     return far;
 }
 
-/// The handles that an annotation means.
+/// The handles of an annotation.
 std::vector<Index> handles_of(const Caged& object, int annotation) {
-    const std::vector<Index> rows = vertices_of(object.made.mesh, *object.set.find(annotation));
+    const std::vector<Index> rows = vertices_of(object.synthetic.mesh, *object.set.find(annotation));
     return influential(object.coordinates, rows, influence_threshold(object.coordinates.vertex, "auto-mesh", rows));
 }
 
@@ -43,10 +43,10 @@ TEST(LiveDeformation, WithoutConstraintsIsTheEdit) {
     for (const Index h : handles) places.push_back(live.cage()[h] + Vector(1, 2, 3));
     const auto shape = deformed(object.coordinates, object.cage, live.follow(places));
     const auto step = edit(R"({"select": {"cageVertices": [)" + numbers(handles) + R"(]}, "translate": [1, 2, 3]})");
-    EXPECT_LT(farthest(shape, deform(object.handles(), {}, step, "e").points), 1e-9 * box_diagonal(object.made.mesh));
+    EXPECT_LT(farthest(shape, deform(object.handles(), {}, step, "e").points), 1e-9 * box_diagonal(object.synthetic.mesh));
 }
 
-TEST(LiveDeformation, ComesToWhatTheExactSolutionIs) {
+TEST(LiveDeformation, ConvergesToTheExactSolution) {
     // The knob is lifted; a flower and the spout stay on one level.
     const Caged& object = teapot();
     RelationGraph graph;
@@ -57,7 +57,7 @@ TEST(LiveDeformation, ComesToWhatTheExactSolutionIs) {
     options.conflicts = 0;
     LiveDeformation live(object.handles(), graph, edit(""), handles, options);
     ASSERT_TRUE(live.has_constraints());
-    const double diagonal = box_diagonal(object.made.mesh);
+    const double diagonal = box_diagonal(object.synthetic.mesh);
     const Vector way(0.02 * diagonal, 0, 0.05 * diagonal);
     std::vector<Point> start, places;
     for (const Index h : handles) start.push_back(live.cage()[h]);
@@ -72,11 +72,11 @@ TEST(LiveDeformation, ComesToWhatTheExactSolutionIs) {
                            std::to_string(way.x()) + ",0," + std::to_string(way.z()) + "]}");
     const DeformResult exact = deform(object.handles(), graph, step, "e", options);
     EXPECT_LT(farthest(shape, exact.points), 0.01 * diagonal);
-    // It is something else than the edit alone.
+    // It differs from the edit alone.
     EXPECT_GT(farthest(exact.points, exact.edited), 0.01 * diagonal);
 }
 
-TEST(LiveDeformation, RefusesWhatIsNoHandleOrNoPlace) {
+TEST(LiveDeformation, RefusesInvalidHandlesAndPositions) {
     const Caged& object = teapot();
     EXPECT_THROW(LiveDeformation(object.bare(), {}, edit(""), {0}), Error);
     EXPECT_THROW(LiveDeformation(object.handles(), {}, edit(""), {100000}), Error);

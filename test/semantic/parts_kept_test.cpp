@@ -1,4 +1,4 @@
-// Relations of parts that a deformation keeps, and where and which way single parts are.
+// Relations that a deformation preserves, and positions and directions of single parts.
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/geom/eigen.h"
@@ -49,12 +49,12 @@ struct Column {
         set.up = {0, 0, 1};
         set.unit = "mm";
         const auto region = [&](int id, const std::string& tag, double low, double high) {
-            Annotation one;
-            one.id = id;
-            one.tag = tag;
+            Annotation annotation;
+            annotation.id = id;
+            annotation.tag = tag;
             for (const Face f : mesh.faces())
-                if (const double z = centroid(mesh, f).z(); z > low && z < high) one.faces.push_back(f.idx());
-            set.annotations.push_back(one);
+                if (const double z = centroid(mesh, f).z(); z > low && z < high) annotation.faces.push_back(f.idx());
+            set.annotations.push_back(annotation);
         };
         region(foot, "foot", -1, 4);
         region(shaft, "shaft", 4, 8);
@@ -79,9 +79,9 @@ struct Column {
     }
 };
 
-DeformResult solved(const Column& column, const Relationship& one, const std::string& steps) {
+DeformResult solved(const Column& column, const Relationship& relationship, const std::string& steps) {
     RelationGraph graph;
-    graph.relationships.push_back(one);
+    graph.relationships.push_back(relationship);
     DeformOptions options;
     options.followed = 0;
     return deform(column.space(), graph, edit(steps), "e", options);
@@ -90,18 +90,18 @@ DeformResult solved(const Column& column, const Relationship& one, const std::st
 const std::string tilt_top =
     R"({"select": {"annotation": "top"}, "rotate": {"axis": [0, 1, 0], "angle": 40, "centre": [0, 0, 8]}})";
 
-void expect_kept(const Column& column, const Relationship& one, const std::string& steps) {
-    const DeformResult result = solved(column, one, steps);
+void expect_kept(const Column& column, const Relationship& relationship, const std::string& steps) {
+    const DeformResult result = solved(column, relationship, steps);
     const ConstraintReport& report = result.constraints.at(0);
-    EXPECT_TRUE(report.used) << one.type;
-    EXPECT_EQ(report.before, Verdict::fails) << one.type;
+    EXPECT_TRUE(report.used) << relationship.type;
+    EXPECT_EQ(report.before, Verdict::fails) << relationship.type;
     EXPECT_EQ(report.verdict, Verdict::holds)
-        << one.type << ": " << report.text << (report.deviations.empty() ? 0 : *report.deviations[0].value);
-    EXPECT_LE(report.cost, report.cost_before) << one.type;
-    EXPECT_GT(report.cost_before, 0) << one.type;
+        << relationship.type << ": " << report.text << (report.deviations.empty() ? 0 : *report.deviations[0].value);
+    EXPECT_LE(report.cost, report.cost_before) << relationship.type;
+    EXPECT_GT(report.cost_before, 0) << relationship.type;
 }
 
-/// Parameters of a hard constraint whose parts follow one.
+/// Parameters of a hard constraint with a leading part.
 std::string follows(const std::string& leader) { return R"({"hard": true, "follow": )" + leader + "}"; }
 
 void measure_heights(Column& column) {
@@ -122,11 +122,12 @@ void measure_heights(Column& column) {
 
 TEST(PartsKept, SelectionsDoNotChangeWithTheShape) {
     const Column column;
-    for (const auto& one :
+    for (const auto& relationship :
          {constraint(0, "containment", {whole, top}, "{}"), constraint(0, "equal selections", {whole, top}, "{}")}) {
-        const DeformResult result = solved(column, one, tilt_top);
+        const DeformResult result = solved(column, relationship, tilt_top);
         EXPECT_TRUE(result.constraints.at(0).used);
-        EXPECT_EQ(result.constraints[0].verdict, one.type == "containment" ? Verdict::holds : Verdict::fails) << one.type;
+        EXPECT_EQ(result.constraints[0].verdict, relationship.type == "containment" ? Verdict::holds : Verdict::fails)
+            << relationship.type;
         EXPECT_EQ(result.constraints[0].low_level, 0U);
     }
 }
@@ -138,7 +139,7 @@ TEST(PartsKept, ASupportStaysLevel) {
 TEST(PartsKept, ADirectionStaysUpright) {
     expect_kept(Column(), constraint(0, "keep direction", {top}, "{}", 1000), tilt_top);
     expect_kept(Column(), constraint(0, "keep direction", {top}, R"({"angle": 0})", 1000), tilt_top);
-    // By itself the top is where the edit puts it: it leans by 40 degrees.
+    // Without a constraint the top follows the edit: it leans by 40 degrees.
     const Column column;
     const DeformResult result = solved(column, constraint(0, "keep direction", {top}, R"({"angle": 40})", 1000), tilt_top);
     EXPECT_EQ(result.constraints[0].before, Verdict::holds) << *result.constraints[0].deviations[0].value;
@@ -148,15 +149,15 @@ TEST(PartsKept, APositionStays) {
     const Column column;
     const std::string push = R"({"select": {"annotation": "top"}, "translate": [2, 0, 0]})";
     const auto rest = points_of(column.mesh);
-    const DeformResult kept = solved(column, constraint(0, "keep position", {shaft}, "{}", 1000), push);
-    EXPECT_EQ(kept.constraints[0].verdict, Verdict::holds);
-    EXPECT_LT((column.mean(shaft, kept.points) - column.mean(shaft, rest)).norm(), 0.03);
+    const DeformResult result = solved(column, constraint(0, "keep position", {shaft}, "{}", 1000), push);
+    EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
+    EXPECT_LT((column.mean(shaft, result.points) - column.mean(shaft, rest)).norm(), 0.03);
     const DeformResult moved = solved(column, constraint(0, "keep position", {shaft}, R"({"point": [0, 1, 6]})", 1000), push);
     EXPECT_EQ(moved.constraints[0].verdict, Verdict::holds);
     EXPECT_LT((column.mean(shaft, moved.points) - Eigen::Vector3d(0, 1, 6)).norm(), 0.03);
 }
 
-TEST(PartsKept, LinesOfOneLengthStayAlike) {
+TEST(PartsKept, LinesOfEqualLengthStayEqual) {
     // The column bends: the line inside the bend gets shorter than that outside.
     expect_kept(Column(), constraint(0, "same length", {left_line, right_line}, "{}", 1e4),
                 R"({"select": {"annotation": "top"}, "rotate": {"axis": [0, 1, 0], "angle": 60, "centre": [0, 0, 6]}})");
@@ -180,7 +181,7 @@ TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
     EXPECT_NE(error_of(column.space(), tilt_top, graph).find("has no measure"), std::string::npos);
 }
 
-TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
+TEST(PartsThatFollow, GrowAsMuchAsTheEditedPart) {
     const Column column;
     const std::string grow = R"({"select": {"annotation": "top"}, "scale": {"factor": 1.4, "centre": [0, 0, 8]}})";
     const double foot_area = area_of(column.mesh, column.set.find(foot)->faces);
@@ -188,11 +189,11 @@ TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
     for (const char* follow : {"true", R"("top")", "3"}) {
         const DeformResult result = solved(column, constraint(0, "part similarity", {foot, top}, follows(follow)), grow);
         EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
-        const Mesh there = with_points(column.mesh, result.points);
-        EXPECT_NEAR(area_of(there, column.set.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
-        EXPECT_NEAR(area_of(there, column.set.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
+        const Mesh deformed = with_points(column.mesh, result.points);
+        EXPECT_NEAR(area_of(deformed, column.set.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
+        EXPECT_NEAR(area_of(deformed, column.set.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
     }
-    // Without it all go to what they are in the mean; led by the part that is not edited nothing grows.
+    // Without it all parts change to their mean; if the unedited part leads, nothing grows.
     const Mesh alike =
         with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, R"({"hard": true})"), grow).points);
     EXPECT_LT(area_of(alike, column.set.find(top)->faces) / top_area, 1.7);
@@ -203,21 +204,21 @@ TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
     EXPECT_NEAR(area_of(led, column.set.find(top)->faces) / top_area, led_foot, 1e-4);
 }
 
-TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
+TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
     Column column;
     measure_heights(column);
     const std::string stretch = R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})";
     const auto height = [&](const DeformResult& result, int id) {
-        const Mesh there = with_points(column.mesh, result.points);
-        const auto ends = extremes(there, *column.set.find(id), {0, 0, 1});
-        return std::abs(there.point(Vertex(ends[1])).z() - there.point(Vertex(ends[0])).z());
+        const Mesh deformed = with_points(column.mesh, result.points);
+        const auto ends = extremes(deformed, *column.set.find(id), {0, 0, 1});
+        return std::abs(deformed.point(Vertex(ends[1])).z() - deformed.point(Vertex(ends[0])).z());
     };
     const auto rest = points_of(column.mesh);
     DeformResult still;
     still.points = rest;
     const double top_height = 1.5 * height(still, top);
-    // Of a proportion the first part changes, unless it is the one that leads.
-    for (const auto& one :
+    // In a proportion the first part changes, unless it is the leader.
+    for (const auto& relationship :
          {constraint(0, "same measure", {foot, top}, R"({"measure": "height", "hard": true, "follow": true})"),
           constraint(
               0, "proportion", {top, foot},
@@ -225,10 +226,10 @@ TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
           constraint(
               0, "proportion", {foot, top},
               R"({"measure1": "height", "measure2": "height", "minValue": 1, "maxValue": 1, "hard": true, "follow": true})")}) {
-        const DeformResult result = solved(column, one, stretch);
-        EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << one.type;
-        EXPECT_NEAR(height(result, top), top_height, 1e-3) << one.type;
-        EXPECT_NEAR(height(result, foot), top_height, 0.01) << one.type;
+        const DeformResult result = solved(column, relationship, stretch);
+        EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << relationship.type;
+        EXPECT_NEAR(height(result, top), top_height, 1e-3) << relationship.type;
+        EXPECT_NEAR(height(result, foot), top_height, 0.01) << relationship.type;
     }
     const auto length = [&](const DeformResult& result, int id) {
         double sum = 0;
@@ -243,7 +244,7 @@ TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
     EXPECT_NEAR(length(result, right_line), 1.1 * length(still, left_line), 0.005);
 }
 
-TEST(PartsThatFollow, StandOnItsLevelAndMirrorIt) {
+TEST(PartsThatFollow, ReachTheLevelOfTheLeaderAndMirrorIt) {
     Column column;
     const DeformResult level = solved(column, constraint(0, "same level", {left_line, right_line}, follows("true")),
                                       R"({"select": {"annotation": 5}, "translate": [0, 0, 0.5]})");
@@ -267,29 +268,29 @@ TEST(PartsThatFollow, StandOnItsLevelAndMirrorIt) {
               1e-3);
 }
 
-TEST(PartsThatFollow, ALeaderThatIsNoMemberIsRefused) {
+TEST(PartsThatFollow, ALeaderThatIsNotAMemberIsRefused) {
     const Column column;
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("\"spout\"")));
     EXPECT_NE(error_of(column.space(), tilt_top, graph).find("follow names none of its annotations"), std::string::npos);
 }
 
-TEST(PartsKept, WhatMakesNoSenseIsRefused) {
+TEST(PartsKept, InvalidConstraintsAreRefused) {
     const Column column;
-    const auto said = [&](const Relationship& one) {
+    const auto message_of = [&](const Relationship& relationship) {
         RelationGraph graph;
-        graph.relationships.push_back(one);
+        graph.relationships.push_back(relationship);
         return error_of(column.space(), tilt_top, graph);
     };
-    EXPECT_NE(said(constraint(0, "horizontal support", {foot, top}, "{}")).find("common outline"), std::string::npos);
-    EXPECT_NE(said(constraint(0, "same length", {foot, top}, "{}")).find("poly-line"), std::string::npos);
-    EXPECT_NE(said(constraint(0, "keep direction", {left_line}, "{}")).find("region"), std::string::npos);
-    EXPECT_NE(said(constraint(0, "keep direction", {top}, R"({"angle": 120})")).find("angle"), std::string::npos);
-    EXPECT_NE(said(constraint(0, "keep position", {top}, R"({"point": [1, 2]})")).find("three numbers"), std::string::npos);
+    EXPECT_NE(message_of(constraint(0, "horizontal support", {foot, top}, "{}")).find("common outline"), std::string::npos);
+    EXPECT_NE(message_of(constraint(0, "same length", {foot, top}, "{}")).find("poly-line"), std::string::npos);
+    EXPECT_NE(message_of(constraint(0, "keep direction", {left_line}, "{}")).find("region"), std::string::npos);
+    EXPECT_NE(message_of(constraint(0, "keep direction", {top}, R"({"angle": 120})")).find("angle"), std::string::npos);
+    EXPECT_NE(message_of(constraint(0, "keep position", {top}, R"({"point": [1, 2]})")).find("three numbers"), std::string::npos);
 }
 
-TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
-    // Each holds with the part as it was; neither must pull the other half of the way.
+TEST(PartsKept, PositionAndShapeOrDirectionTogether) {
+    // Each constraint holds for the original part; neither must move the other halfway.
     const Column column;
     const std::string bend = R"({"select": {"annotation": "shaft"}, "rotate": {"axis": [0, 1, 0], "angle": 8}})";
     const Eigen::Vector3d place = column.mean(top, points_of(column.mesh));
@@ -300,14 +301,15 @@ TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
         graph.relationships.push_back(constraint(1, "keep position", {top}, R"({"hard": true})"));
         const DeformResult result =
             deform({column.mesh, column.set}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
-        for (const ConstraintReport& one : result.constraints) EXPECT_EQ(one.verdict, Verdict::holds) << one.type;
+        for (const ConstraintReport& constraint_report : result.constraints)
+            EXPECT_EQ(constraint_report.verdict, Verdict::holds) << constraint_report.type;
         EXPECT_TRUE(result.conflicts.empty()) << other;
         EXPECT_LT((column.mean(top, result.points) - place).norm(), 1e-6) << other;
     }
 }
 
-TEST(PartsKept, ABaseIsWhatIsLowestThen) {
-    // The parts are tilted, so that other vertices are lowest than at rest: the level is that of these.
+TEST(PartsKept, TheBaseConsistsOfTheCurrentlyLowestVertices) {
+    // The parts are tilted, so that the lowest vertices differ from those at rest; these define the level.
     Column column;
     for (const bool hard : {true, false}) {
         RelationGraph graph;
@@ -325,15 +327,15 @@ TEST(PartsKept, ABaseIsWhatIsLowestThen) {
                 if (result.points[v].z() <= low + 0.05 * (high - low)) sum += result.points[v].z(), ++count;
             return sum / count;
         };
-        const Deviation& said = result.constraints[0].deviations.front();
-        EXPECT_NEAR(*said.value, std::abs(base(left_line) - base(right_line)), 1e-9) << "they are on one level at rest";
+        const Deviation& deviation = result.constraints[0].deviations.front();
+        EXPECT_NEAR(*deviation.value, std::abs(base(left_line) - base(right_line)), 1e-9) << "they are on one level at rest";
         if (hard) {
-            EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << *said.value;
+            EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << *deviation.value;
         }
     }
 }
 
-TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
+TEST(PartsKept, OnOneLevelFollowersGrowWithTheirLeader) {
     const Column column;
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("true")));
@@ -341,14 +343,14 @@ TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
     const DeformResult result =
         deform({column.mesh, column.set}, graph,
                edit(R"({"select": {"annotation": "top"}, "scale": {"factor": 1.2, "centre": [0, 0, 8]}})"), "e");
-    const Mesh there = with_points(column.mesh, result.points);
+    const Mesh deformed = with_points(column.mesh, result.points);
     for (const int id : {foot, top})
-        EXPECT_NEAR(area_of(there, column.set.find(id)->faces) / area_of(column.mesh, column.set.find(id)->faces), 1.44, 1e-3)
+        EXPECT_NEAR(area_of(deformed, column.set.find(id)->faces) / area_of(column.mesh, column.set.find(id)->faces), 1.44, 1e-3)
             << id;
 }
 
-TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
-    // Caps of the same size on a coarse sphere: the triangles nearest to them differ by far more than they do.
+TEST(PartsKept, AreasOfFreePartsAreMeasuredByTheirCurves) {
+    // Caps of the same size on a coarse sphere: their nearest triangles differ by far more than the caps.
     const Mesh mesh = build_mesh(octahedron_sphere(3));
     const auto deviation = [&](const std::string& outline) {
         const std::string head = R"(", "type": "region", "outline": ")" + outline + R"(", "select": {"sphere": {"centre": )";
@@ -360,8 +362,8 @@ TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
         graph.relationships.push_back(constraint(0, "part similarity", {1, 2}, "{}"));
         const ConstraintReport judged = judge_constraints(mesh, set, graph).at(0);
         EXPECT_FALSE(judged.deviations.empty()) << judged.text;
-        for (const Deviation& one : judged.deviations)
-            if (one.quantity == "area") return one.value.value();
+        for (const Deviation& judged_deviation : judged.deviations)
+            if (judged_deviation.quantity == "area") return judged_deviation.value.value();
         return -1.0;
     };
     const double free = deviation("free"), edges = deviation("edges");

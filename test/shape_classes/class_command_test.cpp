@@ -66,7 +66,7 @@ TEST_F(ClassCommand, LearnsClassifiesSamplesAndPropagates) {
     EXPECT_GT(read_annotations(scratch / "carried" / "statuette-2.ant.json", original.mesh).annotations.size(), 10U);
 }
 
-/// From which place a threshold of a fit is.
+/// The source of a threshold of a fit.
 std::string origin_of(const Json& assembly, const std::string& option) {
     for (const auto& threshold : assembly["thresholds"].GetArray())
         if (option == threshold["option"].GetString()) return threshold["from"].GetString();
@@ -94,7 +94,7 @@ TEST_F(ClassCommand, AFitUsesShapeAndThresholdsOfItsClassOnly) {
         EXPECT_NE(good.out.find("--" + threshold.option), std::string::npos) << good.out;
     }
     EXPECT_EQ(by_class, 2U) << "statuettes have landmarks enough";
-    // What is told holds; without a class the defaults do.
+    // User-specified values are used; without a class the defaults.
     const auto specified = run_command(fit + " --residual 0.4 --class " + quoted(learnt));
     ASSERT_TRUE(specified.code == 0 || specified.code == 3) << specified.err;
     assembly = read_json(scratch / "fitted" / "fit.assembly.json");
@@ -196,9 +196,9 @@ TEST_F(ClassCommand, AnUnreadableFileDoesNotStopTheOthers) {
     EXPECT_STRNE(last["verdict"].GetString(), "member") << "a vase is no statuette";
     EXPECT_TRUE(last["answers"][0]["explained"].HasMember("liesOn"));
     EXPECT_NE(classified.out.find("the template explains"), std::string::npos) << classified.out;
-    // Of files none of which can be read nothing is left to say.
+    // If no file is readable, the command fails.
     EXPECT_EQ(run_command(idol + quoted(scratch / "broken.ply")).code, 1);
-    // One that is not there is found out before any work.
+    // A missing file is detected before any work.
     EXPECT_EQ(run_command(idol + vase + " " + quoted(scratch / "missing.ply")).code, 1);
 }
 

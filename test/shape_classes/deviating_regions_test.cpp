@@ -29,7 +29,7 @@ TEST(OffRegions, CoverTheAreaOffTheOtherSurface) {
     EXPECT_NEAR(region.farthest, 0.25 - 0.05 / 3, 1e-9);
     EXPECT_GT(centroid(part, Face(region.nearest_face)).x(), 0.7);
     EXPECT_GT(centroid(full_sheet, Face(region.face)).x(), 0.95);
-    // The other way all of it lies on the other.
+    // In the other direction the whole surface is explained.
     const SurfaceDeviation back_deviation = surface_deviation(part, SurfaceSearch(full_sheet), 0.01);
     EXPECT_EQ(back_deviation.share, 0) << "a sum of nothing";
     EXPECT_NEAR(back_deviation.distance, 0, 1e-12);
@@ -50,7 +50,7 @@ TEST(OffRegions, AreConnectedAndTheLargestComesFirst) {
     EXPECT_LT(deviation.regions[1].middle.x(), 0.1);
 }
 
-/// A ball with a smaller one inside, whose surface looks inwards if `hollow`.
+/// A ball with a smaller one inside, whose surface is oriented inwards if `hollow`.
 Mesh ball_with(double radius, bool hollow) {
     TriangleSoup soup = test::octahedron_sphere(4), inner = soup;
     const auto first = static_cast<Index>(soup.points.size());
@@ -70,20 +70,20 @@ TEST(InsidesOfWalls, AreInwardFacesBehindTheExplainedSurface) {
         for (const Face f : hollow.faces())
             ASSERT_EQ(flags[f], f.idx() >= ball.number_of_faces()) << radius << ", face " << f.idx();
     }
-    // A ball within is no inside; nor is one that looks inwards where the outside is not there.
+    // An inner ball oriented outwards is not an inner wall; nor is one oriented inwards where the outer surface is missing.
     for (const bool flag : inner_wall_faces(ball_with(0.6, false), ball_search, 0.04)) EXPECT_FALSE(flag);
     Mesh alone = ball_with(0.6, true);
     for (const Vertex v : alone.vertices())
         if (v.idx() < ball.number_of_vertices()) alone.point(v) = alone.point(v) + Vector(5, 0, 0);
     for (const bool flag : inner_wall_faces(alone, ball_search, 0.04)) EXPECT_FALSE(flag);
-    // Nothing off: nothing inside.
+    // Without deviating faces there is no inner wall.
     for (const bool flag : inner_wall_faces(ball, ball_search, 0.04)) EXPECT_FALSE(flag);
 }
 
 TEST(OffRegions, ASurfaceWithOppositeNormalsIsOff) {
     const Mesh upward_sheet = sheet(1);
     Mesh flipped_sheet = upward_sheet;
-    for (const Vertex v : flipped_sheet.vertices()) {  // mirrored in place: normals look down
+    for (const Vertex v : flipped_sheet.vertices()) {  // mirrored in place: normals point down
         const Point p = flipped_sheet.point(v);
         flipped_sheet.point(v) = Point(1 - p.x(), p.y(), p.z());
     }

@@ -38,7 +38,7 @@ TEST(Dissimilarity, IsTheMeanDeviationOfAFurtherMember) {
     EXPECT_EQ(dissimilar->worst, 1U);
     EXPECT_NEAR(dissimilar->off, -0.6 / deviation, 1e-9);
     EXPECT_NEAR(dissimilarity(learnt, logs(0.3, 0, -5))->value, 0.1 / deviation, 1e-9) << "a small residual is no fault";
-    // Of two quantities nothing is said, nor by one member.
+    // There is no value for two quantities, or with one member.
     EXPECT_FALSE(dissimilarity(learnt, {0.1, 0.1, std::nullopt}));
     ShapeClass small_class = synthetic_class();
     for (LearntRange& range : small_class.ranges) range.values[1].reset(), range.values[2].reset();
@@ -83,9 +83,9 @@ TEST(Dissimilarity, DependentQuantitiesCountOnce) {
     learnt.dependence = dependence;
     // Six degrees of freedom against three quantities: correlations of 2/3; along (1, 1, 1) the eigenvalue is 1 + 2 * 2/3.
     EXPECT_NEAR(dissimilarity(learnt, logs(0.3, 0.3, 0.3))->value, independent / std::sqrt(7.0 / 3), 1e-9);
-    // What members never do, one up and another down, is that much more unlike them: the eigenvalue is 1 - 2/3.
+    // Deviations against the members' correlation increase the dissimilarity: the eigenvalue is 1 - 2/3.
     EXPECT_NEAR(dissimilarity(learnt, logs(0.3, 0, -0.3))->value, against * std::sqrt(3.0), 1e-9);
-    // A member that is left out says nothing of how quantities depend on each other.
+    // A left-out member does not contribute to the correlations.
     classes.resize(1);
     learnt.dependence = dependence_of(classes);
     learnt.dependence->products *= 0;
@@ -96,7 +96,7 @@ TEST(Dissimilarity, SharesNearOneAreNotExtreme) {
     ShapeClass learnt = synthetic_class();
     learnt.ranges.back().quantity.name = "unexplained";
     learnt.ranges.back().values = {0.2, 0.5, 0.8};
-    // Logits, a per cent from the ends: all that there is lies within a few deviations.
+    // Logits, clamped to a per cent from the ends: all values lie within a few deviations.
     EXPECT_LT(std::abs(dissimilarity(learnt, {0.1, 0.1, 1.0})->off), 4);
     learnt.ranges.back().values = {0.0, 0.0, 0.01};
     EXPECT_TRUE(std::isfinite(dissimilarity(learnt, {0.1, 0.1, 1.0})->value));
@@ -169,7 +169,7 @@ TEST(Classify, ObjectsOffTheTemplateAreNotMembers) {
     EXPECT_NE(lines[0].find("explains 70 %"), std::string::npos) << lines[0];
     EXPECT_NE(lines[1].find("30 % of its surface"), std::string::npos) << lines[1];
     EXPECT_NE(lines[1].find("2 (top)"), std::string::npos) << lines[1];
-    // Where members' own fits are as far off, it lies on the object as on them; not where that is not wanted.
+    // If the members' own fits are equally far off, it lies on the object; not with the strict option.
     std::vector<LearntMember> members;
     for (const WholeObject& member : usual_towers(template_tower)) {
         members.push_back(learn_member(template_tower.known(), member));

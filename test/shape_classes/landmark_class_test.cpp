@@ -26,7 +26,7 @@ Landmarks read_rows(const Path& file) {
     return rows;
 }
 
-/// A box of eight corners as wide as told, its landmarks listed from `first`.
+/// The eight corners of a box of given width, with its landmarks listed from `first`.
 void write_box(const Path& file, double width, const Motion& motion = {}, int first = 0, int count = 8) {
     LandmarkSet set;
     set.unit = "mm";
@@ -73,7 +73,7 @@ TEST(LandmarkClass, IsLearntAndQueriedWithoutASurface) {
     EXPECT_EQ(bad.code, 3);
     EXPECT_NE(bad.out.find("from the mean shape"), std::string::npos) << bad.out;
 
-    // Odd ones are named, and one that cannot be read stops none.
+    // Unusual files are named, and an unreadable one does not stop the others.
     LearntMember object = read_landmark_member(scratch / "good.mrk.json", read_landmark_template(scratch / "good.mrk.json"));
     EXPECT_TRUE(compare_with(box, object).odd.empty());
     for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(10 * p.x(), 10 * p.y(), 10 * p.z());
@@ -108,7 +108,7 @@ TEST(LandmarkClass, MissingLandmarksAreNamed) {
     EXPECT_EQ(strangers.code, 2);
     EXPECT_NE(strangers.err.find("classes of meshes"), std::string::npos) << strangers.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "class")) << "nothing is written by what fails";
-    // Of one member nothing can be refused, and nothing drawn.
+    // With one member nothing can be refused or sampled.
     ASSERT_EQ(run_command("template learn " + quoted(scratch / "a.mrk.json") + out).code, 0);
     const Path alone = scratch / "class" / "landmarks.class.json";
     const auto classified = run_command("template classify " + quoted(alone) + " " + quoted(scratch / "a.mrk.json"));
@@ -143,7 +143,7 @@ TEST(LandmarkClass, MeanOfTheMouseSkullsMatchesThePublishedMean) {
         const ShapeModes modes = read_class(scratch / "class" / "mouse.class.json").modes;
         const GeneralisedProcrustes expected = generalised_procrustes(skulls, {.scaling = !sizes});
         EXPECT_NEAR(modes.mean_size, 43.93584448, 1e-8 * 43.93584448);
-        // The mean of the class is turned as the first file is.
+        // The mean of the class has the orientation of the first file.
         const double norm = modes.mean.norm(), goal = expected.mean.norm();
         EXPECT_NEAR(procrustes(modes.mean / norm, expected.mean / goal).sum_of_squares, 0, 1e-16);
         const double remaining_variance = 30 * modes.total;

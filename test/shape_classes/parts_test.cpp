@@ -50,11 +50,11 @@ TEST(Parts, AreInvariantUnderPositionAndSize) {
         motion.translation = scale * Eigen::Vector3d(1000, 2000, -500);
         const auto original =
                        part_quantities(template_tower.known(), points_in(member_of(template_tower, "a", 1, 0.8, 1.1).mesh)),
-                   there = part_quantities(template_tower.known(),
+                   moved = part_quantities(template_tower.known(),
                                            points_in(member_of(template_tower, "a", 1, 0.8, 1.1, motion).mesh));
-        ASSERT_EQ(original.size(), there.size());
+        ASSERT_EQ(original.size(), moved.size());
         for (std::size_t i = 0; i < original.size(); ++i)
-            EXPECT_NEAR(*original[i].value, *there[i].value, 1e-8) << original[i].text();
+            EXPECT_NEAR(*original[i].value, *moved[i].value, 1e-8) << original[i].text();
     }
 }
 
@@ -62,7 +62,7 @@ TEST(Parts, RegionsOfTheMemberReplaceTheirCounterparts) {
     const Tower template_tower = tower();
     WholeObject member = member_of(template_tower, "a", 1, 1, 1);
     EXPECT_FALSE(own_disagreement(template_tower.known(), points_in(template_tower.mesh), member).has_value()) << "it has none";
-    // Its own parts meet a cell higher, under other names and ids.
+    // Its own parts meet one cell higher, with other names and ids.
     Annotation low, high;
     low.id = 40;
     high.id = 41;
@@ -92,7 +92,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
     Tower template_tower = tower();
     template_tower.graph.relationships.clear();
     Tower other = tower();
-    // Corners, so that up is known.
+    // Corners, so that the orientation is known.
     for (const auto& [tag, x, y, z] : {std::tuple{"a", 0., 0., 0.}, {"b", 1., 0., 0.}, {"c", 0., 1., 0.}, {"d", 0., 0., 1.}})
         for (const Vertex v : template_tower.mesh.vertices())
             if (CGAL::squared_distance(template_tower.mesh.point(v), Point(x, y, z)) < 1e-12) {
@@ -104,7 +104,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
                 template_tower.set.annotations.push_back(corner);
                 other.set.annotations.push_back(corner);
             }
-    // The one counts from below, the other from above.
+    // One numbers from below, the other from above.
     template_tower.set.annotations[0].tag = "part 0";
     template_tower.set.annotations[1].tag = "part 1";
     WholeObject object = member_of(other, "object", 1, 0.5, 1);
@@ -117,7 +117,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
                             [](const std::string& note) { return note.find("'part' are numbered") != std::string::npos; }));
     EXPECT_EQ(fit.placed_by, "landmarks");
     EXPECT_LT(fit.residuals->off(), 0.1);
-    // The same as where words say which is which; words that are exchanged are believed.
+    // The same as with distinguishing tags; exchanged tags are trusted.
     const auto with_tags = [&](const std::string& low, const std::string& high) {
         template_tower.set.annotations[0].tag = "base";
         template_tower.set.annotations[1].tag = "top";
@@ -131,7 +131,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
     EXPECT_NE(fit.points, with_tags("top", "base").points);
 }
 
-TEST(Parts, ThePartThatIsFarthestOffIsNamed) {
+TEST(Parts, ThePartWithTheLargestDeviationIsNamed) {
     const std::vector<std::optional<double>> values{1.0, 4.0, std::nullopt, 0.5, 3.0}, expected{1.0, 2.0, 1.0, 1.0, std::nullopt};
     const PartsDeviation deviation = parts_deviation(values, expected);
     EXPECT_EQ(deviation.count, 3U);
@@ -140,7 +140,7 @@ TEST(Parts, ThePartThatIsFarthestOffIsNamed) {
     EXPECT_EQ(parts_deviation({}, {}).count, 0U);
 
     Tower template_tower = tower();
-    template_tower.graph.relationships.clear();  // nothing is stated: the parts speak
+    template_tower.graph.relationships.clear();  // no constraints: the parts decide
     std::vector<WholeObject> members;
     for (const auto& [name, top] : {std::pair{"a", 0.98}, {"b", 1.0}, {"c", 1.02}, {"d", 1.01}, {"e", 0.99}})
         members.push_back(member_of(template_tower, name, 1, top, 1));

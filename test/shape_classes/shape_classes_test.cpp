@@ -29,7 +29,8 @@ Motion far_away() {
     return motion;
 }
 
-/// Two planted modes without turn, shift or change of size: rows that are orthogonal to the rigid motions to first order.
+/// Two planted modes without rotation, translation or change of size: rows that are orthogonal to the rigid motions to first
+/// order.
 struct Planted {
     Landmarks mean = Landmarks::Zero(60, 3), first = Landmarks::Zero(60, 3), second = Landmarks::Zero(60, 3);
     Planted() {
@@ -106,7 +107,7 @@ TEST(ShapeModes, ALeftOutMemberIsMeasuredByTheOthers) {
     ModeOptions options;
     options.sizes = true;
     const ShapeModes modes = learn_modes(members, planted.mean, options);
-    // The last one alone has the second field: all of it is outside of what the others span.
+    // Only the last one has the second field, which is outside the span of the others.
     EXPECT_GT(modes.left_out_outside[3] * modes.mean_size, 0.19);
     EXPECT_LT(modes.left_out_outside[0] * modes.mean_size, 0.05);
 }
@@ -135,7 +136,7 @@ TEST(ShapeClass, LearnsTheRangesOfItsMembers) {
     EXPECT_NEAR(ratio->min, 0.9, 1e-9);
     EXPECT_NEAR(ratio->max, 1.1, 1e-9);
     EXPECT_NEAR(ratio->median, 1, 1e-9);
-    // It is the prediction interval of the logarithms, at its share of the rate at which members are refused.
+    // It is the prediction interval of the logarithms, at its share of the permitted rejection rate.
     std::vector<double> logs;
     for (const double x : {0.9, 1.0, 1.1, 0.95, 1.05}) logs.push_back(std::log(x));
     const PredictionInterval expected = predict(moments_of(logs), false, ratio->reject, learnt.resolution);
@@ -191,7 +192,7 @@ TEST(Classify, ReportsWhenItCannotDecide) {
     EXPECT_NE(same.notes.back().find("the same shape"), std::string::npos) << same.notes.back();
     EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 0.9, 1)).verdict, Membership::member);
     EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 1.8, 1)).verdict, Membership::other);
-    // Two classes that say the same cannot be distinguished.
+    // Two identical classes cannot be distinguished.
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const ClassAnswer yes = ask_class(learnt, template_tower.known(), member_of(template_tower, "x", 1, 1, 1));
     const Classification classification = decide("x", {yes, yes});
@@ -223,7 +224,7 @@ TEST(ShapeClass, BadFitsAreReportedAndCannotBeTheArchetype) {
     const ShapeClass without = learn_class(template_tower.known(), members);
     EXPECT_EQ(without.members.size(), members.size() - 1);
     EXPECT_TRUE(has_note(without, "is left out"));
-    // One without volume: what cannot be measured of it is said.
+    // A member without volume: missing quantities are reported.
     bad.fit.residuals.reset();
     for (ClassQuantity& quantity : bad.quantities)
         if (quantity.name == "compactness") quantity.value.reset();
@@ -252,7 +253,7 @@ TEST(Classify, ErrorsOfTheFitDoNotRejectAnObject) {
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     LearntMember object = learn_member(template_tower.known(), member_of(template_tower, "x", 1, 1, 1));
     ASSERT_EQ(compare_with(learnt, object).verdict, Membership::member);
-    // Vertices that slid along the surface: nothing else that is measured changes.
+    // Vertices that slid along the surface: all other quantities are unchanged.
     Random random(7);
     for (Point& p : object.fit.points) p = Point(p.x() + random.uniform(-0.2, 0.2), p.y() + random.uniform(-0.2, 0.2), p.z());
     EXPECT_EQ(compare_with(learnt, object).verdict, Membership::other) << "in correspondence the vertices are what is compared";
@@ -326,7 +327,7 @@ TEST(MemberFit, FitsATowerWithOtherTrianglesAndTransfersAnnotations) {
 }
 
 TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
-    // Half as large inside, and looking inwards: a fifth of the surface.
+    // An inner surface of half the size, oriented inwards: a fifth of the surface.
     const Tower template_tower = tower();
     const WholeObject solid = member_of(template_tower, "solid", 0.5, 0.6, 0.95);
     WholeObject hollow = solid;
@@ -399,7 +400,7 @@ TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
         EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).against.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);
-    // Told again, the same to the bit; another seed gives others.
+    // Repeated, the result is the same to the bit; another seed gives others.
     const Sampling second_sampling = sample_class(learnt, template_tower.known(), options);
     EXPECT_EQ(second_sampling.samples[3].points, sampling.samples[3].points);
     options.seed = 2;
@@ -429,7 +430,7 @@ TEST(ClassSample, DiversityIsTheMeanPairwiseDistance) {
     const Tower template_tower = tower();
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const ShapeModes& modes = learnt.modes;
-    // Along one mode by +-a and 0: 2a, a and a off each other, wherever they lie and however large they are.
+    // Along one mode by +-a and 0: pairwise distances 2a, a and a, for any position and size.
     const double a = 1e-4 * modes.mean_size;
     std::vector<Landmarks> shapes;
     for (const double b : {a, -a, 0.0}) {
@@ -494,7 +495,7 @@ TEST(ClassFile, ComesBackAsWritten) {
     const WholeObject object = member_of(template_tower, "bad", 1, 1.6, 1);
     EXPECT_EQ(ask_class(read, template_tower.known(), object).reasons(),
               ask_class(learnt, template_tower.known(), object).reasons());
-    // What was written and then changed is no class.
+    // A modified class file is refused.
     const auto refused = [&](const ShapeClass& changed) {
         write_class(scratch.path(), changed, Provenance{"test", {}, {}});
         EXPECT_THROW(static_cast<void>(read_class(scratch / "tower.class.json")), Error);

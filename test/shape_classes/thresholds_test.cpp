@@ -23,7 +23,7 @@ TEST(Predict, MatchesTheTabulatedStudentInterval) {
     EXPECT_NEAR(two_sided.high, 3 + 2.26216 * 2 * std::sqrt(1.1), 1e-4);
     EXPECT_NEAR(two_sided.low, 3 - 2.26216 * 2 * std::sqrt(1.1), 1e-4);
     EXPECT_NEAR(predict(moments, true, 0.05).high, 3 + 1.83311 * 2 * std::sqrt(1.1), 1e-4);
-    // What cannot be distinguished widens it, also where all values are one.
+    // The resolution widens it, also for identical values.
     EXPECT_NEAR(predict({10, 3, 0, 9}, true, 0.05, 0.5).high, 3 + 1.83311 * 0.5 * std::sqrt(1.1), 1e-4);
     EXPECT_EQ(predict({10, 3, 0, 9}, true, 0.05).high, 3);
     EXPECT_NEAR(predict({10, 3, 4, 1e9}, true, 0.05).high, predict({10, 3, 4, 1e5}, true, 0.05).high, 1e-4);

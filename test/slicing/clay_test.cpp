@@ -13,8 +13,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A cup turned around z that stands on its rim: outer radius 10, height 40; the cavity, of radius 7, is seen from below up to
-/// `seen` and closed there by a disc, or left open.
+/// A cup of revolution about z that stands on its rim: outer radius 10, height 40; the cavity, of radius 7, is seen from below up
+/// to `seen` and closed there by a disc, or left open.
 TriangleSoup cup(double seen, bool closed, Index around = 360) {
     std::vector<std::array<double, 2>> profile;  // radius, height: from the axis on top, down outside, up inside
     profile = {{0, 40}, {10, 40}, {10, 0}, {7, 0}, {7, seen}};
@@ -41,7 +41,7 @@ TriangleSoup cup(double seen, bool closed, Index around = 360) {
     return soup;
 }
 
-/// Areas of the polygons that stand for circles.
+/// Areas of the polygons that approximate circles.
 double disc(double radius, Index around = 360) { return around * radius * radius * std::sin(2 * pi / around) / 2; }
 
 SliceFrame upright() { return slice_frame(Point(0, 0, 0), Vector(0, 0, 1)); }
@@ -52,7 +52,7 @@ TEST(Clay, BoundsIncludeUnseenRegions) {
         EXPECT_NEAR(clay.envelope, 40 * disc(10), 1e-6 * clay.envelope);
         EXPECT_NEAR(clay.maximum, 40 * disc(10) - 10 * disc(7), 1e-6 * clay.envelope) << closed;
         EXPECT_NEAR(clay.wall_mean, 3, 1e-3);
-        // Where nothing is seen: a wall of 3 around a disc of 10, and on top of it.
+        // Where nothing is visible: a wall of 3 around a disc of 10, and on top of it.
         EXPECT_NEAR(clay.minimum, 37 * (disc(10) - disc(7)) + 3 * disc(10), 1e-3 * clay.envelope);
         EXPECT_EQ(clay.slices, 400);
         EXPECT_EQ(clay.with_cavity, 100);
@@ -118,7 +118,7 @@ TEST(Clay, IsInvariantToScaleAndPosition) {
 }
 
 TEST(Clay, LayersWithoutOutlineAreInterpolated) {
-    // A tube with a slit all along a stretch of its height: there the outer contour is open.
+    // A tube with a slit along a part of its height: there the outer contour is open.
     const Index around = 120;
     TriangleSoup soup = test::grid(around, 40, true, false, [](double u, double v) {
         return std::array<double, 3>{5 * std::cos(2 * pi * u), 5 * std::sin(2 * pi * u), 40 * v};

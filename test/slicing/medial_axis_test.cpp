@@ -53,7 +53,7 @@ TEST(MedialAxis, OfAnEllipseADiscAndARing) {
                 EXPECT_NEAR(branch.radii[i], 1, 0.01);
             }
     }
-    // The loop is one branch that comes back.
+    // The loop is one closed branch.
     ASSERT_EQ(ring.levels[1].branches.size(), 1U);
     EXPECT_EQ(ring.levels[1].branches[0].points.front(), ring.levels[1].branches[0].points.back());
 }

@@ -94,7 +94,7 @@ TEST(Profile, OfObjectsThatAreNotRevolvedOrOpen) {
 }
 
 TEST(Profile, OfPartsThatProtrudeAboveAndBesideTheWall) {
-    // A handle like an arch over the rim, no wider than the belly, in the plane at 40 degrees.
+    // An arched handle over the rim, no wider than the belly, in the plane at 40 degrees.
     const double turn = 40 * M_PI / 180;
     const TriangleSoup arch = grid(60, 24, false, true, [&](double u, double v) {
         const double along = M_PI * u, around = 2 * M_PI * v, r = 5 + 0.4 * std::cos(around);

@@ -1,4 +1,4 @@
-// Axes of stacks of discs whose centres are known; walls of known evenness; tubes between other things.
+// Axes of stacks of discs whose centres are known; walls of known evenness; tubes between other parts.
 #include "ostraka/slicing/slice_axes.h"
 
 #include "ostraka/core/error.h"
@@ -41,7 +41,7 @@ TEST(SliceAxes, OfALeaningTube) {
     EXPECT_NEAR(from_fit.length, 10 * std::sqrt(1.09), 1e-9);
     EXPECT_NEAR(straightness(centres, centres).mean, 0, 1e-12);
     EXPECT_NEAR(straightness(centres, std::vector<Point>{centres.front(), centres.back()}).length, 10 * std::sqrt(1.09), 1e-9);
-    // Outlines and material differ where the cavity is off the centre.
+    // Outlines and material differ if the cavity is eccentric.
     SliceStack hollow = stack;
     hollow.slices = {slice_at(0, {ellipse(400, 3, 3), reversed(ellipse(400, 1, 1, {1, 0}))})};
     const auto of_hollow = describe_slices(hollow.slices);
@@ -87,12 +87,12 @@ TEST(SliceAxes, HandlesCrumbsAndAFootDoNotChangeTheHomogeneity) {
     std::vector<Slice> slices;
     for (int i = 0; i < 9; ++i) slices.push_back(slice_at(i, ring(1)));
     const auto simple = thickness_homogeneity(slices);
-    // A crumb beside the wall; a thick foot.
+    // A small piece next to the wall; a thick foot.
     auto crumbs = ring(1);
     crumbs.push_back(ellipse(40, 0.1, 0.1, {8, 0})), crumbs.push_back(reversed(ellipse(40, 0.05, 0.05, {8, 0})));
     slices.push_back(slice_at(9, crumbs));
     slices.push_back(slice_at(-1, ring(4)));
-    // A hollow handle, and one that is joined so that there is a hole between it and the wall.
+    // A hollow handle, and one that encloses a hole with the wall.
     auto handle = ring(1), joined = ring(1);
     handle.push_back(ellipse(80, 1, 1, {8, 0})), handle.push_back(reversed(ellipse(80, 0.2, 0.2, {8, 0})));
     joined[0] = ellipse(500, 9, 6), joined.push_back(reversed(ellipse(80, 1, 1, {7, 0})));

@@ -57,8 +57,7 @@ TEST(SliceCommand, WritesEveryOutputIntoAFolder) {
     const std::string again = (scratch / "again").string();
     ASSERT_EQ(run_command("slice --threads 1 " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + again).code, 0);
     for (const char* name : {"slices.json", "slices.csv", "slices.svg", "slices.ply", "profile.svg"})
-        EXPECT_TRUE(read_file(Path(folder) / name) == read_file(Path(again) / name))
-            << name;  // EXPECT_EQ would tell megabytes apart
+        EXPECT_TRUE(read_file(Path(folder) / name) == read_file(Path(again) / name)) << name;  // EXPECT_EQ would print megabytes
 }
 
 TEST(SliceCommand, AFolderHoldsWhatTheLastRunWrote) {
@@ -218,7 +217,7 @@ TEST(SliceCommand, ReportsInvalidNumbers) {
     for (const char* angle : {"nan", "inf", "1e300", "3,4", "x"})
         fails(std::string("--profile-angle ") + angle, "profile-angle is ");
     for (const char* spacing : {"nan", "inf", "0", "-1", "1e300", "x"}) fails(std::string("--spacing ") + spacing, "spacing is ");
-    // How many it would be, and what is reasonable.
+    // The number of slices, and a reasonable value.
     const auto too_many = run_command("slice " + vase + "--spacing 1e-9");
     EXPECT_EQ(too_many.code, 2);
     EXPECT_NE(too_many.err.find("2.589e+11 slices"), std::string::npos) << too_many.err;
@@ -235,7 +234,7 @@ TEST(SliceCommand, ReportsInvalidNumbers) {
     fails("--drawn 0", "drawn is 0");
     fails("--medial-axis 0.1,nan,0.2", "medial-axis is nan");
     fails("--similarity nan", "similarity");
-    // A plane that misses says where the mesh is.
+    // For a plane that misses the mesh, the message gives the mesh's position.
     const auto missed = run_command("slice " + vase + "--plane 0,0,1000,0,0,1");
     EXPECT_EQ(missed.code, 3);
     EXPECT_NE(missed.err.find("heights above it go from -1000"), std::string::npos) << missed.err;

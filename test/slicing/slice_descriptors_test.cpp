@@ -17,7 +17,7 @@ Slice figure(const std::vector<Polygon>& polygons) {
 }
 SliceDescriptors describe(const std::vector<Polygon>& polygons) { return describe_slice(figure(polygons)); }
 
-/// What has no unit, and what has, divided by the scale.
+/// Dimensionless descriptors, and others divided by the scale.
 std::vector<std::pair<std::string, double>> numbers(const SliceDescriptors& d, double scale = 1) {
     return {{"area", d.area / scale / scale},
             {"perimeter", d.perimeter / scale},
@@ -151,7 +151,7 @@ TEST(SliceDescriptors, ConvergeQuadraticallyOnCirclesAndEllipses) {
 }
 
 TEST(SliceDescriptors, Rings) {
-    // Concentric, and with the cavity off the centre.
+    // Concentric, and with an eccentric cavity.
     const double R = 3, r = 1;
     for (const double e : {0.0, 0.5, 1.2}) {
         const auto slice = figure({ellipse(2000, R, R, {5, 5}), reversed(ellipse(1500, r, r, {5 + e, 5}))});
@@ -165,7 +165,7 @@ TEST(SliceDescriptors, Rings) {
         EXPECT_NEAR(d.outline_barycentre.x(), 5, 1e-9);
         EXPECT_NEAR(d.equivalent_radius, R, 1e-5);
         EXPECT_LT(d.roundness_fitted, 1e-5);
-        // From a place of the outer circle at angle t, the inner one is sqrt(R^2 + e^2 - 2 R e cos t) - r away.
+        // From a point of the outer circle at angle t, the inner one is sqrt(R^2 + e^2 - 2 R e cos t) - r away.
         double first = 0, second = 0;
         const int nodes = 10000;
         for (int i = 0; i < nodes; ++i) {
@@ -256,7 +256,7 @@ TEST(SliceDescriptors, OfOpenContours) {
     EXPECT_LE(open.fitted_radius_low, 2);
     EXPECT_GT(open.fitted_radius_high, 1.9999);
     EXPECT_LT(open.fitted_radius_high - open.fitted_radius_low, 1e-4);
-    // A corner is no arc.
+    // A corner is not an arc.
     const auto corner = describe_slice(
         slice_mesh(build_mesh(grid(80, 1, false, false,
                                    [](double s, double t) {
@@ -267,7 +267,7 @@ TEST(SliceDescriptors, OfOpenContours) {
     EXPECT_TRUE(std::isnan(corner.fitted_radius));
     EXPECT_NEAR(open.open_length, 8, 1e-3);
     EXPECT_EQ(open.components, 0);
-    // An inner wall runs clockwise: it is no outline.
+    // An inner wall runs clockwise: it is not an outline.
     EXPECT_TRUE(std::isnan(describe_slice(slice_mesh(arc(4, 0, 2), frame, {0.4}).slices[0]).fitted_radius));
     // Nothing at all.
     const auto nothing = describe_slice(slice_mesh(arc(0, 4, 2), frame, {4}).slices[0]);
@@ -281,7 +281,7 @@ TEST(SliceDescriptors, OfOpenContours) {
 }
 
 TEST(SliceDescriptors, CirclesOfShapesThatAreNotRound) {
-    // The circle that fits a bar best is nearly a line: the equivalent one stands for it.
+    // The circle that fits a bar best is nearly a line: the equivalent one replaces it.
     const auto bar = describe({rectangle(20, 1)});
     EXPECT_EQ(bar.roundness_fitted, bar.roundness_equivalent);
     EXPECT_NEAR(bar.fitted_radius, std::sqrt(20 / M_PI), 1e-9);

@@ -33,7 +33,7 @@ Slice cut(const Mesh& mesh, double height, const Vector& normal = {0, 0, 1}, con
     return slice_mesh(mesh, slice_frame(origin, normal), {height}).slices.at(0);
 }
 
-/// What must hold for every slice.
+/// Invariants of every slice.
 void expect_sound(const Mesh& mesh, const SliceStack& stack) {
     for (const auto& slice : stack.slices)
         for (std::size_t c = 0; c < slice.contours.size(); ++c) {
@@ -83,7 +83,7 @@ TEST(SliceMesh, AnyMeshInAnyDirection) {
             EXPECT_EQ(area(stack.slices[27]), area(stack.slices[3]));
             if (name == "patch" || name == "tube") continue;
             for (const auto& slice : stack.slices) EXPECT_TRUE(slice.completeness.complete());
-            // The layers make up the volume: midpoint rule, so that it is near only.
+            // The layers approximate the volume (midpoint rule).
             double sum = 0;
             for (std::size_t i = 0; i < 23; ++i) sum += area(stack.slices[i]) * (high - low) / 23;
             EXPECT_NEAR(sum / volume(mesh), 1, 0.01);
@@ -115,7 +115,7 @@ TEST(SliceMesh, ABoxThroughVerticesEdgesAndFaces) {
         for (const double away : {0.0, 1000.0}) {
             const Mesh mesh = build_mesh(moved(box(8), scale, {away * scale, 2 * away * scale, -away * scale}));
             const Point corner(away * scale, 2 * away * scale, -away * scale);
-            // The base, between rows, through rows of vertices, the lid, and a hair beside them.
+            // The base, between rows, through rows of vertices, the lid, and slightly next to them.
             for (const double h : {0.0, 0.3, 0.5, 0.125, 1.0, 1e-10, -1e-10, 0.5 + 1e-10, 0.5 - 1e-10, 1 + 1e-10}) {
                 const Slice slice = cut(mesh, h * scale, {0, 0, 1}, corner);
                 ASSERT_EQ(slice.contours.size(), 1U) << h;
@@ -169,7 +169,7 @@ TEST(SliceMesh, FlatPlacesAboveTheBase) {
     const Slice top_of_small = cut(step, 0.5);
     ASSERT_EQ(top_of_small.contours.size(), 2U);
     EXPECT_NEAR(area(top_of_small), 1.25, 1e-12);
-    // A floor above the lowest place has no slice of its own: just below there is nothing of it.
+    // A floor above the lowest point has no outline: just below it there is no material.
     const Mesh hung = build_mesh(joined(box(2), moved(box(2), 0.5, {3, 0, 0.25})));
     EXPECT_NEAR(area(cut(hung, 0.25)), 1, 1e-12);
     EXPECT_NEAR(area(cut(hung, 0.2501)), 1.25, 1e-12);
@@ -296,7 +296,7 @@ TEST(SliceMesh, OpenScansStayOpen) {
     EXPECT_TRUE(components(slice).empty());
     // It runs with the material, which lies within, to its left.
     EXPECT_GT(contour.points[0].x() * contour.points[1].y() - contour.points[0].y() * contour.points[1].x(), 0);
-    // A part of a closed mesh is open where the rest would go on.
+    // A part of a closed mesh is open where it was cut off.
     const Mesh ball = build_mesh(octahedron_sphere(4));
     std::vector<Index> half;
     for (const Face f : ball.faces())
@@ -329,7 +329,8 @@ TEST(Completeness, OfAnArcIsItsFractionOfTheCircle) {
         EXPECT_GT(noisy.share_high, degrees / 360) << degrees;
         EXPECT_GT(noisy.share_high - noisy.share_low, exact.share_high - exact.share_low);
     }
-    // Half a turn over two: the ends of a straight wall say nothing of the rest, those of three sides of a square hardly more.
+    // Half a turn over two: the ends of a straight wall carry no information on the rest, those of three sides of a square hardly
+    // any.
     for (const std::vector<std::array<double, 2>>& line :
          {std::vector<std::array<double, 2>>{{0, 0}, {5, 0}}, {{5, 0}, {5, 5}, {0, 5}, {0, 0}}}) {
         const auto sides = static_cast<Index>(line.size() - 1);

@@ -1,4 +1,4 @@
-// Meshes that pass through themselves, or whose shells are not oriented alike: what is said of them, and what is left unsaid.
+// Self-intersecting meshes, and shells with inconsistent orientation: which values are reported and which are left out.
 #include "ostraka/slicing/clay.h"
 #include "ostraka/slicing/medial_axis.h"
 #include "ostraka/slicing/slice_descriptors.h"
@@ -61,7 +61,7 @@ TEST(SliceSoundness, ShellsThatCrossHaveNoAreas) {
 }
 
 TEST(SliceSoundness, AFoldTooSmallToMatterLeavesAreas) {
-    // A crumb that crosses the surface: known to be there, and to count at most its own area twice.
+    // A small piece that crosses the surface: it is detected, and counts at most its own area twice.
     const Mesh mesh = build_mesh(joined(octahedron_sphere(5), moved(octahedron_sphere(2), 0.01, {1, 0.003, 0.002})));
     const Slice slice = cut(mesh, 0.001);
     EXPECT_EQ(slice.completeness.crossing, 2);
@@ -93,7 +93,7 @@ TEST(SliceSoundness, CrossingThroughVerticesAndWithoutThem) {
         EXPECT_EQ(slice.completeness.crossing, 2);
         EXPECT_FALSE(slice.completeness.has_areas());
     }
-    // The same shell twice counts twice; there and back it counts for nothing.
+    // A duplicated shell counts twice; with opposite orientations it cancels.
     const Polygon round = ellipse(90, 3, 2);
     EXPECT_FALSE(cut(walls({round, round}), 0.5).completeness.has_areas());
     const Slice sheet = cut(walls({round, reversed(round)}), 0.5);
@@ -117,7 +117,7 @@ TEST(SliceSoundness, TouchingContoursDoNotCross) {
                 EXPECT_EQ(slice.completeness.doubtful, 0);
             }
         }
-    // Boxes side by side, at any turn.
+    // Boxes side by side, in any rotation.
     for (const double angle : {0.0, 0.7}) {
         const Mesh mesh = build_mesh(turned(joined(box(5), moved(box(3), 1, {1, 0, 0})), angle, 1, {0, 0, 0}));
         EXPECT_EQ(cut(mesh, 0.41).completeness.crossing, 0);
@@ -153,11 +153,11 @@ TEST(SliceSoundness, NestedShellsAreOrientedByTheirNesting) {
         EXPECT_EQ(d.euler_number, 0);
         EXPECT_NEAR(d.thickness_min, std::sqrt(0.99) - std::sqrt(0.24), 0.02);
     }
-    // A body beside another, inside out: it is as large as the other way round.
+    // A body next to another, inside out: its area is the same.
     const Mesh pair = build_mesh(joined(big, inside_out(moved(small, 1, {4, 0, 0}))));
     EXPECT_NEAR(area(cut(pair, 0.1)), outer + inner, 1e-12);
     EXPECT_EQ(cut(pair, 0.1).completeness.turned, 1);
-    // What is open is not judged by what may be missing.
+    // Open meshes are not checked, since parts may be missing.
     EXPECT_EQ(cut(walls({reversed(rectangle(2, 2))}), 0.5).completeness.turned, 0);
     EXPECT_TRUE(std::isnan(area(cut(walls({reversed(rectangle(2, 2))}), 0.5))));
 }
@@ -209,13 +209,13 @@ TEST(SliceSoundness, SlicesAlongACurveMatchPlanes) {
 
 TEST(ClaySoundness, CrossingShellsAreNotCountedTwice) {
     const SliceFrame upright = slice_frame({0, 0, 0}, {0, 0, 1});
-    // Two balls that cross around their middles: the most is a bound, and no better than both one by one.
+    // Two balls that intersect around their centres: the maximum is a bound, not below that of both separately.
     const double ball = clay_volume(build_mesh(octahedron_sphere(5)), upright).maximum;
     const ClayVolume clay =
         clay_volume(build_mesh(joined(octahedron_sphere(5), moved(octahedron_sphere(5), 1, {1, 0, 0}))), upright);
     EXPECT_GT(clay.crossing, clay.slices / 2);
     EXPECT_LT(clay.crossing, clay.slices);
-    EXPECT_GE(clay.maximum, 2 * ball - 5 * M_PI / 12);  // less what is in both
+    EXPECT_GE(clay.maximum, 2 * ball - 5 * M_PI / 12);  // minus the intersection
     EXPECT_LT(clay.maximum, 2 * ball);
     EXPECT_TRUE(std::isnan(clay.envelope));
     const ClayVolume tubes = clay_volume(build_mesh(joined(tube(90, 5), moved(tube(90, 5), 1, {0.5, 0, 0}))), upright);

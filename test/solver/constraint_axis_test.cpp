@@ -1,4 +1,4 @@
-// Axes that turn no farther than they must, and partners that mirror.
+// Axes that rotate by the minimum angle, and mirrored partners.
 #include "outcome.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace ostraka {
 namespace {
 
-/// The least squared distance of turned rows with the axis at an angle to a direction, by trying all turns.
+/// The minimum squared distance of rotated rows with the axis at an angle to a direction, by trying all rotations.
 double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& direction, double wanted) {
     double minimum = std::numeric_limits<double>::infinity();
     constexpr int steps = 120;
@@ -35,7 +35,7 @@ TEST(Constraint, LevelsWeighTheirPoints) {
     EXPECT_THROW(make_constraint(kind, {0, 1, 2, 3}, 1, points), Error);
 }
 
-TEST(Constraint, APointIsNoWayOutForAnAxis) {
+TEST(Constraint, AxesDoNotCollapseToAPoint) {
     Points rest = random_points(20, 6);
     kinds::AxisDirection kind{{0, 0, 1}, {0, 0}, Vector3d(0, 0, 1)};
     const std::vector<int> ids = first_ids(20);
@@ -49,43 +49,43 @@ TEST(Constraint, APointIsNoWayOutForAnAxis) {
     EXPECT_NEAR(std::sqrt(bounded->squared_distance(small)), 0.4 * size, 1e-9);
 }
 
-TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
-    // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
+TEST(Constraint, AxesRotateByTheMinimumAngle) {
+    // Rods, plates and blocks with known axis, rotated arbitrarily, and exactly parallel and perpendicular to the direction.
     const Vector3d d = Vector3d(1, -2, 3).normalized();
     for (const Vector3d& size :
          {Vector3d(1, 1, 4), Vector3d(1, 2, 4), Vector3d(1, 0, 3), Vector3d(3, 3, 0.5), Vector3d(2, 2, 2)}) {
         Points rest = random_points(30, 6);
         rest.colwise() -= rest.rowwise().mean().eval();
         rest = size.asDiagonal() * rest;
-        for (const Vector3d& own : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
+        for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(0.6, 0, 0.8)})
             for (int place = 0; place < 4; ++place) {
                 Matrix3d rotation = some_rotation();
-                if (place == 1) rotation = Eigen::Quaterniond::FromTwoVectors(own, d).toRotationMatrix();
-                if (place == 2) rotation = Eigen::Quaterniond::FromTwoVectors(own, d.unitOrthogonal()).toRotationMatrix();
+                if (place == 1) rotation = Eigen::Quaterniond::FromTwoVectors(axis, d).toRotationMatrix();
+                if (place == 2) rotation = Eigen::Quaterniond::FromTwoVectors(axis, d.unitOrthogonal()).toRotationMatrix();
                 if (place == 3)
-                    rotation = Eigen::Quaterniond::FromTwoVectors(own, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
+                    rotation = Eigen::Quaterniond::FromTwoVectors(axis, -d + 1e-7 * d.unitOrthogonal()).toRotationMatrix();
                 const Points rows = rotation * rest;
                 for (const double wanted : {0.0, 1e-4, 0.3, 1.2, std::numbers::pi / 2}) {
-                    const auto c = make_constraint(kinds::AxisDirection{d, {wanted, wanted}, own}, first_ids(30), 1, rest);
+                    const auto c = make_constraint(kinds::AxisDirection{d, {wanted, wanted}, axis}, first_ids(30), 1, rest);
                     const Outcome o = outcome(*c, rows);
-                    const std::string what = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
+                    const std::string name = testing::PrintToString(size.transpose().eval()) + " place " + std::to_string(place) +
                                              " angle " + std::to_string(wanted);
-                    const Matrix3d found = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
-                    ASSERT_LT((found * rows - o.projected).norm(), 1e-10) << what;
-                    const double angle_there = angle(found * rotation * own, d);
-                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << what;
-                    const double minimum = min_by_trying(rows, rotation * own, d, wanted),
+                    const Matrix3d best = Eigen::umeyama(rows, o.projected, false).topLeftCorner<3, 3>();
+                    ASSERT_LT((best * rows - o.projected).norm(), 1e-10) << name;
+                    const double angle_there = angle(best * rotation * axis, d);
+                    ASSERT_NEAR(std::min(angle_there, std::numbers::pi - angle_there), wanted, 2e-8) << name;
+                    const double minimum = min_by_trying(rows, rotation * axis, d, wanted),
                                  reached = (o.rows - o.projected).squaredNorm();
-                    ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << what;
-                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << what;
+                    ASSERT_LE(reached, minimum + 1e-9 * rows.squaredNorm()) << name;
+                    ASSERT_LT((again(*c, o.projected) - o.projected).norm(), 1e-7) << name;
                 }
             }
     }
 }
 
-TEST(Constraint, AxesThatAreInRangeStay) {
+TEST(Constraint, AxesInRangeAreUnchanged) {
     const Points rest = random_points(9, 12);
-    const auto residual = [&](const kinds::Interval& range) {  // of an axis at pi / 4
+    const auto residual = [&](const kinds::Interval& range) {  // for an axis at pi / 4
         const kinds::AxisDirection kind{{0, 0, 1}, range, Vector3d(1, 0, 1)};
         return make_constraint(kind, first_ids(9), 1, rest)->residual(rest);
     };
@@ -96,7 +96,7 @@ TEST(Constraint, AxesThatAreInRangeStay) {
 }
 
 TEST(Constraint, PartnersInTrianglesMirror) {
-    // A point and a triangle on the other side of x = 1, whose mirror image of the point is at (3, 0.25, 0.25) but for a bump.
+    // A point and a triangle on the other side of x = 1, with the mirror image of the point at (3, 0.25, 0.25), up to a bump.
     Points rest(3, 4);
     rest.col(0) << -1, 0.25, 0.25;
     rest.col(1) << 3, 0, 0;
@@ -107,11 +107,11 @@ TEST(Constraint, PartnersInTrianglesMirror) {
     EXPECT_LT(exact->residual(rest), 1e-15);
     Points bumped = rest;
     bumped.col(0) += Vector3d(-0.4, 0.2, 0.6);
-    // Each side takes half of it.
+    // Each side moves by half of it.
     const Outcome o = outcome(*exact, bumped);
     EXPECT_LT((o.projected.col(0) - Vector3d(-1.2, 0.35, 0.55)).norm(), 1e-15);
     EXPECT_LT((o.projected.col(1) - Vector3d(3.2, 0.35, 0.55)).norm(), 1e-15);
-    // What is off at rest stays so.
+    // Deviations at rest are preserved.
     const Points off = Vector3d(0.4, 0.2, 0.6);
     kind.discrepancies = off;
     const auto nearly = make_constraint(kind, first_ids(4), 1, bumped);

@@ -1,4 +1,4 @@
-// What each kind of constraint admits.
+// Admissible sets of each kind of constraint.
 #include "outcome.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace ostraka {
 namespace {
 
-// What is admitted, measured on points that have the projected rows.
+// Measures of points that have the projected rows.
 
 struct Measured {
     Points rows, x;  ///< x: points whose rows are the projected ones, up to translation
@@ -24,19 +24,19 @@ double singular_value(const Points& rows, int which) { return Eigen::JacobiSVD<E
 double area(const Points& p) { return (p.col(1) - p.col(0)).cross(p.col(2) - p.col(0)).norm() / 2; }
 double volume(const Points& p) { return (p.col(1) - p.col(0)).cross(p.col(2) - p.col(0)).dot(p.col(3) - p.col(0)) / 6; }
 
-/// Angle between a direction and the axis that the best rotation from rest carries along.
+/// Angle between a direction and the axis transformed by the best rotation from rest.
 double angle_of_axis(const Example& e, const kinds::AxisDirection& kind, const Points& now) {
     const Points shape = e.rest.colwise() - e.rest.rowwise().mean();
     Vector3d axis = Eigen::JacobiSVD<Eigen::MatrixXd>(shape, Eigen::ComputeFullU).matrixU().col(0);
     if (kind.rest_direction) axis = *kind.rest_direction;
     const Matrix3d carried = Eigen::umeyama(shape, now, false).topLeftCorner<3, 3>();
-    const double found = angle(carried * axis, kind.direction);
-    return std::min(found, std::numbers::pi - found);
+    const double deviation = angle(carried * axis, kind.direction);
+    return std::min(deviation, std::numbers::pi - deviation);
 }
 
 double length(const Points& p, Eigen::Index a, Eigen::Index b) { return (p.col(b) - p.col(a)).norm(); }
 
-/// Checks what an example admits, kind by kind; returns false for kinds that other tests check.
+/// Checks the projection of an example by its kind; returns false for kinds that other tests check.
 struct Admits {
     const Example& e;
     const Measured m = projected_points(e);
@@ -252,13 +252,13 @@ struct Admits {
     }
 };
 
-TEST(Constraint, AdmitsWhatItsNameSays) {
+TEST(Constraint, AdmitsTheNamedShapes) {
     int checked = 0;
     for (const Example& e : examples()) checked += std::visit(Admits{e}, e.kind) ? 1 : 0;
     EXPECT_GT(checked, 40);
 }
 
-TEST(Constraint, ConstantsAreWhatTheyWereAtRest) {
+TEST(Constraint, ConstantsEqualTheirRestValues) {
     for (const Example& e : examples()) {
         const auto c = make(e);
         const std::string_view kind = name_of(e.kind);
@@ -288,7 +288,7 @@ TEST(Constraint, AnglesThatAreTooFarOffCollapseTheShorterSide) {
     EXPECT_EQ(o.projected.col(1).norm(), 0);
 }
 
-TEST(Constraint, FlatBendIsNone) {
+TEST(Constraint, AFlatBendIsZero) {
     Points rest(3, 4);
     rest.col(0) << 0, 0, 0;
     rest.col(1) << 1, 0.2, 0;
@@ -309,8 +309,8 @@ TEST(Constraint, CotangentLaplacianOfAFlatRingIsZero) {
     EXPECT_GT(make_constraint(kinds::Laplacian{}, first_ids(6), 1, rest)->residual(rest), 1e-2);
 }
 
-TEST(Constraint, SolidsOfRevolutionHaveTheAxisThatIsCarried) {
-    // A tilted cylinder: its axis is brought onto the line, whatever spin is left, and its shape is untouched.
+TEST(Constraint, SolidsOfRevolutionKeepTheTransformedAxis) {
+    // A tilted cylinder: its axis is moved onto the line, up to rotations about it, and its shape is unchanged.
     Points rest(3, 40);
     for (int i = 0; i < 40; ++i) rest.col(i) << std::cos(i), std::sin(i), 0.25 * i;
     const kinds::CoAxiality kind{{0, 1, 0.2}, {4, 5, 6}, Vector3d(0, 0, 1), Vector3d(0, 0, 0)};
@@ -329,12 +329,12 @@ TEST(Constraint, StationsShareTheirPoints) {
     EXPECT_LT((o.rows.col(0) - (rest.col(0) + 0.75 * rest.col(1)) / 1.75).norm(), 1e-15);
     EXPECT_LT((o.rows.col(1) - (0.25 * rest.col(1) + rest.col(2) + rest.col(3)) / 2.25).norm(), 1e-15);
     for (Eigen::Index s = 0; s < 2; ++s) EXPECT_LT((o.projected.col(s) - Vector3d(1, 2, o.rows(2, s))).norm(), 1e-15);
-    // Without shares, as each for itself.
+    // Without shares, each point counts for its own station.
     line.shares.assign(4, 0.0);
     const Outcome none = outcome(*make_constraint(line, first_ids(4), 1, rest), rest);
     line.shares.clear();
     EXPECT_EQ(none.rows, outcome(*make_constraint(line, first_ids(4), 1, rest), rest).rows);
-    // A station may live on shares alone, the last one too.
+    // A station may consist of shares only, also the last one.
     line.shares = {0, 0, 0.5, 0};
     const Outcome last = outcome(*make_constraint(line, first_ids(4), 1, rest), rest);
     ASSERT_EQ(last.rows.cols(), 3);
@@ -345,7 +345,7 @@ TEST(Constraint, StationsShareTheirPoints) {
 }
 
 TEST(Constraint, OneMeasureIsStretchedFromItsAnchors) {
-    // A rod from 0 to 4 that stands on its first point, to be 5 to 6 long; its measure is the height.
+    // A rod from 0 to 4 anchored at its first point, with a required length of 5 to 6; its measure is the height.
     Points rest(3, 5), points(3, 5);
     for (int i = 0; i < 5; ++i) rest.col(i) << 0.1 * i * i, 0, i;
     kinds::Proportion height_kept{{5, 6}, {{0, 4}, Vector3d(0, 0, 2)}};

@@ -1,4 +1,4 @@
-// Laws that every kind of constraint obeys, and what is refused.
+// Properties of every kind of constraint, and invalid arguments.
 #include "outcome.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Constraint, ProjectingTwiceIsProjectingOnce) {
     }
 }
 
-TEST(Constraint, ExamplesBreakWhatTheyAskFor) {
+TEST(Constraint, ExamplesViolateTheirConstraint) {
     for (const Example& e : examples()) EXPECT_GT(make(e)->residual(e.points), 1e-3) << e.name;
 }
 
@@ -48,29 +48,29 @@ TEST(Constraint, MovesWithItsPoints) {
     const Matrix3d rotation = some_rotation();
     const Vector3d by(3, -2, 5);
     for (const Example& e : examples()) {
-        const Matrix3d own = e.rotates ? rotation : Matrix3d::Identity();
-        const Example there = moved(e, own, by);
-        const auto c = make(e), d = make(there);
-        const Outcome o = outcome(*c, e.points), p = outcome(*d, there.points);
+        const Matrix3d turn = e.rotates ? rotation : Matrix3d::Identity();
+        const Example moved_example = moved(e, turn, by);
+        const auto c = make(e), d = make(moved_example);
+        const Outcome o = outcome(*c, e.points), p = outcome(*d, moved_example.points);
         const Eigen::VectorXd sums = matrix_of(*c).rowwise().sum();
-        EXPECT_LT((own * o.projected + by * sums.transpose() - p.projected).cwiseAbs().maxCoeff(), 1e-8) << e.name;
-        EXPECT_NEAR(c->residual(e.points), d->residual(there.points), 1e-8) << e.name;
+        EXPECT_LT((turn * o.projected + by * sums.transpose() - p.projected).cwiseAbs().maxCoeff(), 1e-8) << e.name;
+        EXPECT_NEAR(c->residual(e.points), d->residual(moved_example.points), 1e-8) << e.name;
     }
 }
 
 TEST(Constraint, ResidualIsTheSameFarFromTheOrigin) {
     for (const Example& e : examples()) {
-        const Example there = moved(e, Matrix3d::Identity(), Vector3d(1e6, -1e6, 2e6));
-        EXPECT_NEAR(make(e)->residual(e.points), make(there)->residual(there.points), 1e-7) << e.name;
+        const Example moved_example = moved(e, Matrix3d::Identity(), Vector3d(1e6, -1e6, 2e6));
+        EXPECT_NEAR(make(e)->residual(e.points), make(moved_example)->residual(moved_example.points), 1e-7) << e.name;
     }
 }
 
-TEST(Constraint, RowsAreWhatTheMapSays) {
+TEST(Constraint, RowsMatchTheMap) {
     for (const Example& e : examples()) {
         const auto c = make(e);
-        Points own(3, static_cast<Eigen::Index>(e.ids.size()));
-        for (Eigen::Index i = 0; i < own.cols(); ++i) own.col(i) = e.points.col(e.ids[static_cast<std::size_t>(i)]);
-        EXPECT_LT((outcome(*c, e.points).rows - own * matrix_of(*c).transpose()).cwiseAbs().maxCoeff(), 1e-12) << e.name;
+        Points selected(3, static_cast<Eigen::Index>(e.ids.size()));
+        for (Eigen::Index i = 0; i < selected.cols(); ++i) selected.col(i) = e.points.col(e.ids[static_cast<std::size_t>(i)]);
+        EXPECT_LT((outcome(*c, e.points).rows - selected * matrix_of(*c).transpose()).cwiseAbs().maxCoeff(), 1e-12) << e.name;
         EXPECT_EQ(c->map().rows - c->map().direct > 0, !c->map().entries.empty()) << e.name;
     }
 }
@@ -83,7 +83,7 @@ TEST(Constraint, CentredRowsStayCentred) {
     }
 }
 
-TEST(Constraint, MomentsSayWhatTheProjectionSays) {
+TEST(Constraint, MomentsAgreeWithTheProjection) {
     int count = 0;
     for (const Example& e : examples()) {
         const auto c = make(e);
@@ -124,7 +124,7 @@ TEST(Constraint, DegeneratePointsGiveNumbers) {
     }
 }
 
-TEST(Constraint, RefusesWhatMakesNoSense) {
+TEST(Constraint, RefusesInvalidArguments) {
     const Points rest = random_points(8, 5);
     const auto refused = [&](const ConstraintKind& kind, const std::vector<int>& ids, double weight = 1) {
         const std::string name(name_of(kind));

@@ -186,7 +186,8 @@ inline std::unique_ptr<Constraint> make(const Example& e, double weight = 1) {
     return make_constraint(e.kind, e.ids, weight, e.rest);
 }
 
-/// Visits the parameters of a kind by name and by how they move with the points: as places, directions, differences, or not.
+/// Visits the parameters of a kind by name and by their transformation with the points: as positions, directions, differences, or
+/// none.
 template <class Visit>
 struct VisitParameters {
     Visit& visit;

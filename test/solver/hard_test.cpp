@@ -8,7 +8,7 @@ namespace {
 
 using List = std::vector<std::unique_ptr<Constraint>>;
 
-/// A closed chain of points, each of which keeps its place against its neighbours.
+/// A closed chain of points with Laplacian displacements.
 struct Chain {
     static constexpr int n = 30;
     Points rest{3, n};
@@ -32,7 +32,7 @@ TEST(Hard, PositionsGiveTheConstrainedMinimum) {
     Chain chain;
     chain.pin(true, 0, {0, 0, 1});
     chain.pin(true, 11, {0.5, 0, 0});
-    // The same by Lagrange multipliers.
+    // The same with Lagrange multipliers.
     const int n = Chain::n;
     Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n + 2, n + 2), right = Eigen::MatrixXd::Zero(n + 2, 3);
     for (int i = 0; i < n; ++i) {
@@ -60,7 +60,8 @@ TEST(Hard, PositionsGiveTheConstrainedMinimum) {
 }
 
 TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
-    // Means of threes on two lines; nothing is lost along these. The same by Lagrange multipliers of all three coordinates.
+    // Means of three points each on two lines; motion along the lines is free. The same with Lagrange multipliers for all three
+    // coordinates.
     Chain chain;
     chain.pin(false, 0, {0, 0, 0});
     const int n = Chain::n;
@@ -107,7 +108,7 @@ TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
     EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(x.data(), 3 * n) - wanted).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(Hard, LinesThatContradictEachOtherAreSaid) {
+TEST(Hard, ContradictoryLinesAreReported) {
     Chain chain;
     chain.pin(false, 0, {0, 0, 0});
     for (const double height : {-1.0, 1.0}) {
@@ -139,7 +140,7 @@ TEST(Hard, ShapesHold) {
     EXPECT_LT(solver.constraint(solver.size() - 3).normalised_residual(x), 1e-5);
 }
 
-TEST(Hard, ContradictionsAreSaid) {
+TEST(Hard, ContradictionsAreReported) {
     Chain chain;
     chain.pin(true, 0, {0, 0, 1});
     chain.pin(true, 0, {0, 0, -1});
@@ -154,7 +155,7 @@ TEST(Hard, ContradictionsAreSaid) {
     EXPECT_EQ(summary.of_constraint[0], 0);
 }
 
-TEST(Hard, RefusesWhatMakesNoSense) {
+TEST(Hard, RefusesInvalidArguments) {
     Chain chain;
     EXPECT_THROW(HardSolver(std::move(chain.list), {true}, chain.rest), Error);
     Chain other;

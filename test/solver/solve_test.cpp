@@ -118,10 +118,10 @@ SolveOptions steps(int iterations, int window = 5) {
     return options;
 }
 
-/// As an identity: the cage is the shape.
+/// Identity weights: the cage is the shape.
 CageWeights identity(Eigen::Index n) { return CageWeights::Identity(n, n); }
 
-TEST(CageSpace, EqualsMeshSpaceWhereTheCageIsTheShape) {
+TEST(CageSpace, EqualsMeshSpaceIfTheCageIsTheShape) {
     const int n = 7;
     const Points rest = grid(n).colwise() + Eigen::Vector3d(1000, -500, 200);
     MeshSpaceSolver mesh(mixed(n, rest), rest);
@@ -205,7 +205,7 @@ TEST(CageSpace, WeightsAndTargetsCanChange) {
     EXPECT_EQ(y.times.symbolic, 0);
 }
 
-TEST(CageSpace, GroupsAloneAreDrawnToRest) {
+TEST(CageSpace, GroupsAloneAreRegularisedTowardsRest) {
     const int n = 9, cage = 6;
     const CageWeights w = random_weights(n * n, cage);
     Points rest_cage(3, cage);
@@ -276,11 +276,11 @@ TEST(MeshSpace, SolversOfSeveralThreadsDoNotDisturbEachOther) {
             set_threads(1);
             for (int lap = 0; lap < 5; ++lap) wrong += solved() != alone ? 1 : 0;
         });
-    for (std::thread& one : threads) one.join();
+    for (std::thread& thread : threads) thread.join();
     EXPECT_EQ(wrong, 0);
 }
 
-TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {
+TEST(MeshSpace, UnconstrainedPartsKeepTheirMean) {
     const int n = 6;
     Points rest(3, 2 * n * n + 1);
     rest << grid(n), grid(n).colwise() + Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(9, 9, 9);
@@ -303,8 +303,8 @@ TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {
     EXPECT_EQ(x.col(2 * n * n), alone);  // in no constraint
 }
 
-TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
-    // Two Laplacians over six points leave much open.
+TEST(MeshSpace, SingularSystemsAreRegularisedTowardsRest) {
+    // Two Laplacians over six points leave many degrees of freedom.
     const Points rest = grid(4);
     List list;
     list.push_back(make_constraint(kinds::Laplacian{}, ring(4, 1, 1), 1, rest));
@@ -320,9 +320,9 @@ TEST(MeshSpace, SingularSystemsAreDrawnToRest) {
     EXPECT_LT((x - rest).cwiseAbs().maxCoeff(), 3);
 }
 
-TEST(MeshSpace, StationsThatShareTheirPointsLeaveNoWaves) {
-    // A tube of 41 rings whose points want to stay, its axis on a line that leaves it: what holds it there must grow along the
-    // tube.
+TEST(MeshSpace, StationsWithSharedPointsLeaveNoWaves) {
+    // A tube of 41 rings with closeness, whose axis is constrained to a line that diverges from it: the force must increase along
+    // the tube.
     constexpr int rings = 41, sides = 8, step = 10;
     Points rest(3, rings * sides);
     for (int k = 0; k < rings; ++k)
@@ -378,7 +378,7 @@ TEST(MeshSpace, ContradictoryPositionsMeetInTheMiddle) {
     EXPECT_NEAR(solver.constraint(1).residual(x), 1, 1e-12);
 }
 
-TEST(MeshSpace, WeightsAllZeroLeavePointsWhereTheyAre) {
+TEST(MeshSpace, ZeroWeightsLeavePointsUnchanged) {
     const Points rest = grid(5);
     List list;
     add_laplacians(list, 5, rest, 0);
@@ -391,7 +391,7 @@ TEST(MeshSpace, WeightsAllZeroLeavePointsWhereTheyAre) {
     EXPECT_EQ(summary.objective.back(), 0);
 }
 
-TEST(MeshSpace, NoConstraintsNoPoints) {
+TEST(MeshSpace, WithoutConstraintsThereAreNoUnknowns) {
     Points nothing(3, 0);
     MeshSpaceSolver empty({}, nothing);
     EXPECT_TRUE(empty.solve(nothing).usable);
@@ -408,16 +408,16 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
     MeshSpaceSolver solver(mixed(n, rest), rest);
     Points warm = rest;
     solver.solve(warm, steps(2));
-    // A few rows, another few, back, many, none, again: each time as if made anew.
+    // A few rows, a few others, back, many, none, again: each time as if newly constructed.
     List now = mixed(n, rest);
-    const auto expect_same = [&](const std::string& what, int updated) {
+    const auto expect_same = [&](const std::string& name, int updated) {
         List copy = mixed(n, rest);
         for (std::size_t i = 0; i < copy.size(); ++i) copy[i]->set_weight(now[i]->weight());
         MeshSpaceSolver fresh(std::move(copy), rest);
         Points a = rest, b = rest;
         fresh.solve(a, steps(6));
-        EXPECT_EQ(solver.solve(b, steps(6)).updated_rows, updated) << what;
-        EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9) << what;
+        EXPECT_EQ(solver.solve(b, steps(6)).updated_rows, updated) << name;
+        EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9) << name;
     };
     const auto set = [&](std::size_t i, double w) {
         solver.set_weight(i, w);
@@ -440,7 +440,7 @@ TEST(MeshSpace, WeightsAndTargetsCanChange) {
     expect_same("many", 0);
 }
 
-TEST(Solver, RefusesWhatMakesNoSense) {
+TEST(Solver, RefusesInvalidArguments) {
     const Points rest = grid(3);
     List beyond;
     beyond.push_back(make_constraint(kinds::Closeness{}, {8}, 1, rest));

@@ -17,7 +17,7 @@ struct Samples {
     std::vector<bool> truth;
 };
 
-/// Yes where exactly one of the first two features is above 0; the third one says nothing.
+/// Yes where exactly one of the first two features is above 0; the third one is uninformative.
 Samples either_or(std::size_t count, std::uint64_t seed, double mistaken = 0) {
     Samples samples;
     Random random(seed);

@@ -92,7 +92,7 @@ TEST(Linkage, ByHand) {
     EXPECT_EQ(leaf_order(tree), (std::vector<int>{0, 2, 1, 3}));
 }
 
-/// The textbook way: the nearest two of all clusters, by the mean of all distances between their samples.
+/// The textbook algorithm: joins the two clusters with the smallest mean distance between their samples.
 std::vector<double> slow_heights(const Eigen::MatrixXd& distances) {
     std::vector<std::vector<int>> clusters;
     for (int i = 0; i < distances.rows(); ++i) clusters.push_back({i});

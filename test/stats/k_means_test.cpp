@@ -89,7 +89,7 @@ TEST(KMeans, HandlesIdenticalAndFewSamples) {
 }
 
 TEST(KMeans, NeverLosesACluster) {
-    // One centre drawn far out and duplicates elsewhere are what empties clusters.
+    // A distant initial centre and duplicates elsewhere cause empty clusters.
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         Random random(seed);
         Eigen::MatrixXd samples(20, 2);
@@ -157,7 +157,7 @@ TEST(Silhouette, ByHand) {
     Eigen::MatrixXd distances(3, 3);
     distances << 0, 1, 10, 1, 0, 9, 10, 9, 0;
     EXPECT_EQ(silhouettes_of_distances(distances, {0, 0, 1}), s);
-    // Noise has none and counts for nobody.
+    // Noise samples have no silhouette and do not affect others.
     const std::vector<double> with_noise = silhouettes_of_samples(column({0, 1, 3, 10}), {0, 0, -1, 1});
     EXPECT_EQ(with_noise[2], 0);
     EXPECT_DOUBLE_EQ(with_noise[0], 9.0 / 10);

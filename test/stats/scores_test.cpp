@@ -113,11 +113,11 @@ TEST(BestThreshold, LiesInTheMiddleOfTheWidestGap) {
 }
 
 TEST(BestThreshold, HandlesTiesAndTheWrongSide) {
-    // All the same: all positive is the best that can be.
+    // All equal: classifying all as positive is optimal.
     const Threshold same = best_threshold({3, 3, 3}, {true, false, true});
     EXPECT_DOUBLE_EQ(same.scores.f1(), 0.8);
     EXPECT_TRUE(same.positive(3));
-    // Positives have the small values: calling all positive is best from above.
+    // Positives have the small values: for thresholds from above, classifying all as positive is optimal.
     const Threshold wrong = best_threshold({1, 2, 8, 9}, {true, true, false, false});
     EXPECT_DOUBLE_EQ(wrong.scores.f1(), 2.0 / 3);
     EXPECT_TRUE(wrong.positive(1));
@@ -173,15 +173,15 @@ TEST(CrossValidation, EverySampleIsTestedOncePerRepeatAndNeverTrainedOn) {
     EXPECT_EQ(validation.positive[22], 0);
 }
 
-/// Answers by the best threshold of one value a sample.
+/// Answers of the best threshold, one value per sample.
 Learner by_threshold(const std::vector<double>& values, const std::vector<bool>& truth) {
     return [&](const std::vector<std::size_t>& training, const std::vector<std::size_t>& test) {
         std::vector<double> v;
-        std::vector<bool> t, said;
+        std::vector<bool> t, answers;
         for (const std::size_t i : training) v.push_back(values[i]), t.push_back(truth[i]);
         const Threshold threshold = best_threshold(v, t);
-        for (const std::size_t i : test) said.push_back(threshold.positive(values[i]));
-        return said;
+        for (const std::size_t i : test) answers.push_back(threshold.positive(values[i]));
+        return answers;
     };
 }
 
@@ -263,7 +263,7 @@ TEST(DeviationInterval, HasTheNominalCoverage) {
             relative += v->low <= 0.08 && 0.08 <= v->high ? 1 : 0;
             skewed += l->low <= truth && truth <= l->high ? 1 : 0;
         }
-        // 950 with a deviation of 7, less 1 % for what is only true of many values; few values give wider intervals than need be.
+        // 950 with a deviation of 7, minus 1 % since the formula is asymptotic; few values give wider intervals than necessary.
         for (const int covered : {normal, skewed, relative}) EXPECT_GE(covered, 913) << n;
         if (n == 40) {
             EXPECT_LE(normal, 971);

@@ -1,4 +1,4 @@
-// An independent check that synthetic meshes do not cross themselves.
+// An independent check that synthetic meshes have no self-intersections.
 #include "ostraka/synthetic/make_mesh.h"
 
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>

@@ -83,9 +83,9 @@ TEST(Heads, WearErodesTheNoseInProportion) {
         const HeadCast worn = cast_head(archetype(3), options);
         EXPECT_GE(worn.wear, wear / 2);
         EXPECT_LE(worn.wear, wear);
-        const double taken = distance(worn, fresh, HeadPart::nose);
-        EXPECT_GT(taken, 1.5 * last);
-        last = taken;
+        const double erosion = distance(worn, fresh, HeadPart::nose);
+        EXPECT_GT(erosion, 1.5 * last);
+        last = erosion;
     }
 }
 
@@ -142,7 +142,7 @@ TEST(Heads, StandOnTheirOwnBodies) {
     const auto of_head = [](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; };
     EXPECT_NEAR(area_where(complete, of_head) / area_where(head, of_head), 1, 0.05);
     EXPECT_GT(area_where(complete, [](HeadPart part) { return part == HeadPart::body; }), area_where(head, of_head));
-    // Up goes from the body to the head.
+    // The upward direction points from the body to the head.
     const Vector up(complete.up[0], complete.up[1], complete.up[2]);
     double low = 1e300, high = -1e300;  // of the body's faces, of the head's
     for (const Face f : complete.mesh.faces()) {

@@ -38,10 +38,10 @@ TEST(MakeCommand, WritesMeshAndLabelsThatAgree) {
 
 TEST(MakeCommand, SameBytesForAnyNumberOfThreads) {
     Scratch scratch;
-    const Path one = scratch / "one.ply", two = scratch / "two.ply";
-    ASSERT_EQ(run_command("mesh make torus " + one.string() + " --vertices 2000 --threads 1").code, 0);
-    ASSERT_EQ(run_command("mesh make torus " + two.string() + " --vertices 2000 --threads 2").code, 0);
-    EXPECT_EQ(read_file(one), read_file(two));
+    const Path first_file = scratch / "one.ply", second_file = scratch / "two.ply";
+    ASSERT_EQ(run_command("mesh make torus " + first_file.string() + " --vertices 2000 --threads 1").code, 0);
+    ASSERT_EQ(run_command("mesh make torus " + second_file.string() + " --vertices 2000 --threads 2").code, 0);
+    EXPECT_EQ(read_file(first_file), read_file(second_file));
 }
 
 TEST(MakeCommand, ListsObjectsPartsAndLabels) {

@@ -10,7 +10,7 @@ using namespace ostraka;
 
 namespace {
 
-SyntheticMesh made(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1, double noise = 0) {
+SyntheticMesh object_mesh(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1, double noise = 0) {
     MakeOptions options;
     options.vertices = vertices;
     options.seed = seed;
@@ -65,7 +65,7 @@ class EveryObject : public testing::TestWithParam<std::string> {};
 TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
     const SyntheticObject& object = synthetic_object(GetParam());
     for (const std::size_t vertices : {object.minimum_vertices, std::size_t{4000}, std::size_t{8000}}) {
-        const SyntheticMesh m = made(object.name, vertices, vertices);
+        const SyntheticMesh m = object_mesh(object.name, vertices, vertices);
         EXPECT_NEAR(static_cast<double>(m.mesh.number_of_vertices()), static_cast<double>(vertices),
                     0.01 * static_cast<double>(vertices));
         EXPECT_TRUE(CGAL::is_closed(m.mesh));
@@ -79,7 +79,7 @@ TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
 
 TEST_P(EveryObject, TrianglesAreUniformAndFaceOutward) {
     const SyntheticObject& object = synthetic_object(GetParam());
-    const SyntheticMesh m = made(object.name, 8000);
+    const SyntheticMesh m = object_mesh(object.name, 8000);
     const double edge = mean_edge_length(m.mesh);
     std::size_t thin = 0;
     for (const Face f : m.mesh.faces()) {
@@ -98,7 +98,7 @@ TEST_P(EveryObject, TrianglesAreUniformAndFaceOutward) {
 TEST_P(EveryObject, VerticesLieOnTheSurfaceAndPartsAreWhole) {
     const SyntheticObject& object = synthetic_object(GetParam());
     ASSERT_EQ(object.parts.size(), object.part_colours.size());
-    const SyntheticMesh m = made(object.name, 10000, 3);
+    const SyntheticMesh m = object_mesh(object.name, 10000, 3);
     // A few vertices at bends sharper than the triangles can follow stay a little off, where moving them would fold a triangle.
     const double diagonal = box_diagonal(m.mesh), edge = mean_edge_length(m.mesh);
     std::size_t off = 0;
@@ -114,9 +114,9 @@ TEST_P(EveryObject, VerticesLieOnTheSurfaceAndPartsAreWhole) {
 }
 
 TEST_P(EveryObject, SlopeKeepsItsBound) {
-    // What lets the mesher skip blocks: no surface within |value| - slack of a point.
+    // The condition for skipping blocks: no surface within |value| - slack of a point.
     const SyntheticObject& object = synthetic_object(GetParam());
-    const SyntheticMesh m = made(object.name, object.minimum_vertices);
+    const SyntheticMesh m = object_mesh(object.name, object.minimum_vertices);
     std::vector<Point> surface;
     for (const Vertex v : m.mesh.vertices()) surface.push_back(m.mesh.point(v));
     const auto box = object.box();
@@ -136,7 +136,7 @@ TEST_P(EveryObject, SlopeKeepsItsBound) {
 
 TEST_P(EveryObject, GradientIsThatOfTheValue) {
     const SyntheticObject& object = synthetic_object(GetParam());
-    const SyntheticMesh m = made(object.name, object.minimum_vertices);
+    const SyntheticMesh m = object_mesh(object.name, object.minimum_vertices);
     const double step = 1e-6 * box_diagonal(m.mesh);
     std::size_t odd = 0;  // the second derivative jumps at some curves, where differences err more
     for (const Vertex v : m.mesh.vertices()) {
@@ -160,7 +160,7 @@ TEST(MakeMesh, AreaAndVolumeConvergeToTheFormulas) {
         if (!object.exact_area) continue;
         double last_area = 1, last_volume = 1;
         for (const std::uint64_t vertices : {1000, 4000, 16000}) {
-            const SyntheticMesh m = made(name, vertices);
+            const SyntheticMesh m = object_mesh(name, vertices);
             const double area_error = std::abs(surface_area(m.mesh) / *object.exact_area - 1);
             const double volume_error = std::abs(volume(m.mesh) / *object.exact_volume - 1);
             // Second order in the edge length: four times the vertices, a quarter of the error.
@@ -175,7 +175,7 @@ TEST(MakeMesh, AreaAndVolumeConvergeToTheFormulas) {
 
 TEST(MakeMesh, CapsOfTheSphereHaveTheirArea) {
     const SyntheticObject& sphere = synthetic_object("sphere");
-    const SyntheticMesh m = made("sphere", 40000);
+    const SyntheticMesh m = object_mesh("sphere", 40000);
     std::vector<double> area(sphere.parts.size(), 0);
     for (const Face f : m.mesh.faces()) area[static_cast<std::size_t>(m.face_labels[f.idx()])] += face_area(m.mesh, f);
     const double exact_area = *sphere.exact_area, edge = mean_edge_length(m.mesh), r = 50;
@@ -188,25 +188,25 @@ TEST(MakeMesh, CapsOfTheSphereHaveTheirArea) {
 TEST(MakeMesh, SameToTheBitForAnyNumberOfThreads) {
     for (const char* name : {"teapot", "box"}) {
         set_threads(1);
-        const SyntheticMesh one = made(name, 6000, 7, 0.1);
+        const SyntheticMesh single_threaded = object_mesh(name, 6000, 7, 0.1);
         set_threads(2);
-        const SyntheticMesh two = made(name, 6000, 7, 0.1);
+        const SyntheticMesh two_threaded = object_mesh(name, 6000, 7, 0.1);
         set_threads(0);
-        EXPECT_EQ(mesh_checksum(one.mesh), mesh_checksum(two.mesh));
-        EXPECT_EQ(one.face_labels, two.face_labels);
-        EXPECT_EQ(one.vertex_labels, two.vertex_labels);
+        EXPECT_EQ(mesh_checksum(single_threaded.mesh), mesh_checksum(two_threaded.mesh));
+        EXPECT_EQ(single_threaded.face_labels, two_threaded.face_labels);
+        EXPECT_EQ(single_threaded.vertex_labels, two_threaded.vertex_labels);
     }
 }
 
 TEST(MakeMesh, SeedsGiveDifferentMeshesOfOneObject) {
-    const SyntheticMesh one = made("torus", 5000, 1), two = made("torus", 5000, 2);
-    EXPECT_NE(mesh_checksum(one.mesh), mesh_checksum(two.mesh));
-    EXPECT_NEAR(surface_area(one.mesh), surface_area(two.mesh), 1e-3 * surface_area(one.mesh));
+    const SyntheticMesh first_mesh = object_mesh("torus", 5000, 1), second_mesh = object_mesh("torus", 5000, 2);
+    EXPECT_NE(mesh_checksum(first_mesh.mesh), mesh_checksum(second_mesh.mesh));
+    EXPECT_NEAR(surface_area(first_mesh.mesh), surface_area(second_mesh.mesh), 1e-3 * surface_area(first_mesh.mesh));
 }
 
 TEST(MakeMesh, NoiseStaysWithinItsShareOfTheEdge) {
     const SyntheticObject& object = synthetic_object("sphere");
-    const SyntheticMesh m = made("sphere", 5000, 1, 0.2);
+    const SyntheticMesh m = object_mesh("sphere", 5000, 1, 0.2);
     const double edge = mean_edge_length(m.mesh);
     double maximum = 0;
     for (const Vertex v : m.mesh.vertices()) maximum = std::max(maximum, std::abs(object.value(m.mesh.point(v))));
@@ -217,7 +217,7 @@ TEST(MakeMesh, NoiseStaysWithinItsShareOfTheEdge) {
 TEST(MakeMesh, RefusesImpossibleRequests) {
     const auto kind = [](const std::string& name, std::uint64_t vertices, double noise) {
         try {
-            made(name, vertices, 1, noise);
+            object_mesh(name, vertices, 1, noise);
         } catch (const Error& error) {
             return error.kind();
         }

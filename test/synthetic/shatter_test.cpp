@@ -34,7 +34,7 @@ TEST(Shatter, APotIsClosedAndAsThickAsRequested) {
         options.shape = shape;
         const Mesh pot = make_pot(options);
         EXPECT_TRUE(CGAL::is_closed(pot));
-        // Area times half of the wall, but for rim and curvature.
+        // Area times half of the wall thickness, up to rim and curvature.
         EXPECT_NEAR(volume(pot), 0.5 * options.wall * surface_area(pot), 0.15 * volume(pot));
     }
     PotOptions thick = coarse();
@@ -90,7 +90,7 @@ TEST(Shatter, BreaksArchAndWearDiffersOverThem) {
     const auto flat = shatter(ball, options);
     options.bow = 0.3;
     const auto arched = shatter(ball, options);
-    // A plane through the middles of the break's faces, by the spread across it.
+    // A plane through the centroids of the fracture's faces; the spread is measured perpendicular to it.
     const auto off_plane = [](const Sherd& sherd) {
         Eigen::Vector3d mean = Eigen::Vector3d::Zero();
         double count = 0;
@@ -164,13 +164,13 @@ TEST(Shatter, NeedsAnInside) {
     open.triangles.pop_back();
     EXPECT_THROW((void)shatter(build_mesh(open), {}), Error);
     EXPECT_THROW((void)shatter(Mesh(), {}), Error);
-    ShatterOptions one;
-    one.pieces = 1;
-    EXPECT_EQ(shatter(build_mesh(test::octahedron_sphere(2)), one).size(), 1U);
+    ShatterOptions options;
+    options.pieces = 1;
+    EXPECT_EQ(shatter(build_mesh(test::octahedron_sphere(2)), options).size(), 1U);
 }
 
 TEST(Shatter, ABodyThatCrossesItselfIsRefusedAsAnErrorOrBroken) {
-    // Pots that stand in each other: cuts run along where they cross.
+    // Nested pots: cuts run along their intersection.
     const Mesh pot = make_pot(coarse());
     TriangleSoup soup = to_soup(pot);
     const std::size_t points = soup.points.size(), triangles = soup.triangles.size();

@@ -1,4 +1,4 @@
-// Generated statuettes: the stated deviations are those of the surface, and what is planted is found.
+// Synthetic statuettes: the surface has the specified deviations, and planted properties are found.
 #include "ostraka/synthetic/statuettes.h"
 
 #include "ostraka/core/error.h"
@@ -21,7 +21,7 @@ bool closed(const Mesh& mesh) {
     return true;
 }
 
-/// The place where the surface is crossed, walking from `inner` (inside) to `outer` along a horizontal ray from `centre`.
+/// The point where the surface is crossed, walking from `inner` (inside) to `outer` along a horizontal ray from `centre`.
 double crossing(const SyntheticObject& object, const Eigen::Vector2d& centre, double angle, double z, double inner,
                 double outer) {
     const auto value = [&](double r) {
@@ -69,7 +69,7 @@ TEST(Statuettes, OvalityAndItsDriftAreThoseOfTheSections) {
     const auto low = harmonic(*object, 40, 2, 19), high = harmonic(*object, 80, 2, 19);
     EXPECT_NEAR(std::abs(low), 0.04, 0.0005);
     EXPECT_NEAR(std::abs(high), 0.04, 0.0005);
-    // The second harmonic's phase turns twice as fast as the direction.
+    // The second harmonic's phase rotates twice as fast as the direction.
     double turned = -(std::arg(high) - std::arg(low)) / 2 * 180 / pi;
     turned = std::remainder(turned, 180);
     EXPECT_NEAR(turned, 40 * 40 / joint, 0.2);
@@ -131,7 +131,7 @@ TEST(Statuettes, GradientAndSlopeBoundHold) {
             const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(k);
             numeric[k] = (object->sample(at + step).value - object->sample(at - step).value) / (2 * h);
         }
-        // At creases of the distance both one-sided slopes are right; they are met rarely.
+        // At creases of the distance both one-sided slopes are valid; such points are rare.
         steepest = std::max(steepest, numeric.norm());
         if ((numeric - s.gradient).norm() < 1e-4) continue;
         const double jump = std::abs(object->sample(at + h * s.gradient).value - s.value - h * s.gradient.squaredNorm());

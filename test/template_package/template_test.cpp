@@ -77,14 +77,14 @@ struct Ball : Scratch {
         const auto result = run_command(arguments());
         EXPECT_EQ(result.code, 0) << result.out << result.err;
     }
-    /// What loading has to say, after a change.
+    /// Findings of loading after a change.
     [[nodiscard]] std::string findings(bool defects) const {
         std::string text;
         for (const Finding& finding : load_template(read_template(*this / "ball.template.json")).findings)
             if (finding.defect == defects) text += finding.where + ": " + finding.text + "\n";
         return text;
     }
-    /// Without checksums, so that a change is judged by what it means.
+    /// Without checksums, so that the effect of a change is tested.
     void forget_checksums() const {
         std::string text = read_file(*this / "ball.template.json");
         const std::size_t begin = text.find("  \"checksums\""), end = text.find("},\n", begin) + 3;
@@ -194,7 +194,7 @@ TEST(Template, EachInconsistentPartIsReported) {
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }),
                       "does not match the size"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ranges.json", "{"); }), "ranges.json: line 1"));
-    // What contradicts without being wrong.
+    // Contradictions that are not defects.
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"unit\": \"mm\"", "\"unit\": \"cm\"")),
                       "the unit of the annotations is 'mm', that of the template 'cm': a mesh has only one unit"));
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"up\": [0.0, 0.0, 2.0]", "\"up\": [0, 1, 0]"), false),
@@ -236,7 +236,7 @@ TEST(Template, PartsStayInItsFolder) {
         EXPECT_TRUE(holds(refused.err, "--allow-outside")) << refused.err;
     }
     EXPECT_EQ(with("../ball.ply", " --allow-outside").code, 0);
-    // The arrays that attributes name stay as well, and a pipe is no part.
+    // Arrays named by attributes are kept as well, and a pipe is not a valid file.
     AnnotationSet set = read_annotations(ball / "ball.ant.json", ball.mesh);
     for (const std::string& name : {std::string("../secret.npy"), ball.at("cage.ply"), std::string("cage.ply")}) {
         set.annotations[0].attributes.resize(1);
@@ -265,7 +265,7 @@ TEST(Template, PartsStayInItsFolder) {
     EXPECT_TRUE(holds(read_file(ball / "inner/p.template.json"), "\"ball.ply\""));
     EXPECT_EQ(read_file(ball / "inner/ball.ply"), read_file(ball / "ball.ply"));
     EXPECT_EQ(run_command("template check " + ball.at("inner/p.template.json")).code, 0);
-    // A copy never replaces one input by another.
+    // A copy never replaces an input.
     EXPECT_EQ(run_command(pack + " --copy --landmarks " + ball.at("inner/ball.ply")).code, 2);
 }
 

@@ -1,4 +1,4 @@
-// README.md and the pages in doc/: what they link to and the files they name exist.
+// README.md and the pages in doc/: their link targets and named files exist.
 #include "scratch.h"
 
 #include <regex>
@@ -15,12 +15,12 @@ std::vector<Path> pages() {
     return result;
 }
 
-/// What the first group of the pattern matches in the text.
+/// Matches of the first group of the pattern in the text.
 std::vector<std::string> all_matches(const std::string& text, const std::string& pattern) {
-    std::vector<std::string> found;
+    std::vector<std::string> matches;
     const std::regex expression(pattern);
-    for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) found.push_back((*i)[1].str());
-    return found;
+    for (std::sregex_iterator i(text.begin(), text.end(), expression), end; i != end; ++i) matches.push_back((*i)[1].str());
+    return matches;
 }
 
 TEST(Pages, LinksResolve) {
@@ -33,7 +33,7 @@ TEST(Pages, LinksResolve) {
     EXPECT_GT(count, 50U);
 }
 
-TEST(Pages, FilesTheyNameExist) {
+TEST(Pages, NamedFilesExist) {
     const Path source(OSTRAKA_SOURCE_DIR);
     std::size_t count = 0;
     for (const Path& page : pages()) {

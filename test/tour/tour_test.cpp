@@ -1,6 +1,5 @@
-// doc/tour.md, run in order in a fresh folder: what each block of commands (sh) writes to stdout is the block that follows it
-// (text). There a line "..." stands for one line or more that are left out, and a line that ends in "..." is compared up to
-// there.
+// doc/tour.md, run in order in a fresh folder: the output of each block of commands (sh) is the following block (text). There a
+// line "..." stands for one or more omitted lines, and a line that ends in "..." is compared up to that point.
 #include "scratch.h"
 
 #include <algorithm>
@@ -40,11 +39,11 @@ bool page_shows(std::span<const std::string> shown, std::span<const std::string>
 }
 
 struct Step {
-    std::size_t line;  ///< of the page, where its commands begin
+    std::size_t line;  ///< line of the page where its commands begin
     std::string commands, shown;
 };
 
-/// The steps of a page; fails the test where a block of commands is not followed by what it prints.
+/// The steps of a page; the test fails if a block of commands is not followed by its output.
 std::vector<Step> steps_of(const std::string& page) {
     std::vector<Step> steps;
     std::istringstream in(page);
@@ -72,7 +71,7 @@ std::vector<Step> steps_of(const std::string& page) {
     return steps;
 }
 
-TEST(Tour, ComparisonFindsWhatDrifted) {
+TEST(Tour, ComparisonDetectsDeviations) {
     const auto shows = [](const std::string& shown, const std::string& printed) {
         return page_shows(lines_of(shown), lines_of(printed));
     };
@@ -88,7 +87,7 @@ TEST(Tour, ComparisonFindsWhatDrifted) {
     EXPECT_FALSE(shows("a  c...\n", "a  b  1\n"));
 }
 
-TEST(Tour, PrintsWhatThePageSays) {
+TEST(Tour, PrintsTheOutputOfThePage) {
     const Path source(OSTRAKA_SOURCE_DIR);
     const std::vector<Step> steps = steps_of(read_file(source / "doc" / "tour.md"));
     ASSERT_GE(steps.size(), 10U);

@@ -49,7 +49,7 @@ void expect_whole(const BoundMesh& bound) {
 
 }  // namespace
 
-TEST(BoundMesh, EverythingFollowsOneStepAfterTheOther) {
+TEST(BoundMesh, EverythingFollowsSuccessiveSteps) {
     MeshFile file = labelled_ball();
     const AnnotationSet set = annotated(file.mesh);
     BoundMesh bound(std::move(file), set);
@@ -78,12 +78,13 @@ TEST(BoundMesh, EverythingFollowsOneStepAfterTheOther) {
     EXPECT_EQ(bound.annotations->find(4)->polylines.size(), 1U);
 }
 
-TEST(BoundMesh, WhatIsTooSmallBecomesLessAndSaysSo) {
+TEST(BoundMesh, SmallAnnotationsDegenerateWithANote) {
     MeshFile file = labelled_ball();
     AnnotationSet set;
     for (int i = 0; i < 60; ++i) {
-        Annotation& one = set.annotations.emplace_back();
-        one.id = i, one.tag = "face " + std::to_string(i), one.type = AnnotationType::region, one.faces = {Index(i * 30)};
+        Annotation& annotation = set.annotations.emplace_back();
+        annotation.id = i, annotation.tag = "face " + std::to_string(i), annotation.type = AnnotationType::region,
+        annotation.faces = {Index(i * 30)};
     }
     BoundMesh bound(std::move(file), set);
     SimplifyOptions few;
@@ -98,7 +99,7 @@ TEST(BoundMesh, WhatIsTooSmallBecomesLessAndSaysSo) {
     EXPECT_GT(degenerate, 0U);
 }
 
-TEST(BoundMesh, TextureOfCornersIsLeftOutAndSaid) {
+TEST(BoundMesh, TextureOfCornersIsLeftOutWithANote) {
     MeshFile file = labelled_ball();
     file.extras.corner_texture.resize(3 * file.mesh.number_of_faces());
     BoundMesh bound(std::move(file));

@@ -1,4 +1,4 @@
-// Loops that curves close and parts that outlines leave behind.
+// Loops of curves, and leftover parts of outlines.
 #include "../../src/transfer/curve_loops.h"
 
 #include "meshes.h"
@@ -15,7 +15,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A curve over the plane patch of n by n squares of side 1 / n, straight from place to place.
+/// A curve over the plane patch of n by n squares of side 1 / n, straight from point to point.
 std::vector<SurfacePoint> drawn(const Mesh& mesh, const std::vector<Point>& corners_) {
     const SurfaceSearch search(mesh);
     const auto node = [&](const Point& p) {
@@ -45,31 +45,31 @@ TEST(CurveLoops, ASmallLoopIsDissolvedAtItsCrossing) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     const auto at = [&](double x, double y) { return Point(x * side, y * side, 0); };
-    // There with a loop of half a square's width above the way, and straight.
+    // A path with a loop of half a square's width, and the straight path.
     const auto looped = drawn(mesh, {at(2.1, 5.3), at(9.4, 5.3), at(9.4, 5.9), at(8.7, 5.9), at(8.7, 5.1), at(15.2, 5.1)});
     const auto result = without_small_loops(mesh, looped, side, false);
     EXPECT_EQ(result.front(), looped.front());
     EXPECT_EQ(result.back(), looped.back());
-    // From the start to (8.7, 5.3), where it crosses itself, and on down and to the end.
+    // From the start to (8.7, 5.3), where it crosses itself, then down and to the end.
     EXPECT_NEAR(length(mesh, result) / side, 8.7 - 2.1 + 0.2 + 15.2 - 8.7, 1e-6);
-    // A loop around more than a square stays: to an edge of a third of the side it is not small.
+    // A loop around more than a square stays: relative to an edge of a third of the side it is not small.
     EXPECT_EQ(without_small_loops(mesh, looped, side / 3, false), looped);
 }
 
-TEST(CurveLoops, ThereAndBackAgainIsLeftOut) {
+TEST(CurveLoops, BacktrackingIsRemoved) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     const auto at = [&](double x, double y) { return Point(x * side, y * side, 0); };
-    auto there = drawn(mesh, {at(2.1, 5.3), at(9.4, 5.3)});
+    auto straight = drawn(mesh, {at(2.1, 5.3), at(9.4, 5.3)});
     const auto aside = drawn(mesh, {at(9.4, 5.3), at(9.4, 7.8)});
-    auto places = there;
+    auto places = straight;
     places.insert(places.end(), aside.begin() + 1, aside.end());
     places.insert(places.end(), aside.rbegin() + 1, aside.rend());
     const auto on = drawn(mesh, {at(9.4, 5.3), at(12.2, 5.3)});
     places.insert(places.end(), on.begin() + 1, on.end());
-    there.insert(there.end(), on.begin() + 1, on.end());
-    EXPECT_EQ(without_small_loops(mesh, places, side, false), there);
-    EXPECT_EQ(without_small_loops(mesh, there, side, false), there);
+    straight.insert(straight.end(), on.begin() + 1, on.end());
+    EXPECT_EQ(without_small_loops(mesh, places, side, false), straight);
+    EXPECT_EQ(without_small_loops(mesh, straight, side, false), straight);
 }
 
 TEST(CurveLoops, AClosedCurveStaysClosedWhereverTheLoopIs) {
@@ -82,16 +82,16 @@ TEST(CurveLoops, AClosedCurveStaysClosedWhereverTheLoopIs) {
     const auto result = without_small_loops(mesh, overshot, side, true);
     EXPECT_EQ(result.front(), result.back());
     EXPECT_NEAR(length(mesh, result) / side, 2 * (15.2 - 4.6) + 2 * (15.3 - 4.6), 1e-6);
-    // One that hangs on a junction with others goes on starting there.
+    // A curve that starts at a junction with others keeps its start.
     EXPECT_EQ(without_small_loops(mesh, overshot, side, false).front(), overshot.front());
-    // Nothing but a small closed curve is itself no loop of another.
+    // A small closed curve alone is not a loop of another curve.
     const auto small = drawn(mesh, {at(4.2, 4.3), at(4.8, 4.3), at(4.5, 4.8), at(4.2, 4.3)});
-    const auto kept = without_small_loops(mesh, small, side, true);
-    EXPECT_EQ(kept.front(), kept.back());
-    EXPECT_NEAR(length(mesh, kept), length(mesh, small), 1e-12);
+    const auto cleaned = without_small_loops(mesh, small, side, true);
+    EXPECT_EQ(cleaned.front(), cleaned.back());
+    EXPECT_NEAR(length(mesh, cleaned), length(mesh, small), 1e-12);
 }
 
-TEST(CurveLoops, SmallPartsAndHolesGoUntilTheOutlinesAreAsMany) {
+TEST(CurveLoops, SmallPartsAndHolesAreRemovedUntilTheNumberOfOutlinesMatches) {
     const Mesh mesh = plane(20);
     const double side = std::sqrt(CGAL::squared_distance(mesh.point(Vertex(0)), mesh.point(Vertex(1))));
     std::vector<bool> disc(mesh.number_of_faces(), false);
@@ -111,9 +111,9 @@ TEST(CurveLoops, SmallPartsAndHolesGoUntilTheOutlinesAreAsMany) {
     dissolve_small_parts(mesh, side * side, 1, selected);
     EXPECT_EQ(selected, disc);
     selected = given;
-    dissolve_small_parts(mesh, side * side, 3, selected);  // as many as there are to be
+    dissolve_small_parts(mesh, side * side, 3, selected);  // the required number
     EXPECT_EQ(selected, given);
     selected = given;
-    dissolve_small_parts(mesh, 0.1 * side * side, 1, selected);  // none is that small
+    dissolve_small_parts(mesh, 0.1 * side * side, 1, selected);  // none is small enough
     EXPECT_EQ(selected, given);
 }

@@ -25,7 +25,7 @@ Annotation region(int id, std::vector<Index> faces) {
     return annotation;
 }
 
-/// Faces of the mesh that so many regions have.
+/// Number of faces that belong to the given number of regions.
 std::size_t claimed(const Mesh& mesh, const AnnotationSet& set, std::size_t times) {
     std::vector<std::size_t> count(mesh.number_of_faces(), 0);
     for (const Annotation& annotation : set.annotations)
@@ -35,7 +35,7 @@ std::size_t claimed(const Mesh& mesh, const AnnotationSet& set, std::size_t time
 
 }  // namespace
 
-TEST(DisjointRegions, AFaceThatTwoTookGoesToTheOneThatHoldsMostOfIt) {
+TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     // Eight by eight cells over two by two: the target's face 0 lies in the source's cells (0..3, 0..3) below the diagonal.
     const Mesh source = grid(8, 0.25), target = grid(2, 1);
     AnnotationSet set;
@@ -46,35 +46,35 @@ TEST(DisjointRegions, AFaceThatTwoTookGoesToTheOneThatHoldsMostOfIt) {
         if (c.y() < 0.5) low.push_back(f);
     }
     set.annotations = {region(0, right), region(1, left), region(2, low)};
-    std::size_t asked = 0;
+    std::size_t queries = 0;
     const SurfaceSearch search(source);
-    const auto source_search = [&]() -> const SurfaceSearch& { return ++asked, search; };
+    const auto source_search = [&]() -> const SurfaceSearch& { return ++queries, search; };
     const std::vector<bool> none(8, false), all(8, true);
     std::vector<std::vector<bool>> selected{all, all, all};
     keep_disjoint(source, set, source_search, target, selected);
-    // Of the cells at the left, three quarters of which are left of 0.8, both faces; the third region overlaps both.
+    // Both faces of the left cells, three quarters of which are left of 0.8; the third region overlaps both.
     EXPECT_EQ(selected[0], (std::vector<bool>{false, false, true, true, false, false, true, true}));
     EXPECT_EQ(selected[1], (std::vector<bool>{true, true, false, false, true, true, false, false}));
     EXPECT_EQ(selected[2], all);
-    // Equal parts: to the first.
+    // In case of a tie: to the first.
     set.annotations = {region(0, low), region(1, {})};
     for (const Face f : source.faces())
         if (centroid(source, f).y() >= 0.5) set.annotations[1].faces.push_back(f);
-    asked = 0;
-    // What nobody took is found a region where the regions part the whole.
+    queries = 0;
+    // Unassigned faces are assigned if the regions partition the whole.
     selected = {none, {}};
     keep_disjoint(source, set, source_search, target, selected);
     ASSERT_EQ(selected[1].size(), 8U);
     for (std::size_t f = 0; f < 8; ++f) EXPECT_NE(selected[0][f], selected[1][f]) << f;
     EXPECT_TRUE(selected[1][4] && selected[1][7]);
-    EXPECT_GT(asked, 0U);
-    // Where they do not part it, it stays nobody's, and nothing is asked.
+    EXPECT_GT(queries, 0U);
+    // If they do not, the faces stay unassigned, and no query is made.
     set.annotations.pop_back();
-    asked = 0;
+    queries = 0;
     selected = {none};
     keep_disjoint(source, set, source_search, target, selected);
     EXPECT_EQ(selected[0], none);
-    EXPECT_EQ(asked, 0U);
+    EXPECT_EQ(queries, 0U);
 }
 
 TEST(DisjointRegions, PartitionsOfBustsStayPartitions) {
@@ -100,13 +100,13 @@ TEST(DisjointRegions, PartitionsOfBustsStayPartitions) {
             const Path labels = scratch / ("seg/bust/309/309_" + std::to_string(number) + ".seg");
             const AnnotationSet set = regions_from_labels(source, read_labels(labels, source.number_of_faces()));
             ASSERT_EQ(claimed(source, set, 1), source.number_of_faces());
-            const AnnotationSet there = transfer(source, set, search, along_edges).annotations;
-            EXPECT_EQ(claimed(*target, there, 1), target->number_of_faces()) << number;
+            const AnnotationSet transferred = transfer(source, set, search, along_edges).annotations;
+            EXPECT_EQ(claimed(*target, transferred, 1), target->number_of_faces()) << number;
             set_threads(1);
             const AnnotationSet alone = transfer(source, set, search, along_edges).annotations;
             set_threads(0);
-            for (std::size_t i = 0; i < there.annotations.size(); ++i)
-                EXPECT_EQ(there.annotations[i].faces, alone.annotations[i].faces);
+            for (std::size_t i = 0; i < transferred.annotations.size(); ++i)
+                EXPECT_EQ(transferred.annotations[i].faces, alone.annotations[i].faces);
         }
     }
 }

@@ -32,7 +32,7 @@ std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<std::vector<Halfe
 
 }  // namespace
 
-TEST(FaceParts, OverlappingRegionsAreFoundAgainWithTheirMeasures) {
+TEST(FaceParts, OverlappingRegionsAreRecoveredWithTheirMeasures) {
     std::mt19937_64 random(3);
     for (const auto& [name, soup] : group()) {
         const Mesh mesh = build_mesh(soup);
@@ -61,11 +61,11 @@ TEST(FaceParts, OverlappingRegionsAreFoundAgainWithTheirMeasures) {
     }
 }
 
-TEST(FaceParts, EdgesThatBoundNothingAreFilledAsAlways) {
+TEST(FaceParts, EdgesThatBoundNothingAreFilledByTheFallback) {
     std::mt19937_64 random(5);
     for (const auto& [name, soup] : group()) {
         const Mesh mesh = build_mesh(soup);
-        // Rings around single faces, some of them both ways round, and edges that lie anywhere.
+        // Rings around single faces, some of them in both directions, and arbitrary edges.
         std::vector<std::vector<Halfedge>> regions(20);
         for (auto& region : regions)
             for (int i = 0; i < 12; ++i) {

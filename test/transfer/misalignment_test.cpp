@@ -13,7 +13,7 @@ using ostraka::test::octahedron_sphere;
 
 namespace {
 
-Mesh made(const std::string& name, std::uint64_t vertices) {
+Mesh object_mesh(const std::string& name, std::uint64_t vertices) {
     MakeOptions options;
     options.vertices = vertices;
     return make_mesh(synthetic_object(name), options).mesh;
@@ -24,7 +24,7 @@ Misalignment between(const Mesh& source, const Mesh& target) {
     return find_misalignment(source, search);
 }
 
-/// Turned about an axis through the middle of its box, then scaled about it, then moved by a share of the diagonal.
+/// Rotated about an axis through the middle of its box, then scaled about it, then moved by a share of the diagonal.
 Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const Vector& shift) {
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const double diagonal = box_diagonal(mesh), angle = degrees * CGAL_PI / 180;
@@ -40,9 +40,9 @@ Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const V
 
 }  // namespace
 
-TEST(Misalignment, ResolutionsOfOneSurfaceDoNotStandOut) {
+TEST(Misalignment, ResolutionsOfOneSurfaceAreNotReported) {
     for (const char* name : {"teapot", "vase", "chair", "hand", "statuette"}) {
-        const Mesh coarse = made(name, 2500), fine = made(name, 8000);
+        const Mesh coarse = object_mesh(name, 2500), fine = object_mesh(name, 8000);
         EXPECT_FALSE(between(coarse, fine).stands_out) << name;
         EXPECT_FALSE(between(fine, coarse).stands_out) << name;
         EXPECT_LT(between(fine, fine).distance, 1e-12 * box_diagonal(fine)) << name;
@@ -54,7 +54,7 @@ TEST(Misalignment, ResolutionsOfOneSurfaceDoNotStandOut) {
 }
 
 TEST(Misalignment, SmallMotionsAreFound) {
-    const Mesh coarse = made("teapot", 2000), fine = made("teapot", 6000);
+    const Mesh coarse = object_mesh("teapot", 2000), fine = object_mesh("teapot", 6000);
     const double diagonal = box_diagonal(coarse);
     for (const Vector& axis : {Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)}) {
         const Misalignment turned = between(coarse, placed(fine, 3, axis, 1, {0, 0, 0}));
@@ -75,13 +75,13 @@ TEST(Misalignment, SmallMotionsAreFound) {
 }
 
 TEST(Misalignment, IsTheSameForAnyNumberOfThreads) {
-    const Mesh coarse = made("teapot", 2000), turned = placed(made("teapot", 4000), 3, {1, 0, 0}, 1, {0, 0, 0});
+    const Mesh coarse = object_mesh("teapot", 2000), turned = placed(object_mesh("teapot", 4000), 3, {1, 0, 0}, 1, {0, 0, 0});
     set_threads(1);
-    const Misalignment one = between(coarse, turned);
+    const Misalignment single_threaded = between(coarse, turned);
     set_threads(2);
-    const Misalignment two = between(coarse, turned);
+    const Misalignment two_threaded = between(coarse, turned);
     set_threads(0);
-    EXPECT_EQ(one.distance, two.distance);
-    EXPECT_EQ(one.distance_left, two.distance_left);
-    EXPECT_EQ(one.rotation, two.rotation);
+    EXPECT_EQ(single_threaded.distance, two_threaded.distance);
+    EXPECT_EQ(single_threaded.distance_left, two_threaded.distance_left);
+    EXPECT_EQ(single_threaded.rotation, two_threaded.rotation);
 }

@@ -18,14 +18,14 @@ using namespace ostraka::test;
 
 namespace {
 
-Mesh made(const std::string& object, std::size_t vertices, std::uint64_t seed) {
+Mesh object_mesh(const std::string& object, std::size_t vertices, std::uint64_t seed) {
     MakeOptions options;
     options.vertices = vertices;
     options.seed = seed;
     return make_mesh(synthetic_object(object), options).mesh;
 }
 
-/// The mesh parted along a direction into `count` slabs with fair outlines.
+/// The mesh partitioned along a direction into `count` slabs with fair outlines.
 AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
     double low = 1e300, high = -1e300;
     for (const Vertex v : mesh.vertices()) {
@@ -48,11 +48,11 @@ AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
 
 double area_sum(const Mesh& mesh, const AnnotationSet& set) {
     double sum = 0;
-    for (const Annotation& one : set.annotations) sum += area_of(mesh, one);
+    for (const Annotation& annotation : set.annotations) sum += area_of(mesh, annotation);
     return sum;
 }
 
-/// Each face to the nearest of some places, spread over the mesh by a fixed rule: a partition with junctions.
+/// Each face is assigned to the nearest of some points, spread over the mesh by a fixed rule: a partition with junctions.
 AnnotationSet cells(const Mesh& mesh, std::size_t count) {
     AnnotationSet set;
     set.annotations.resize(count);
@@ -75,21 +75,21 @@ AnnotationSet cells(const Mesh& mesh, std::size_t count) {
 }  // namespace
 
 TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
-    const Mesh coarse = made("teapot", 2500, 1), fine = made("teapot", 20000, 2);
+    const Mesh coarse = object_mesh("teapot", 2500, 1), fine = object_mesh("teapot", 20000, 2);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 4);
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
-    const TransferResult there = transfer(coarse, set, on_fine);
-    const TransferResult back = transfer(fine, there.annotations, on_coarse);
-    check_annotations(there.annotations, fine, "there");
-    for (const Annotation& one : set.annotations) {
-        ASSERT_TRUE(is_free(one));
-        const Annotation *moved = there.annotations.find(one.id), *again = back.annotations.find(one.id);
+    const TransferResult forward = transfer(coarse, set, on_fine);
+    const TransferResult back = transfer(fine, forward.annotations, on_coarse);
+    check_annotations(forward.annotations, fine, "there");
+    for (const Annotation& annotation : set.annotations) {
+        ASSERT_TRUE(is_free(annotation));
+        const Annotation *moved = forward.annotations.find(annotation.id), *again = back.annotations.find(annotation.id);
         ASSERT_TRUE(moved != nullptr && again != nullptr && is_free(*moved) && is_free(*again));
-        const RegionMeasures a = measure_region(coarse, one), b = measure_region(coarse, *again);
-        EXPECT_NEAR(b.area / a.area, 1, 2e-4) << one.tag;
-        EXPECT_NEAR(b.perimeter / a.perimeter, 1, 1e-3) << one.tag;
+        const RegionMeasures a = measure_region(coarse, annotation), b = measure_region(coarse, *again);
+        EXPECT_NEAR(b.area / a.area, 1, 2e-4) << annotation.tag;
+        EXPECT_NEAR(b.perimeter / a.perimeter, 1, 1e-3) << annotation.tag;
     }
-    for (const TransferResult* result : {&there, &back})
+    for (const TransferResult* result : {&forward, &back})
         for (const TransferScore& score : result->scores) {
             EXPECT_EQ(score.outcome, TransferOutcome::kept);
             ASSERT_TRUE(score.overlap);
@@ -97,26 +97,26 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
         }
 }
 
-TEST(ProjectCurves, APartitionStaysOne) {
-    const Mesh coarse = made("statuette", 3000, 1), fine = made("statuette", 12000, 5);
+TEST(ProjectCurves, APartitionStaysAPartition) {
+    const Mesh coarse = object_mesh("statuette", 3000, 1), fine = object_mesh("statuette", 12000, 5);
     const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
     ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
     const SurfaceSearch on_coarse(coarse);
-    const TransferResult there = transfer(fine, set, on_coarse);
-    EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-6);
-    // On the cut mesh no piece of any size is in two regions or in none.
-    const CutMesh cut = cut_along_curves(coarse, there.annotations);
+    const TransferResult transferred = transfer(fine, set, on_coarse);
+    EXPECT_NEAR(area_sum(coarse, transferred.annotations) / surface_area(coarse), 1, 1e-6);
+    // On the cut mesh every piece of significant size is in exactly one region.
+    const CutMesh cut = cut_along_curves(coarse, transferred.annotations);
     std::vector<int> holders(cut.mesh.number_of_faces(), 0);
-    for (const Annotation& one : cut.annotations.annotations)
-        for (const Index f : one.faces) ++holders[f];
+    for (const Annotation& annotation : cut.annotations.annotations)
+        for (const Index f : annotation.faces) ++holders[f];
     double wrong = 0;
     for (const Face f : cut.mesh.faces())
         if (holders[f] != 1) wrong += face_area(cut.mesh, f);
     EXPECT_LT(wrong / surface_area(coarse), 1e-6);
 }
 
-TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
-    const Mesh coarse = made("teapot", 1500, 1), fine = made("teapot", 6000, 2);
+TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfRequested) {
+    const Mesh coarse = object_mesh("teapot", 1500, 1), fine = object_mesh("teapot", 6000, 2);
     AnnotationSet set;
     set.annotations.resize(1);
     set.annotations[0].tag = "top";
@@ -130,15 +130,15 @@ TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
     options.outlines = TransferOptions::Outlines::free;
     const TransferResult free = transfer(coarse, set, on_fine, options);
     EXPECT_TRUE(is_free(free.annotations.annotations.at(0)));
-    for (const TransferResult* one : {&along_edges, &free})
-        EXPECT_EQ(one->annotations.annotations[0].information, set.annotations[0].information);
+    for (const TransferResult* result : {&along_edges, &free})
+        EXPECT_EQ(result->annotations.annotations[0].information, set.annotations[0].information);
     EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
     options.outlines = TransferOptions::Outlines::edges;
     EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
 }
 
 TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
-    const Mesh fine = made("teapot", 6000, 1), coarse = made("teapot", 1500, 7);
+    const Mesh fine = object_mesh("teapot", 6000, 1), coarse = object_mesh("teapot", 1500, 7);
     AnnotationSet set = cells(fine, 6);
     const SurfaceSearch on_coarse(coarse);
     TransferOptions options;
@@ -152,23 +152,27 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
         }
         return worst;
     };
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_TRUE(is_free(one));
+    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+        EXPECT_TRUE(is_free(annotation));
     const double free = worst_perimeter();
     EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
-    // Others stay as they are: what is asked for, and what leaves a gap.
+    // Other regions stay along edges: if requested, and if they leave a gap.
     options.outlines = TransferOptions::Outlines::kept;
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+        EXPECT_FALSE(is_free(annotation));
     EXPECT_GT(worst_perimeter(), 5 * free);
     options.outlines = TransferOptions::Outlines::partitions;
     options.cover = TransferOptions::Cover::enclosing;
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+        EXPECT_FALSE(is_free(annotation));
     options.cover = TransferOptions::Cover::overlapping;
     set.annotations.pop_back();
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+        EXPECT_FALSE(is_free(annotation));
 }
 
 TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
-    const Mesh mesh = made("teapot", 6000, 1);
+    const Mesh mesh = object_mesh("teapot", 6000, 1);
     const AnnotationSet set = slabs(mesh, Vector(0.3, 0.2, 0.93), 3);
     MeshFile file;
     file.mesh = mesh;
@@ -176,9 +180,10 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     RefineOptions refining;
     refining.levels = 1;
     bound.refine(refining);
-    // Cutting faces into four does not change the surface: nor the curves.
-    for (const Annotation& one : bound.annotations->annotations) {
-        const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
+    // Splitting faces into four changes neither the surface nor the curves.
+    for (const Annotation& annotation : bound.annotations->annotations) {
+        const RegionMeasures before = measure_region(mesh, *set.find(annotation.id)),
+                             after = measure_region(bound.mesh, annotation);
         EXPECT_NEAR(after.area / before.area, 1, 1e-6);
         EXPECT_NEAR(after.perimeter / before.perimeter, 1, 1e-4);
     }
@@ -187,24 +192,25 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     bound.simplify(simplifying);
     check_annotations(*bound.annotations, bound.mesh, "simplified");
     EXPECT_NEAR(area_sum(bound.mesh, *bound.annotations) / surface_area(bound.mesh), 1, 1e-6);
-    for (const Annotation& one : bound.annotations->annotations) {
-        const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
+    for (const Annotation& annotation : bound.annotations->annotations) {
+        const RegionMeasures before = measure_region(mesh, *set.find(annotation.id)),
+                             after = measure_region(bound.mesh, annotation);
         EXPECT_NEAR(after.perimeter / before.perimeter, 1, 0.02);
     }
 }
 
 TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
-    const Mesh coarse = made("statuette", 2000, 1), fine = made("statuette", 8000, 5);
+    const Mesh coarse = object_mesh("statuette", 2000, 1), fine = object_mesh("statuette", 8000, 5);
     const AnnotationSet set = slabs(coarse, Vector(0, 0.6, 0.8), 3);
     const SurfaceSearch search(fine);
     const int before = threads();
     std::vector<std::vector<std::vector<SurfacePoint>>> curves;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
-        const TransferResult there = transfer(coarse, set, search);
+        const TransferResult transferred = transfer(coarse, set, search);
         curves.emplace_back();
-        for (const Annotation& one : there.annotations.annotations)
-            for (const auto& curve : one.curves) curves.back().push_back(curve);
+        for (const Annotation& annotation : transferred.annotations.annotations)
+            for (const auto& curve : annotation.curves) curves.back().push_back(curve);
     }
     set_threads(before);
     EXPECT_EQ(curves[0], curves[1]);
@@ -213,8 +219,8 @@ TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
 
 namespace {
 
-/// A plane of 10 by 10 units, or a surface on it with waves that hang over: what lies below their crests a line along the normal
-/// of the plane meets more than once.
+/// A plane of 10 by 10 units, or a surface on it with overhanging waves: below their crests a line along the normal of the plane
+/// intersects it more than once.
 Mesh waves(Index n, double over, double height) {
     TriangleSoup soup;
     for (Index i = 0; i <= n; ++i)
@@ -273,8 +279,8 @@ TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
     TransferOptions options;
     options.force = true;
-    const TransferResult there = transfer(coarse, set, on_fine, options);
-    const TransferResult back = transfer(fine, there.annotations, on_coarse, options);
+    const TransferResult forward = transfer(coarse, set, on_fine, options);
+    const TransferResult back = transfer(fine, forward.annotations, on_coarse, options);
     ASSERT_EQ(back.annotations.annotations.size(), 1U);
     const Annotation& again = back.annotations.annotations[0];
     EXPECT_EQ(again.curves.size(), 1U);
@@ -283,21 +289,21 @@ TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     EXPECT_NEAR(after.area / before.area, 1, 2e-4);
 }
 
-TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
+TEST(ProjectCurves, APartitionWithJunctionsStaysAPartitionOnACoarserMesh) {
     for (const char* object : {"teapot", "statuette"}) {
-        const Mesh fine = made(object, 6000, 1), coarse = made(object, 1500, 7);
+        const Mesh fine = object_mesh(object, 6000, 1), coarse = object_mesh(object, 1500, 7);
         const AnnotationSet set = cells(fine, 12);
         TransferOptions options;
         options.outlines = TransferOptions::Outlines::free;
         options.overlap = false;
         const SurfaceSearch on_coarse(coarse);
-        const TransferResult there = transfer(fine, set, on_coarse, options);
-        check_annotations(there.annotations, coarse, "there");
-        EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-9) << object;
-        const CutMesh cut = cut_along_curves(coarse, there.annotations);
+        const TransferResult transferred = transfer(fine, set, on_coarse, options);
+        check_annotations(transferred.annotations, coarse, "there");
+        EXPECT_NEAR(area_sum(coarse, transferred.annotations) / surface_area(coarse), 1, 1e-9) << object;
+        const CutMesh cut = cut_along_curves(coarse, transferred.annotations);
         std::vector<int> holders(cut.mesh.number_of_faces(), 0);
-        for (const Annotation& one : cut.annotations.annotations)
-            for (const Index f : one.faces) ++holders[f];
+        for (const Annotation& annotation : cut.annotations.annotations)
+            for (const Index f : annotation.faces) ++holders[f];
         double wrong = 0;
         for (const Face f : cut.mesh.faces())
             if (holders[f] != 1) wrong += face_area(cut.mesh, f);
@@ -306,16 +312,16 @@ TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
 }
 
 TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
-    const Mesh coarse = made("statuette", 1500, 1), fine = made("statuette", 6000, 5);
+    const Mesh coarse = object_mesh("statuette", 1500, 1), fine = object_mesh("statuette", 6000, 5);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 3);
     const auto measured = [&](double scale, const Vector& by, double noise) {
         const Mesh from = moved_and_scaled(coarse, scale, by, noise), to = moved_and_scaled(fine, scale, by, noise);
         const SurfaceSearch on_to(to), on_from(from);
-        const TransferResult there = transfer(from, set, on_to), back = transfer(to, there.annotations, on_from);
+        const TransferResult forward = transfer(from, set, on_to), back = transfer(to, forward.annotations, on_from);
         std::vector<double> values;
-        for (const auto& [mesh, result] : {std::pair(&to, &there), std::pair(&from, &back)})
-            for (const Annotation& one : result->annotations.annotations) {
-                const RegionMeasures measures = measure_region(*mesh, one);
+        for (const auto& [mesh, result] : {std::pair(&to, &forward), std::pair(&from, &back)})
+            for (const Annotation& annotation : result->annotations.annotations) {
+                const RegionMeasures measures = measure_region(*mesh, annotation);
                 values.push_back(measures.perimeter / scale);
                 values.push_back(measures.area / (scale * scale));
             }
@@ -330,7 +336,7 @@ TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
 }
 
 TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
-    // Of two discs, one lies on a piece that the target does not have.
+    // One of two discs lies on a component that the target does not have.
     const Mesh whole = waves(20, 0, 0);
     TriangleSoup half = to_soup(whole);
     std::erase_if(half.triangles, [&](const auto& t) { return half.points[t[0]][0] > 5.4; });
@@ -343,8 +349,8 @@ TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
     const SurfaceSearch search(target);
     TransferOptions options;
     options.force = true;
-    const TransferResult there = transfer(whole, set, search, options);
-    ASSERT_EQ(there.annotations.annotations.size(), 1U);
-    EXPECT_EQ(there.annotations.annotations[0].curves.size(), 1U);
-    EXPECT_EQ(there.scores.at(0).note, "2 outlines became 1");
+    const TransferResult transferred = transfer(whole, set, search, options);
+    ASSERT_EQ(transferred.annotations.annotations.size(), 1U);
+    EXPECT_EQ(transferred.annotations.annotations[0].curves.size(), 1U);
+    EXPECT_EQ(transferred.scores.at(0).note, "2 outlines became 1");
 }

@@ -58,7 +58,7 @@ TEST_F(TransferCommand, OptionsThatFreeOutlinesDoNotUseAreReported) {
     EXPECT_EQ(transfer("--outlines free", "t.ply", "f.ant.json").err.find("do not depend on"), std::string::npos);
 }
 
-TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
+TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     MakeOptions options;
     options.vertices = 3000;
     const SyntheticMesh hand = make_mesh(synthetic_object("hand"), options);
@@ -90,13 +90,14 @@ TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
     const Json report = parse_json(result.out, "report");
     EXPECT_NEAR(report["result"]["registration"]["scale"].GetDouble(), 0.001, 1e-6);
     EXPECT_GT(report["result"]["annotations"][0]["overlap"].GetDouble(), 0.95);
-    const AnnotationSet there = read_annotations(at("o.ant.json"), target), back = read_annotations(at("b.ant.json"), hand.mesh);
-    EXPECT_EQ(there.unit, "m");
-    ASSERT_TRUE(there.up);
-    EXPECT_NEAR((*there.up)[1], 1, 1e-3);
-    const Descriptor& area = there.annotations[0].attributes[0].descriptor;
+    const AnnotationSet transferred = read_annotations(at("o.ant.json"), target),
+                        back = read_annotations(at("b.ant.json"), hand.mesh);
+    EXPECT_EQ(transferred.unit, "m");
+    ASSERT_TRUE(transferred.up);
+    EXPECT_NEAR((*transferred.up)[1], 1, 1e-3);
+    const Descriptor& area = transferred.annotations[0].attributes[0].descriptor;
     EXPECT_EQ(area.unit, "m^2");
-    EXPECT_NEAR(area.values[0], area_of(target, there.annotations[0].faces), 1e-12);
+    EXPECT_NEAR(area.values[0], area_of(target, transferred.annotations[0].faces), 1e-12);
     EXPECT_EQ(back.unit, "mm");
     EXPECT_NEAR((*back.up)[2], 1, 1e-9);
     EXPECT_EQ(back.annotations[0].attributes[0].descriptor.unit, "mm^2");
@@ -125,7 +126,7 @@ TEST_F(TransferCommand, RefinesTheTarget) {
     EXPECT_EQ(map["map"].Size(), refined.number_of_faces());
 }
 
-TEST_F(TransferCommand, WrongUsageIsTwoAndTouchesNothing) {
+TEST_F(TransferCommand, WrongUsageExitsWithTwoAndWritesNothing) {
     write_file(scratch / "o.ant.json", "earlier");
     for (const std::string& more :
          {std::string("--metric manhattan"), std::string("--refine"), "--map " + at("m.json"), std::string("--max-angle 1000"),
@@ -137,7 +138,7 @@ TEST_F(TransferCommand, WrongUsageIsTwoAndTouchesNothing) {
     }
 }
 
-TEST_F(TransferCommand, BadInputIsOneNamesTheFileAndTouchesNothing) {
+TEST_F(TransferCommand, InvalidInputExitsWithOneNamesTheFileAndWritesNothing) {
     write_file(scratch / "o.ant.json", "earlier");
     const auto fails = [&](const CommandResult& result, const std::string& word) {
         EXPECT_EQ(result.code, 1) << result.err;

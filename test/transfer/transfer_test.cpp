@@ -118,7 +118,7 @@ TEST(Transfer, RefinedTargetHoldsTheOutlineExactly) {
         EXPECT_NEAR(surface_area(refined), surface_area(target), 1e-9);
         for (Index v = 0; v < target.number_of_vertices(); ++v) EXPECT_EQ(refined.point(Vertex(v)), target.point(Vertex(v)));
         for (const TransferScore& score : result.scores) {
-            // The surfaces differ by h^2 / 8 from the sphere, and lengths and areas by as much.
+            // The surfaces differ by h^2 / 8 from the sphere, and lengths and areas accordingly.
             const double h = std::max(mean_edge_length(source), mean_edge_length(target));
             EXPECT_NEAR(score.target_length / score.source_length, 1, h * h / 2) << level;
             EXPECT_NEAR(score.target_area / score.source_area, 1, h * h) << level;
@@ -127,7 +127,7 @@ TEST(Transfer, RefinedTargetHoldsTheOutlineExactly) {
     }
 }
 
-TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
+TEST(Transfer, EnclosingContainsTheFacesThatEnclosedOmits) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(rotated(octahedron_sphere(4), 0.4));
     const AnnotationSet set = set_of({region(1, source, cap)});
     TransferOptions options;
@@ -150,7 +150,7 @@ TEST(Transfer, EnclosingHoldsWhatEnclosedLeavesOut) {
     }
 }
 
-TEST(Transfer, RegionTooSmallBecomesAPointOrALineAndSaysSo) {
+TEST(Transfer, SmallRegionsBecomeAPointOrALineWithANote) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(1));
     Annotation dot = region(1, source, [](const Point& p) { return p.z() > 0.995; });
     dot.tag = "dot";
@@ -177,20 +177,20 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     EXPECT_EQ(result.scores[0].outcome, TransferOutcome::became_point);
 
     // A pin on a part that the target does not have.
-    const Mesh two = build_mesh(joined(octahedron_sphere(3), moved(octahedron_sphere(2), 1, {5, 0, 0}))),
-               one = build_mesh(octahedron_sphere(3));
-    Annotation cap_region = region(1, two, [](const Point& p) { return p.z() > 0.6 && p.x() < 2; });
+    const Mesh two_balls = build_mesh(joined(octahedron_sphere(3), moved(octahedron_sphere(2), 1, {5, 0, 0}))),
+               single_ball = build_mesh(octahedron_sphere(3));
+    Annotation cap_region = region(1, two_balls, [](const Point& p) { return p.z() > 0.6 && p.x() < 2; });
     Attribute ruler;
     ruler.name = "width";
     ruler.type = AttributeType::measure;
     ruler.measure.tool = "ruler";
-    ruler.measure.points = {static_cast<Index>(two.number_of_vertices() - 1), 4};
+    ruler.measure.points = {static_cast<Index>(two_balls.number_of_vertices() - 1), 4};
     ruler.measure.value = 1.5;
     ruler.measure.unit = "mm";
     cap_region.attributes = {ruler};
     TransferOptions force;
     force.force = true;
-    const auto carried = transfer_to(two, set_of({cap_region}), one, force).annotations.annotations;
+    const auto carried = transfer_to(two_balls, set_of({cap_region}), single_ball, force).annotations.annotations;
     ASSERT_EQ(carried.size(), 1U);
     ASSERT_EQ(carried[0].attributes.size(), 1U);
     EXPECT_EQ(carried[0].attributes[0].type, AttributeType::descriptor);
@@ -286,19 +286,20 @@ TEST(Transfer, SameForAnyNumberOfThreadsAndScale) {
     const Mesh source = at(4, 1, {0, 0, 0}), target = at(5, 1, {0, 0, 0});
     const AnnotationSet set = set_of({region(1, source, cap)});
     set_threads(1);
-    const TransferResult one = transfer_to(source, set, target);
+    const TransferResult single_threaded = transfer_to(source, set, target);
     set_threads(2);
-    const TransferResult two = transfer_to(source, set, target);
+    const TransferResult two_threaded = transfer_to(source, set, target);
     set_threads(0);
-    EXPECT_EQ(one.annotations.annotations[0].faces, two.annotations.annotations[0].faces);
-    EXPECT_EQ(*one.scores[0].overlap, *two.scores[0].overlap);
+    EXPECT_EQ(single_threaded.annotations.annotations[0].faces, two_threaded.annotations.annotations[0].faces);
+    EXPECT_EQ(*single_threaded.scores[0].overlap, *two_threaded.scores[0].overlap);
     for (const double scale : {1e-9, 1e9}) {
         const TransferResult scaled = transfer_to(at(4, scale, {0, 0, 0}), set, at(5, scale, {0, 0, 0}));
-        EXPECT_EQ(scaled.annotations.annotations[0].faces.size(), one.annotations.annotations[0].faces.size()) << scale;
-        EXPECT_NEAR(*scaled.scores[0].overlap, *one.scores[0].overlap, 1e-3);
+        EXPECT_EQ(scaled.annotations.annotations[0].faces.size(), single_threaded.annotations.annotations[0].faces.size())
+            << scale;
+        EXPECT_NEAR(*scaled.scores[0].overlap, *single_threaded.scores[0].overlap, 1e-3);
     }
     const TransferResult far = transfer_to(at(4, 1, {1e6, 0, 0}), set, at(5, 1, {1e6, 0, 0}));
-    EXPECT_NEAR(*far.scores[0].overlap, *one.scores[0].overlap, 1e-3);
+    EXPECT_NEAR(*far.scores[0].overlap, *single_threaded.scores[0].overlap, 1e-3);
 }
 
 TEST(Transfer, RoundingPutsLessOnTheWrongSideAndMeetsAreaAndPerimeter) {
@@ -338,7 +339,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
     }
 }
 
-TEST(Transfer, MeasuresMoveWithTheirPinsAndAreTakenAnew) {
+TEST(Transfer, MeasuresMoveWithTheirPinsAndAreRecomputed) {
     const Mesh source = build_mesh(octahedron_sphere(4)), target = build_mesh(rotated(octahedron_sphere(5), 0.3));
     Annotation top = region(1, source, cap);
     Attribute ruler;

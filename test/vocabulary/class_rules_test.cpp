@@ -113,7 +113,7 @@ TEST(ClassRules, Relations) {
     apart.push_back(clay(9, "rock"));
     EXPECT_TRUE(broken(set_of(apart), {{"containment", true, {0, 9}}, {"containment", true, {9, 3}}}).empty())
         << "through what lies between";
-    // A cycle, which no mesh gives, ends.
+    // A cycle, which no mesh produces, terminates.
     EXPECT_EQ(with({{"containment", true, {3, 1}}, {"containment", true, {1, 3}}}).size(), 0U);
     // A nose is a narrower concept of head, but not related to itself.
     EXPECT_EQ(with({{"adjacency", false, {3, 3}}}), std::vector<std::string>{missing_relation});
@@ -195,7 +195,7 @@ TEST(ClassRules, TheCommandDerivesRelationsFromTheMesh) {
     EXPECT_EQ(report["result"]["defects"].GetInt(), 12) << "twelve regions";
     EXPECT_EQ(check("{}").code, 1);
     EXPECT_EQ(run_command("annotation check " + pair + "--graph x.graph.json").code, 2);
-    // A graph that states nothing.
+    // An empty graph.
     const std::string graph =
         scratch.file("e.graph.json", R"({"format": "ostraka-graph", "version": 1, "relationships": []})").string();
     const auto stated = check(rule(R"("relation": {"of": "spout", "is": "adjacency", "to": "body"})"), " --graph " + graph);

@@ -40,10 +40,10 @@ TEST(Infer, ARuleThatHoldsInfersItsValueWithAReason) {
     ASSERT_EQ(result.inferred.size(), 1U);
     EXPECT_EQ(result.inferred[0].rule, "smooth");
     EXPECT_TRUE(result.contradictions.empty());
-    // The rule 'rough' fails on its first condition: what its second lacks is of no interest.
+    // The rule 'rough' fails on its first condition: missing inputs of the second are not reported.
     EXPECT_EQ(result.missing,
               std::vector<std::string>{"'whiskers' (id 0): the rule 'red' cannot be evaluated: it has no 'remark'"});
-    // What is inferred fits the vocabulary, and is inferred anew, not twice.
+    // Inferred attributes satisfy the vocabulary, and are replaced, not duplicated.
     EXPECT_TRUE(check_against_vocabulary(result.annotations, busts()).empty());
     const InferenceResult again = infer(result.annotations, busts());
     EXPECT_EQ(split_words(again.annotations, 0), "beard style=straight");
@@ -81,7 +81,7 @@ TEST(Infer, RatiosAcrossAnnotations) {
     EXPECT_EQ(split_words(infer_with({point(1, "left eye", {length("height", 1, "in")})}).annotations, 0), "") << "1.97";
     const auto origin = infer_with({point(1, "eye", {length("height", 10)})}).inferred[0].why;
     EXPECT_TRUE(holds(origin, "width / height of eye = 5 > 2 (width 5 cm, height of eye 10 mm)")) << origin;
-    // What is missing is said.
+    // Missing inputs are reported.
     const auto missing = [&](std::vector<Annotation> more) {
         const InferenceResult result = infer_with(std::move(more));
         EXPECT_TRUE(result.inferred.empty());
@@ -139,7 +139,7 @@ TEST(Infer, StatedAttributesAreKept) {
 }
 
 TEST(Infer, TextValuesAreInputsToo) {
-    // red remark -> clay; and of clay beards, say they are curly, without an order of the rules.
+    // red remark -> clay; clay beards are curly; in any order of the rules.
     Vocabulary vocabulary = busts();
     InferenceRule rule = vocabulary.rules[1];
     rule.id = "clay is curly";
@@ -150,7 +150,7 @@ TEST(Infer, TextValuesAreInputsToo) {
     check_vocabulary(vocabulary, "v");
     const InferenceResult result = infer(set_of({point(0, "beard", {word("remark", "Reddish")})}), vocabulary);
     EXPECT_EQ(split_words(result.annotations, 0), "remark=Reddish material=clay beard style=curly");
-    // Where the word in between is contradicted, nothing follows from it.
+    // If the intermediate value is contradicted, nothing is inferred from it.
     InferenceRule against = vocabulary.rules[1];
     against.id = "no";
     against.value = "marble";
@@ -161,7 +161,7 @@ TEST(Infer, TextValuesAreInputsToo) {
 }
 
 TEST(Infer, LongChainsOfRulesInAnyOrder) {
-    // The value of each attribute follows from that of the one before. Work that grows with more than the number of rules would
+    // The value of each attribute follows from that of the previous one. Work that grows with more than the number of rules would
     // take this test from seconds to days.
     constexpr int count = 4000;
     Vocabulary vocabulary;
@@ -235,7 +235,7 @@ TEST(Infer, TheCommand) {
         EXPECT_TRUE(holds(result.out, word)) << result.out;
         EXPECT_TRUE(holds(read_file(out), "\"origin\": \"rule '" + word)) << object;
         EXPECT_EQ(run_command("annotation check " + data + object + ".ply " + out + " --vocabulary " + words).code, 0);
-        // Read and written by others of our commands, the origin stays.
+        // Other commands preserve the origin.
         const MeshFile mesh = read_mesh(data + object + ".ply");
         const AnnotationSet set = read_annotations(out, mesh.mesh);
         EXPECT_TRUE(set.notes.empty());

@@ -49,7 +49,7 @@ TEST(Owl, ClassesBecomeConceptsAndRestrictionsParts) {
     EXPECT_EQ(concept_of(vocabulary, "Lug").broader, Names{"Handle"});
     EXPECT_TRUE(vocabulary.notes.empty()) << vocabulary.notes.front();
     EXPECT_TRUE(TagMatcher(&vocabulary).means("lug", "ansa"));
-    // What was read is a vocabulary as any other: written and read again it is the same.
+    // The result is an ordinary vocabulary: the round trip is exact.
     const Vocabulary again = vocabulary_from_skos(vocabulary_to_skos(vocabulary, false, "v.ttl"), false, "v.ttl");
     EXPECT_EQ(concept_of(again, "Handle").part_of, Names{"Pot"});
 }
@@ -97,7 +97,7 @@ TEST(Owl, SkosFilesStayAsTheyAre) {
 TEST(Owl, InvalidAndHostileFilesGiveAnErrorOrAVocabulary) {
     EXPECT_THROW(read(""), Error);
     EXPECT_THROW(read(":a a owl:Class ; rdfs:subClassOf :b . :b a owl:Class ; rdfs:subClassOf :a ."), Error);  // a cycle
-    // Lists and intersections that lead to themselves.
+    // Lists and intersections that contain themselves.
     EXPECT_EQ(read(":a a owl:Class ; rdfs:subClassOf _:x . _:x owl:intersectionOf _:l . _:l rdf:first _:x ; rdf:rest _:l ;"
                    " owl:onProperty :partOf . _:x owl:onProperty :partOf ; owl:someValuesFrom :a .")
                   .concepts.size(),

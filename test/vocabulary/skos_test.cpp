@@ -60,7 +60,7 @@ TEST(Skos, RoundTripKeepsEverything) {
             EXPECT_EQ(vocabulary_to_skos(again, rdf_xml, "v"), text) << "to the byte";
         }
     }
-    // An empty one has nothing to say.
+    // An empty vocabulary has no notes.
     EXPECT_THROW(vocabulary_from_skos(vocabulary_to_skos({}, false, "v"), false, "v"), Error);
 }
 
@@ -96,7 +96,7 @@ ex:other a skos:Concept ; skos:inScheme <https://example.org/another> ; skos:pre
     ASSERT_EQ(vocabulary.notes.size(), 3U);
     EXPECT_TRUE(holds(vocabulary.notes[0], "1 concept of other schemes"));
     EXPECT_TRUE(holds(vocabulary.notes[1], "creator"));
-    // What was kept is written again.
+    // Kept statements are written again.
     EXPECT_TRUE(holds(vocabulary_to_skos(vocabulary, false, "v"), "http://elsewhere.example/pot"));
     const std::string two =
         head + "ex:a a skos:ConceptScheme . ex:b a skos:ConceptScheme . ex:c a skos:Concept ; skos:inScheme ex:b .";
@@ -262,7 +262,7 @@ TEST(VocabularyCommand, ConvertRoundTrip) {
     EXPECT_TRUE(holds(bad.err, "bad.ttl, line ")) << bad.err;
     EXPECT_EQ(read_file(scratch / "c.vocabulary.json"), read_file(words)) << "untouched";
     EXPECT_EQ(run_command("vocabulary check " + at("bad.ttl")).code, 1);
-    // What RDF has no place for stands in the input.
+    // The input contains text that RDF cannot represent.
     const std::string control = R"({"format": "ostraka-vocabulary", "version": 1, "concepts": [{"id": "a", "label": "\u0001"}]})";
     const auto unfit =
         run_command("vocabulary convert " + scratch.file("odd.vocabulary.json", control).string() + " " + at("o.rdf"));
@@ -276,7 +276,7 @@ TEST(VocabularyCommand, ConvertRoundTrip) {
 }
 
 TEST(Skos, ShortFilesThatExpandWithoutLimitAreRefused) {
-    // A long prefix, named often; a short entity, named often.
+    // A long prefix and a short entity, each referenced often.
     std::string turtle = head + "@prefix long: <https://example.org/" + std::string(200'000, 'a') + "/> .\n";
     for (int i = 0; i < 3000; ++i) turtle += "long:a" + std::to_string(i) + " a skos:Concept .\n";
     expect_error(turtle, false, "v.ttl", "many times the size of the file");

@@ -1,4 +1,4 @@
-// Which tags a word means.
+// Tags that a word denotes.
 #include "ostraka/vocabulary/tag_matcher.h"
 #include "ostraka/core/error.h"
 
@@ -21,10 +21,10 @@ Vocabulary parts() {
 AnnotationSet tagged(const std::vector<std::string>& tags) {
     AnnotationSet set;
     for (std::size_t i = 0; i < tags.size(); ++i) {
-        Annotation one;
-        one.id = static_cast<int>(10 + i);
-        one.tag = tags[i];
-        set.annotations.push_back(one);
+        Annotation annotation;
+        annotation.id = static_cast<int>(10 + i);
+        annotation.tag = tags[i];
+        set.annotations.push_back(annotation);
     }
     return set;
 }
@@ -51,7 +51,7 @@ TEST(TagMatcher, WithAVocabularyCompareConcepts) {
     EXPECT_TRUE(words.means("grip", "manico"));   // narrower
     EXPECT_FALSE(words.means("manico", "grip"));  // broader
     EXPECT_FALSE(words.means("spout", "handle"));
-    EXPECT_TRUE(words.means("crack 4", "crack"));  // not in the vocabulary: letters
+    EXPECT_TRUE(words.means("crack 4", "crack"));  // not in the vocabulary: compared literally
     EXPECT_EQ(words.key("manico 2"), words.key("handle 2"));
     EXPECT_NE(words.key("manico 2"), words.key("handle 3"));
     EXPECT_NE(words.key("grip"), words.key("handle"));
@@ -59,7 +59,7 @@ TEST(TagMatcher, WithAVocabularyCompareConcepts) {
 
 TEST(TagMatcher, FindAnnotationsByIdTagOrMeaning) {
     const AnnotationSet set = tagged({"manico 1", "Handle 2", "spout", "10"});
-    EXPECT_EQ(TagMatcher().find(set, "10"), Places{0});  // ids come first
+    EXPECT_EQ(TagMatcher().find(set, "10"), Places{0});  // ids have priority
     EXPECT_EQ(TagMatcher().find(set, "handle"), Places{1});
     EXPECT_EQ(TagMatcher().find(set, "manico"), Places{0});
     EXPECT_EQ(TagMatcher().find(set, "lid"), Places{});

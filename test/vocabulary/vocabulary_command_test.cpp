@@ -48,7 +48,7 @@ TEST(VocabularyCommand, ShowIsATree) {
     EXPECT_TRUE(holds(under.out, "\neye ")) << under.out;
     EXPECT_TRUE(holds(under.out, "\n  left eye ")) << under.out;
     EXPECT_FALSE(holds(under.out, "vase"));
-    // English, and a word about it, where the language is none of the vocabulary's.
+    // English, with a note, if the vocabulary does not have the language.
     const auto unknown_language = run_command("vocabulary show --language xx " + words);
     EXPECT_EQ(unknown_language.code, 0);
     EXPECT_TRUE(holds(unknown_language.err, "no label is in the language 'xx'; there are de, en, it")) << unknown_language.err;
@@ -62,14 +62,14 @@ TEST(VocabularyCommand, ShowIsATree) {
     EXPECT_TRUE(holds(unknown_concept.err, "occhio")) << unknown_concept.err;
 }
 
-TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectFit) {
+TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectSatisfyTheVocabulary) {
     for (const std::string object : {"vase", "teapot", "statuette"}) {
         const auto result = run_command("annotation check " + data + object + ".ply " + data + object +
                                         ".ant.json --strict --vocabulary " + words);
         EXPECT_EQ(result.code, 0) << result.out << result.err;
         EXPECT_FALSE(holds(result.out, "not among those")) << result.out;
     }
-    // A chair is no part of it.
+    // A chair is not in the vocabulary.
     const auto chair = run_command("annotation check " + data + "chair.ply " + data + "chair.ant.json --vocabulary " + words);
     EXPECT_EQ(chair.code, 3) << chair.err;
     EXPECT_TRUE(holds(chair.out, "the tag 'armchair' is not in the vocabulary") ||
@@ -77,7 +77,7 @@ TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectFit) {
         << chair.out;
 }
 
-TEST(VocabularyCommand, ApplyRefusesATagOutside) {
+TEST(VocabularyCommand, ApplyRefusesAnUnknownTag) {
     const Scratch scratch;
     write_mesh(scratch / "tile.ply", grid(4));
     const auto recipe = [](const std::string& tag) {
@@ -98,7 +98,7 @@ TEST(VocabularyCommand, ApplyRefusesATagOutside) {
     EXPECT_EQ(apply("Naso", scratch.file("bad.vocabulary.json", "{}").string()).code, 1);
     EXPECT_EQ(read_file(output), "earlier");
     EXPECT_EQ(apply("Naso", output).code, 2) << "an output that is an input";
-    const auto taken = apply("Naso", words);
-    EXPECT_EQ(taken.code, 0) << taken.err;
+    const auto accepted = apply("Naso", words);
+    EXPECT_EQ(accepted.code, 0) << accepted.err;
     EXPECT_TRUE(holds(read_file(output), "terracotta.vocabulary.json")) << "provenance";
 }

@@ -92,7 +92,7 @@ TEST(Vocabulary, ReadingAndWritingGivesTheSame) {
     const std::string text = to_text(vocabulary_to_json(vocabulary));
     const Vocabulary again = vocabulary_from_json(parse_json(text, "w"), "w");
     EXPECT_EQ(to_text(vocabulary_to_json(again)), text);
-    // Nothing of the source is lost: the same members, apart from lists of one.
+    // No data are lost: the same members, apart from lists of one element.
     EXPECT_NE(text.find("\"a note\""), std::string::npos);
     EXPECT_NE(text.find("\"above\": 2"), std::string::npos);
     EXPECT_EQ(again.concepts[6].others, vocabulary.concepts[6].others);
@@ -187,7 +187,7 @@ TEST(Vocabulary, AttributesAreInherited) {
     EXPECT_EQ(search.attribute_of(2, "beard style"), nullptr);
 }
 
-TEST(CheckAgainstVocabulary, TagsThatFitAndThatDoNot) {
+TEST(CheckAgainstVocabulary, KnownAndUnknownTags) {
     EXPECT_TRUE(defects(set_of({point(0, "head"), point(1, "Auge 1"), point(2, "whiskers")})).empty());
     EXPECT_EQ(only_defect(point(0, "bread")),
               "/annotations/0/tag the tag 'bread' is not in the vocabulary: did you mean 'head' or 'beard'?");
@@ -219,7 +219,7 @@ TEST(CheckAgainstVocabulary, Quantities) {
     Attribute list = quantity("height", 5, "mm");
     list.descriptor.values = {5, 6, 77};
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {list})), "77"));
-    // What cannot be judged is a remark.
+    // Values that cannot be checked give remarks.
     Attribute stale = quantity("height", 999, "mm");
     stale.descriptor.stale = true;
     const AnnotationSet doubtful = set_of({point(0, "eye", {stale, quantity("height", 999, ""), quantity("roundness", 1, "")})});
@@ -228,7 +228,7 @@ TEST(CheckAgainstVocabulary, Quantities) {
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {quantity("roundness", 1, "")}), {.strict = true}), "'roundness'"));
 }
 
-TEST(CheckAgainstVocabulary, AMeasureHasItsRangeToo) {
+TEST(CheckAgainstVocabulary, RangesApplyToMeasures) {
     Attribute measure;
     measure.name = "height";
     measure.type = AttributeType::measure;

@@ -1,4 +1,4 @@
-// The workbench as a command: what its address is given to, and how it ends.
+// The workbench as a command: which processes see its address, and how it ends.
 #include "scratch.h"
 
 #include "ostraka/files/file.h"
@@ -17,7 +17,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// The workbench of a scratch folder, with a desktop whose browser writes down what it is given.
+/// The workbench of a scratch folder, with a desktop whose browser records its arguments.
 class Command {
 public:
     explicit Command(const Scratch& scratch, const std::string& arguments = {}) {
@@ -44,7 +44,7 @@ public:
     Command(const Command&) = delete;
     Command& operator=(const Command&) = delete;
 
-    /// The exit code; -1 where a signal ended it.
+    /// The exit code; -1 if a signal ended it.
     int end(int signal) {
         ::kill(child_, signal);
         int status = 0;
@@ -95,7 +95,7 @@ TEST(WorkbenchCommand, LeavesNoSecretBehindAfterAKill) {
         command.end(SIGKILL);
     }
     EXPECT_TRUE(file_exists(door)) << "its token is of no use: the server is gone";
-    // A link in its place is not written through.
+    // A link in its place is not followed.
     std::filesystem::remove(door);
     const Path victim = scratch.file("victim", "mine");
     std::filesystem::create_symlink(victim, door);

@@ -1,4 +1,4 @@
-// The server against those who should not talk to it, and those who talk nonsense.
+// The server against unauthorised clients and invalid requests.
 #include "meshes.h"
 #include "scratch.h"
 
@@ -26,7 +26,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// A server on a folder with one mesh, on a thread of its own.
+/// A server on a folder with one mesh, on a separate thread.
 struct Served {
     Scratch scratch;
     std::unique_ptr<Workbench> workbench;
@@ -45,7 +45,7 @@ struct Served {
     [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server->port()); }
 };
 
-/// A connection of bare bytes.
+/// A connection that sends and receives bytes.
 class Wire {
 public:
     explicit Wire(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -67,7 +67,7 @@ public:
         }
         return true;
     }
-    /// What comes until the other side closes, there is as much as wanted, or nothing came for some seconds.
+    /// Received bytes until the other side closes, the requested number has arrived, or nothing arrives for some seconds.
     std::string receive(std::size_t wanted = 1U << 30U, int patience = 10000) {
         std::string all;
         char part[65536];
@@ -118,7 +118,7 @@ public:
         return message;
     }
 
-    /// The next answer; events are passed over.
+    /// The next answer; events are skipped.
     std::string answer() {
         std::string message = hear();
         while (message.starts_with("{\"event\"")) message = hear();
@@ -145,7 +145,7 @@ int ask(const Served& served, const std::string& request) {
     wire.send(request);
     return status(wire.receive());
 }
-/// A page that may talk.
+/// An authorised page.
 std::unique_ptr<Wire> page(const Served& served) {
     auto wire = std::make_unique<Wire>(served.server->port());
     wire->send(upgrade(served, "http://" + served.host(), served.server->token()));
@@ -166,7 +166,7 @@ bool answers(const Served& served) {
 
 }  // namespace
 
-TEST(WorkbenchServer, GivesThePageToWhoKnowsTheToken) {
+TEST(WorkbenchServer, ServesThePageToClientsWithTheToken) {
     const Served served;
     const std::string token = served.server->token();
     EXPECT_EQ(token.size(), 64U);
@@ -180,10 +180,10 @@ TEST(WorkbenchServer, GivesThePageToWhoKnowsTheToken) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SetsNoCookieAndTakesNone) {
-    // Browsers send the cookies of one port of a machine to every other port of it.
+TEST(WorkbenchServer, SetsAndAcceptsNoCookie) {
+    // Browsers send the cookies of one port of a machine to all its ports.
     const Served served;
-    const std::string token = served.server->token(), own = "http://" + served.host();
+    const std::string token = served.server->token(), origin = "http://" + served.host();
     const std::string cookie =
         "Cookie: token=" + token + "; ostraka-" + std::to_string(served.server->port()) + "=" + token + "\r\n";
     Wire wire(served.server->port());
@@ -192,12 +192,12 @@ TEST(WorkbenchServer, SetsNoCookieAndTakesNone) {
     EXPECT_EQ(head.find("ookie"), std::string::npos) << head;
     EXPECT_EQ(head.find(token), std::string::npos) << head;
     EXPECT_EQ(ask(served, get(served, "/", cookie)), 403);
-    std::string talk = upgrade(served, own, "");
+    std::string talk = upgrade(served, origin, "");
     talk.insert(talk.size() - 2, cookie);
     EXPECT_EQ(ask(served, talk), 403);
 }
 
-TEST(WorkbenchServer, RunsNoScriptButThatOfItsPage) {
+TEST(WorkbenchServer, RunsOnlyTheScriptOfItsPage) {
     const Served served;
     Wire wire(served.server->port());
     wire.send(get(served, "/?token=" + served.server->token()));
@@ -211,9 +211,9 @@ TEST(WorkbenchServer, RunsNoScriptButThatOfItsPage) {
     EXPECT_NE(head.find("style-src " + inline_hashes(workbench_page(), "style") + ";"), std::string::npos) << head;
 }
 
-TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
+TEST(WorkbenchServer, RefusesUnauthorisedClients) {
     const Served served;
-    const std::string token = served.server->token(), own = "http://" + served.host();
+    const std::string token = served.server->token(), origin = "http://" + served.host();
     const auto page_of = [&](const std::string& more = {}, const std::string& host = {}) {
         return get(served, "/?token=" + token, more, host);
     };
@@ -233,8 +233,8 @@ TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
         {page_of("Origin: http://evil.example\r\n"), 403},
         {page_of("Origin: null\r\n"), 403},
         {page_of("Origin: https://" + served.host() + "\r\n"), 403},
-        {page_of("Origin: " + own + ".evil.example\r\n"), 403},
-        {page_of("Origin: " + own + "\r\n"), 200},
+        {page_of("Origin: " + origin + ".evil.example\r\n"), 403},
+        {page_of("Origin: " + origin + "\r\n"), 200},
         {get(served, "/../etc/passwd?token=" + token), 400},
         {get(served, "/%2e%2e/etc/passwd?token=" + token), 400},
         {get(served, "/..%2fetc/passwd?token=" + token), 400},
@@ -249,8 +249,8 @@ TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
         {"GET\r\n\r\n", 400},
         {upgrade(served, "", token), 403},
         {upgrade(served, "http://evil.example", token), 403},
-        {upgrade(served, own, std::string(64, 'f')), 403},
-        {upgrade(served, own, token), 101},
+        {upgrade(served, origin, std::string(64, 'f')), 403},
+        {upgrade(served, origin, token), 101},
     };
     for (const auto& [request, expected] : tried) {
         Wire wire(served.server->port());
@@ -260,7 +260,7 @@ TEST(WorkbenchServer, RefusesWhoShouldNotTalk) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
+TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
     ServerLimits limits;
     limits.seconds = 1;  // for who does not answer that it is let go
     const Served served(limits);
@@ -272,7 +272,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
         wire->receive();
         EXPECT_TRUE(wire->closed());
     }
-    {  // bytes that are no message, and binary messages
+    {  // bytes that are not a message, and binary messages
         const auto wire = page(served);
         wire->send(std::string(4000, '\xff'));
         wire->receive();
@@ -282,7 +282,7 @@ TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
         other->receive();
         EXPECT_TRUE(other->closed());
     }
-    {  // text that is no request is answered
+    {  // text that is not a request is answered
         const auto wire = page(served);
         for (const char* text :
              {"", "{", "null", "[]", "{\"do\":7}", "{\"id\":\"x\",\"do\":\"hello\",\"do\":\"\"}", "\xff\xfe"}) {
@@ -296,10 +296,10 @@ TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
             EXPECT_NE(wire->answer().find("\"ok\":false"), std::string::npos) << text;
         }
     }
-    {  // who asks and goes
+    {  // clients that disconnect after a request
         for (int i = 0; i < 5; ++i) page(served)->say(R"({"id":1,"do":"open","name":"ball.ply"})");
     }
-    {  // more requests than may wait
+    {  // more requests than the limit of waiting ones
         const auto wire = page(served);
         for (int i = 0; i < 2000; ++i)
             if (!wire->say(R"({"id":1,"do":"hello"})")) break;
@@ -307,13 +307,13 @@ TEST(WorkbenchServer, SurvivesGarbageAndGoneWriters) {
         EXPECT_TRUE(wire->closed());
     }
     EXPECT_TRUE(answers(served));
-    // What was asked before its page was gone is done.
+    // Requests sent before the page disconnected are completed.
     for (int i = 0; i < 100 && served.workbench->session().steps().size() < 5; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_EQ(served.workbench->session().steps().size(), 5U);
 }
 
-TEST(WorkbenchServer, LetsNobodyTakeAllConnections) {
+TEST(WorkbenchServer, NoClientCanOccupyAllConnections) {
     ServerLimits limits;
     limits.seconds = 3;
     const Served served(limits);
@@ -323,21 +323,21 @@ TEST(WorkbenchServer, LetsNobodyTakeAllConnections) {
         many.push_back(std::make_unique<Wire>(served.server->port()));
         if (i % 2 == 0) many.back()->send("GET / HT");  // and no more
     }
-    // Nobody has to wait until they are let go, and who talked before still does.
+    // Other clients do not wait until they are dropped, and connected pages are still served.
     const auto began = std::chrono::steady_clock::now();
     EXPECT_EQ(ask(served, get(served, "/?token=" + served.server->token())), 200);
     EXPECT_TRUE(answers(served));
     before->say(R"({"id":1,"do":"go","place":0})");
     EXPECT_NE(before->answer().find("\"ok\":true"), std::string::npos);
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
-    // The oldest were dropped at once, the others are when their time for a head is over.
+    // The oldest were dropped at once; the others are dropped after the time limit for the header.
     many.front()->receive(1, 0);
     EXPECT_TRUE(many.front()->closed());
     many.back()->receive(1, 10000);
     EXPECT_TRUE(many.back()->closed());
 }
 
-TEST(WorkbenchServer, LetsNobodyCrowdOutAPage) {
+TEST(WorkbenchServer, NoClientCanDisplaceAPage) {
     const Served served;
     std::atomic<bool> ends = false;
     std::thread crowd([&] {
@@ -366,7 +366,7 @@ TEST(WorkbenchServer, RefusesMorePagesThanItServes) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
+TEST(WorkbenchServer, BoundsTheMemoryForAPageThatDoesNotRead) {
     ServerLimits limits;
     limits.unsent = 1'000'000;
     limits.stalled = 3;
@@ -375,7 +375,7 @@ TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
     other->say(R"({"id":1,"do":"open","name":"ball.ply"})");
     EXPECT_NE(other->answer().find("\"ok\":true"), std::string::npos);
     const double before = resident_memory();
-    // Two megabytes each: 120 MB that nobody reads.
+    // Two megabytes each: 120 MB of unread answers.
     for (int i = 0; i < 60; ++i) EXPECT_TRUE(slow->say(R"({"id":2,"do":"scene","known":[]})"));
     double most = 0;
     for (int i = 0; i < 20; ++i) {
@@ -385,7 +385,7 @@ TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
         most = std::max(most, resident_memory() - before);
     }
     EXPECT_LT(most, 40e6);
-    // It is dropped for good, without waiting for what it says to that.
+    // It is dropped, without waiting for its close message.
     bool gone = false;
     for (int i = 0; i < 100 && !gone; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -395,7 +395,7 @@ TEST(WorkbenchServer, KeepsLittleForAPageThatDoesNotRead) {
     EXPECT_TRUE(answers(served));
 }
 
-TEST(WorkbenchServer, SendsLargeAnswersToWhoReads) {
+TEST(WorkbenchServer, SendsLargeAnswersToReadingClients) {
     ServerLimits limits;
     limits.unsent = 100'000;
     const Served served(limits, 8);
@@ -428,22 +428,22 @@ TEST(WorkbenchServer, BoundsTheBytesOfRequests) {
     }
 }
 
-TEST(WorkbenchServer, TellsOfTheFirstPageOnce) {
+TEST(WorkbenchServer, ReportsTheFirstPageOnce) {
     Scratch scratch;
     Workbench workbench(scratch / "session", scratch.path());
     WorkbenchServer server(workbench);
-    std::atomic<int> told = 0;
-    server.on_first_page = [&] { ++told; };
+    std::atomic<int> notifications = 0;
+    server.on_first_page = [&] { ++notifications; };
     std::thread thread([&] { server.run(); });
-    const std::string own = "127.0.0.1:" + std::to_string(server.port());
+    const std::string host = "127.0.0.1:" + std::to_string(server.port());
     for (int i = 0; i < 3; ++i) {
         Wire wire(server.port());
-        wire.send("GET /messages?token=" + server.token() + " HTTP/1.1\r\nHost: " + own + "\r\nOrigin: http://" + own +
+        wire.send("GET /messages?token=" + server.token() + " HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
                   "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
                   "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
         EXPECT_EQ(status(wire.receive(12)), 101);
     }
     server.stop();
     thread.join();
-    EXPECT_EQ(told, 1);
+    EXPECT_EQ(notifications, 1);
 }

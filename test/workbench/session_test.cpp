@@ -1,4 +1,4 @@
-// Sessions: what was done can be undone to the bit, is repeated to the bit by the command, and survives what a page can send.
+// Sessions: steps are undone to the bit, repeated to the bit by the command, and unaffected by damaged messages of a page.
 #include "meshes.h"
 #include "mutate.h"
 #include "scratch.h"
@@ -29,14 +29,14 @@ struct Bench {
         workbench = std::make_unique<Workbench>(scratch / "session", scratch.path());
     }
 
-    /// The answer to a message; it has to be in order.
+    /// The answer to a message, which must succeed.
     Json ask(const std::string& message) const {
         const Workbench::Reply reply = workbench->answer(message);
         Json answer = parse_json(reply.json, "the answer");
         EXPECT_TRUE(answer["ok"].GetBool()) << message << "\n" << reply.json;
         return answer;
     }
-    /// What is wrong with a message.
+    /// The error of a message.
     [[nodiscard]] std::string refused(const std::string& message) const {
         const Json answer = parse_json(workbench->answer(message).json, "the answer");
         EXPECT_FALSE(answer["ok"].GetBool()) << message;
@@ -76,7 +76,7 @@ std::map<std::string, std::string> checksums(const Session& session) {
 
 }  // namespace
 
-TEST(Session, OpensAnnotatesAndKeepsWhatWasDone) {
+TEST(Session, OpensAnnotatesAndKeepsTheSteps) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -84,7 +84,7 @@ TEST(Session, OpensAnnotatesAndKeepsWhatWasDone) {
     ASSERT_EQ(bench.state().objects.size(), 1U);
     const std::string annotations = bench.state().objects[0].part("annotations");
     EXPECT_EQ(annotations, "steps/s003/ball.ant.json");
-    // Another process goes on with it.
+    // Another process continues the session.
     bench.start();
     EXPECT_EQ(bench.workbench->session().place(), 3U);
     EXPECT_EQ(bench.state().objects[0].part("annotations"), annotations);
@@ -154,7 +154,7 @@ TEST(Session, UndoRestoresEveryStateToTheBit) {
                 R"({"id":1,"do":"run","operation":"annotation edit","with":{"mesh":{"part":"mesh"},"annotations":{"part":"annotations"},"set-class":"ball )" +
                 std::to_string(i) + R"("}})");
         }
-        // A state that was left is what it was; new ones take the place of those that were undone.
+        // Earlier states are unchanged; new states replace those that were undone.
         if (session.place() == session.steps().size() && states.size() != session.steps().size() + 1) {
             states.resize(session.place());
             states.push_back(checksums(session));
@@ -173,7 +173,7 @@ TEST(Session, UndoRestoresEveryStateToTheBit) {
     }
 }
 
-TEST(Session, RefusesInWordsAndChangesNothing) {
+TEST(Session, RefusesWithAMessageAndChangesNothing) {
     Bench bench;
     EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"../../etc/passwd"})").find("is not a mesh"), std::string::npos);
     EXPECT_NE(bench.refused(R"({"id":1,"do":"open","name":"session/session.json"})").find("is not a mesh"), std::string::npos);
@@ -233,10 +233,10 @@ TEST(Session, SurvivesDamagedMessages) {
         const Json answer = parse_json(bench.workbench->answer(damaged).json, "the answer");
         EXPECT_TRUE(answer.HasMember("ok"));
     }
-    bench.start();  // what it holds is in order
+    bench.start();  // its contents are valid
 }
 
-TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
+TEST(Session, IsRefusedIfDamagedOrIfFilesAreMissing) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -254,12 +254,12 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds other data";
 }
 
-TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
+TEST(Session, IsRefusedIfItsPathsLeaveTheFolders) {
     const Scratch outside;
     write_file(outside / "secret.txt", "secret");
     std::filesystem::create_directory(outside / "s001");
     write_file(outside / "s001/kept.txt", "kept");
-    const auto refused = [&](const std::string& what, const std::function<void(const Path&, std::string&)>& change) {
+    const auto refused = [&](const std::string& name, const std::function<void(const Path&, std::string&)>& change) {
         Bench bench;
         bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
         bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -271,13 +271,13 @@ TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
         write_file(folder / "session.json", text);
         try {
             bench.start();
-            ADD_FAILURE() << what;
+            ADD_FAILURE() << name;
         } catch (const Error& error) {
-            EXPECT_FALSE(error.where().empty()) << what;
-            EXPECT_FALSE(error.remedy().empty()) << what;
+            EXPECT_FALSE(error.where().empty()) << name;
+            EXPECT_FALSE(error.remedy().empty()) << name;
         }
-        EXPECT_TRUE(file_exists(outside / "secret.txt")) << what;
-        EXPECT_EQ(read_file(outside / "s001/kept.txt"), "kept") << what;
+        EXPECT_TRUE(file_exists(outside / "secret.txt")) << name;
+        EXPECT_EQ(read_file(outside / "s001/kept.txt"), "kept") << name;
     };
     const auto replaced = [](std::string& text, const std::string& old, const std::string& by) {
         ASSERT_NE(text.find(old), std::string::npos) << old;
@@ -328,7 +328,7 @@ TEST(Session, WritesNoDocumentOverALink) {
     EXPECT_EQ(bench.workbench->session().place(), 1U);
 }
 
-TEST(Session, IsForItsOwnerAndSweepsWhatKilledStepsLeft) {
+TEST(Session, IsPrivateAndRemovesFilesOfKilledSteps) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));
@@ -360,11 +360,11 @@ TEST(Session, AMapIsShownWithItsOwnObject) {
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(R"({"id":1,"do":"run","operation":"measure map","with":{"mesh":{"part":"mesh"},"of":"mean-curvature"}})");
     EXPECT_EQ(maps(), std::vector<std::size_t>{1});
-    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");  // as many vertices, but another object
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");  // the same number of vertices, but another object
     EXPECT_EQ(maps(), (std::vector<std::size_t>{0, 0}));
 }
 
-TEST(Session, OffersTheWordsOfVocabularies) {
+TEST(Session, OffersTheConceptsOfVocabularies) {
     Bench bench;
     write_file(bench.scratch / "terracotta.vocabulary.json",
                read_file(Path(OSTRAKA_SOURCE_DIR) / "data/terracotta.vocabulary.json"));
@@ -374,13 +374,13 @@ TEST(Session, OffersTheWordsOfVocabularies) {
     EXPECT_GT(hello["result"]["words"]["en"].Size(), 3U);
 }
 
-TEST(Session, IsWorkedOnByOneAtATime) {
+TEST(Session, IsOpenedByOneProcessAtATime) {
     Bench bench;
     EXPECT_THROW(Workbench(bench.scratch / "session", bench.scratch.path()), Error);
     bench.start();
 }
 
-TEST(Session, DoesNotOpenWhatCannotBeRead) {
+TEST(Session, DoesNotOpenUnreadableFiles) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     write_file(bench.scratch / "bad.ply", "ply\ngarbage");
@@ -389,7 +389,7 @@ TEST(Session, DoesNotOpenWhatCannotBeRead) {
     bench.ask(R"({"id":1,"do":"scene","known":[]})");
 }
 
-TEST(Session, GoesOnAfterItWasCancelled) {
+TEST(Session, ContinuesAfterACancellation) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.workbench->cancel();
@@ -397,7 +397,7 @@ TEST(Session, GoesOnAfterItWasCancelled) {
     EXPECT_EQ(bench.workbench->session().place(), 2U);
 }
 
-TEST(Session, SavesATemplateThatIsWhole) {
+TEST(Session, SavesACompleteTemplate) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
     bench.ask(filled(annotate("cap", 0.5), false, false));

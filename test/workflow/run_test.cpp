@@ -1,4 +1,4 @@
-// Studies that run: what is done is not done again, whatever stops them, however many threads there are.
+// Runs of studies: completed work is not repeated after any interruption and for any number of threads.
 #include "ostraka/core/text.h"
 #include "ostraka/workflow/crate.h"
 #include "studies.h"
@@ -13,7 +13,7 @@ using namespace ostraka::test;
 
 namespace {
 
-/// Every file of a run with its bytes, without what says when and how long.
+/// Every file of a run with its bytes, without dates and times.
 std::map<std::string, std::string> files_of(const Path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -56,7 +56,7 @@ TEST(MatchingFiles, FollowPatternsInEachPart) {
     EXPECT_EQ(matching_files(scratch / "a/t*o.ply").size(), 1U);
     EXPECT_EQ(matching_files(scratch / "a/one.ply").size(), 1U);
     EXPECT_TRUE(matching_files(scratch / "d/*").empty());
-    // Links back do not multiply what there is.
+    // Cyclic links do not duplicate files.
     for (int i = 0; i < 12; ++i) std::filesystem::create_directory_symlink(".", scratch / ("link" + std::to_string(i)));
     EXPECT_EQ(matching_files(scratch / "*/*/*/*/*/*/*.ply").size(), 3U);
     EXPECT_TRUE(matching_files(scratch / "*/*.ply", [](const Path&) { return false; }).empty());
@@ -96,7 +96,7 @@ TEST(RunStudy, RunsOnlyChangedStepsAgain) {
     EXPECT_TRUE(file_exists(out / "steps/transfer/vertices=4000/pot-4000.ant.json"));
     EXPECT_FALSE(file_exists(out / "steps/pot/pot.ply")) << "outputs that are not requested are not written";
 
-    // One option: only what depends on it, and what that needs in memory.
+    // One option: only dependent steps run, and those whose outputs they need in memory.
     const auto changed = run_all(plan_of(file, {.set = {"spikes=avoid"}}), out);
     for (const std::size_t i : plan.instances_of(plan.study.step("annotated")))
         EXPECT_EQ(changed[i].state, InstanceState::unchanged);
@@ -105,7 +105,7 @@ TEST(RunStudy, RunsOnlyChangedStepsAgain) {
         EXPECT_NE(changed[i].why.find("option spikes was prune, is avoid"), std::string::npos) << changed[i].why;
     }
 
-    // A file that was changed is made again; so is one that is gone.
+    // Changed and missing files are made again.
     write_file(out / "steps/annotated/annotated.ant.json", "{}");
     std::filesystem::remove(out / "steps/transfer/vertices=4000/pot-4000.ant.json");
     const auto repaired = run_all(plan_of(file, {.set = {"spikes=avoid"}}), out);
@@ -170,21 +170,21 @@ TEST(RunStudy, KillLosesOnlyTheRunningStep) {
         const Path out = scratch / signal;
         run_command("run " + file.string() + " --threads 1 --quiet --output " + out.string(),
                     std::string("timeout --foreground -s ") + signal + " 1.5");
-        std::size_t kept = 0;
+        std::size_t record_count = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(out))
-            kept += entry.path().filename() == "record.json" ? 1 : 0;
+            record_count += entry.path().filename() == "record.json" ? 1 : 0;
         const auto resumed = run_command("run " + file.string() + " --json --output " + out.string());
         ASSERT_EQ(resumed.code, 0) << resumed.err;
         const Json report = parse_json(resumed.out, "report");
-        EXPECT_EQ(report["result"]["unchanged"].GetUint64(), kept) << signal;
-        EXPECT_EQ(report["result"]["done"].GetUint64(), 12 - kept) << signal;
+        EXPECT_EQ(report["result"]["unchanged"].GetUint64(), record_count) << signal;
+        EXPECT_EQ(report["result"]["done"].GetUint64(), 12 - record_count) << signal;
     }
     EXPECT_EQ(files_of(scratch / "KILL"), files_of(scratch / "INT"));
 }
 
 namespace {
 
-/// Two pots that are not kept, a transfer between them that is not kept either, and what is made of it.
+/// Two pots and a transfer between them, none of them kept, and a step that uses the result.
 const char* const resumed_study = R"("steps": {
     "pot": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 3000}},
     "annotated": {"operation": "annotation apply", "with": {"mesh": "${pot.output}", "recipe": "teapot.recipe.json"}},
@@ -342,13 +342,13 @@ TEST(RunStudy, ReadsFoldersThatTheCallerNames) {
     EXPECT_EQ(run_command(words + " --reads " + (scratch / "scans").string()).code, 0);
     EXPECT_EQ(run_command(words + " --again --set where=" + (scratch / "scans").string()).code, 0)
         << "a path given by the caller";
-    // A run that says itself where its inputs lie is not believed.
+    // Locations of inputs in the run folder itself are not trusted.
     EXPECT_EQ(run_command("replay " + (scratch / "out").string()).code, 1);
     EXPECT_EQ(run_command("replay " + (scratch / "out").string() + " --inputs " + (scratch / "study").string() + " --reads " +
                           (scratch / "scans").string())
                   .code,
               0);
-    // A link in the study's folder leads out of it.
+    // A link in the study's folder points outside.
     std::filesystem::create_directory_symlink(scratch / "scans", scratch / "study/linked");
     EXPECT_EQ(run_command(words + " --set where=linked").code, 0) << "a path given by the caller";
     write_file(scratch / "study/l.study.json",
@@ -393,7 +393,7 @@ TEST(RunStudy, NeverLeavesTheRunFolder) {
     std::filesystem::remove_all(step);
     std::filesystem::create_directory_symlink(outside.path(), step);
     refused("the folder of a step as a link");
-    // Files that an operation writes beside the one that is kept.
+    // Files that an operation writes next to the kept one.
     const StudyPlan weights = plan_of(scratch.file("w.study.json", study_text_of(R"("steps": {
         "ball": {"operation": "mesh make", "with": {"object": "sphere", "vertices": 300}},
         "cage": {"operation": "cage make", "with": {"mesh": "${ball.output}", "vertices": 30}},
@@ -438,7 +438,7 @@ TEST(RunStudy, FailsStepsWhoseInputsChangeDuringTheRun) {
     const auto second_results = run_all(plan, scratch / "out");
     EXPECT_EQ(count(second_results, InstanceState::done) + count(second_results, InstanceState::unchanged),
               plan.instances.size());
-    // What was only touched has not changed.
+    // Files with only a new time stamp are unchanged.
     std::filesystem::last_write_time(scratch / "v.ply", std::filesystem::file_time_type::clock::now());
     EXPECT_EQ(count(run_all(plan, scratch / "out"), InstanceState::unchanged), plan.instances.size());
 }
@@ -456,7 +456,7 @@ TEST(RunStudy, MovedRunIsUnchanged) {
     const auto plan_in = [&](const char* folder) { return plan_of(scratch / folder / "t.study.json"); };
     const StudyPlan first = plan_in("a");
     for (const char* only :
-         {"pot", "annotated", "cage", "weights", "look"})  // each of a process's own: inputs come from the disk
+         {"pot", "annotated", "cage", "weights", "look"})  // each in its own process: inputs come from the disk
         static_cast<void>(run_all(first, scratch / "a/run", {.only = {only}}));
     std::filesystem::rename(scratch / "a", scratch / "b");
     const StudyPlan moved = plan_in("b");

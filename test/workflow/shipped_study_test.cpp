@@ -1,4 +1,4 @@
-// The studies that come with the toolkit: all that they compute is shown.
+// The shipped studies: all their results are shown.
 #include "studies.h"
 
 #include "ostraka/files/json.h"
@@ -28,10 +28,10 @@ std::vector<std::string> texts_of(const JsonValue& study, const char* member) {
     return texts;
 }
 
-/// What a text `PREFIX NAME . REST` or `PREFIX NAME` names.
+/// The name in a text `PREFIX NAME . REST` or `PREFIX NAME`.
 bool names(const std::string& text, const std::string& name) { return text == name || text.starts_with(name + "."); }
 
-/// What is computed and goes nowhere: steps, parameters, tables and plots.
+/// Unused steps, parameters, tables and plots.
 std::vector<std::string> left_over(const JsonValue& study) {
     std::vector<std::string> shown_names, steps = texts_of(study, "steps"), unused;
     if (const JsonValue* page = find_member(study, "page"))

@@ -1,4 +1,4 @@
-// The page of a study: what its texts hold stays text.
+// The page of a study: markup in texts is escaped.
 #include "studies.h"
 
 using namespace ostraka;

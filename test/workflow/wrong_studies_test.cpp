@@ -13,7 +13,7 @@ struct Wrong {
     const char* message;  ///< of the problem or the remedy
 };
 
-/// A step that is right, for studies that are wrong elsewhere.
+/// A valid step, for studies that are invalid elsewhere.
 #define GOOD R"("a": {"operation": "mesh make", "with": {"object": "vase", "vertices": 2000}})"
 
 const Wrong wrong_studies[]{
@@ -163,7 +163,7 @@ const Wrong wrong_studies[]{
 
 }  // namespace
 
-TEST(WrongStudies, AreRefusedWithPlaceAndRemedyBeforeAnythingRuns) {
+TEST(WrongStudies, AreRefusedWithLocationAndRemedyBeforeAnythingRuns) {
     EXPECT_GE(std::size(wrong_studies), 40U);
     for (const Wrong& wrong : wrong_studies) {
         SCOPED_TRACE(wrong.description);

@@ -17,7 +17,7 @@ struct Measure {
     std::string tool;                     ///< "ruler", "tape" or "bounding"
     std::vector<Index> points;            ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
     std::vector<SurfacePoint> locations;  ///< empty, or the exact place of the pin for each of `points`, in a face
-    std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
+    std::optional<std::array<double, 3>> direction;  ///< direction of a bounding measure
     std::optional<double> value;                     ///< in `unit`; the mean over the repeated pickings
     std::string unit;
     bool stale = false;  ///< true: the mesh or the pins changed and the value was not recomputed
@@ -44,10 +44,10 @@ struct Attribute {
     int id = 0;
     std::string name;
     AttributeType type = AttributeType::semantic;
-    std::string note;       ///< of a semantic attribute
-    Measure measure;        ///< of a measure
-    Descriptor descriptor;  ///< of a descriptor
-    std::string origin{};   ///< of a derived semantic attribute: its derivation, e.g. the rule and its inputs
+    std::string note;       ///< text of a semantic attribute
+    Measure measure;        ///< for a measure
+    Descriptor descriptor;  ///< for a descriptor
+    std::string origin{};   ///< derivation of an inferred semantic attribute, e.g. the rule and its inputs
 };
 
 /// Additional information of an annotation (section 2.2.1): a text, a link or a file, with a checksum if the file is local.
@@ -127,7 +127,7 @@ std::vector<Index> pins_of(const Measure& measure);
 
 /// The common part of measures and descriptors; empty for a semantic attribute.
 struct Figures {
-    std::vector<double> values;  ///< of a measure: at most one
+    std::vector<double> values;  ///< at most one for a measure
     std::string unit;
     bool stale = false;
 };

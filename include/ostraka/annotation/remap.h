@@ -18,7 +18,7 @@ AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, co
                                 const std::vector<Index>& vertex_map, const std::vector<Index>& face_map = {});
 
 /// The annotations of `whole` on a piece of it; `vertices` and `faces` are the indices in `whole` of the elements of the piece.
-/// Dropped are point annotations with a missing vertex, and lines and regions of which not even a line or a region remains.
+/// Point annotations with a missing vertex are dropped, and lines and regions of which neither a line nor a region remains.
 AnnotationSet annotations_of_piece(const Mesh& whole, const AnnotationSet& set, const Mesh& piece,
                                    const std::vector<Index>& vertices, const std::vector<Index>& faces);
 

@@ -44,7 +44,7 @@ public:
     [[nodiscard]] bool enough() const;
     [[nodiscard]] const Eigen::Vector3d& centroid() const;
     [[nodiscard]] double area() const;
-    [[nodiscard]] double diagonal() const;  ///< of the part's bounding box
+    [[nodiscard]] double diagonal() const;  ///< diagonal of the part's bounding box
 
 private:
     struct State;

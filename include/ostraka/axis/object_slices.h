@@ -25,7 +25,7 @@ struct ComparedAxis {
     std::string name;
     std::string reason;  ///< why it does not exist; empty: it was found
     SliceLine line;
-    std::vector<Point> polyline;  ///< of a curved axis
+    std::vector<Point> polyline;  ///< course of a curved axis
     Straightness straightness;
 };
 

@@ -15,7 +15,7 @@
 namespace ostraka {
 
 struct CageOptions {
-    std::uint64_t vertices = 200;  ///< wanted number of vertices; in nested cages that of the finest
+    std::uint64_t vertices = 200;  ///< target number of vertices; for nested cages that of the finest
     double alpha = 0;              ///< openings narrower than this share of the diagonal are closed; 0: automatic, doubled when
                                    ///< needed
     double offset = 0.0167;        ///< distance of the wrap from the mesh, as a share of the diagonal
@@ -29,12 +29,12 @@ struct MirrorPlane {
     Vector normal{1, 0, 0};
 };
 
-/// Relative vertex density wanted at a point of the surface; positive.
+/// Requested relative vertex density at a point of the surface; positive.
 using CageDensity = std::function<double(const Point&)>;
 
 struct CageResult {
     Mesh cage;             ///< closed, oriented outwards, without self-intersections, strictly around the mesh
-    bool reached = false;  ///< true if it has the wanted number of vertices, or with a mirror plane one or two fewer
+    bool reached = false;  ///< true if it has the target number of vertices, or with a mirror plane one or two fewer
     double alpha = 0;      ///< alpha of the wrap, as a share of the diagonal
     std::size_t wrap_vertices = 0;
 };
@@ -42,7 +42,7 @@ struct CageResult {
 /// Wraps the mesh (Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022) and collapses edges of the wrap (cost: Garland
 /// and Heckbert 1997). A collapse is made only if no triangle then intersects the mesh or another triangle and no part of the
 /// mesh is left outside. This is checked exactly before every collapse, so that the cage always encloses the mesh. If the
-/// wanted number is not reached, a coarser wrap is tried. With a mirror plane one half is built, around the mesh and its image,
+/// target number is not reached, a coarser wrap is tried. With a mirror plane one half is built, around the mesh and its image,
 /// and mirrored. The mesh need not be closed; isolated vertices are ignored. Throws Error (input) for a mesh without extent or
 /// without a face of positive area, and for one so far from the origin that its coordinates are too coarse for the offset;
 /// Error (usage) for invalid options and a plane without a direction.

@@ -26,7 +26,7 @@ struct Proposals {
 /// For each fixed ratio (with `stable`, also each stable ratio), proposes the constraint that the smaller measure stays in
 /// proportion to the larger one, between the observed quantiles of the ratio. The part that changes is the annotation of the
 /// smaller measure; the reference is the annotation of the larger one. Measures that the template's annotations do not carry
-/// yet are taken and added. Notes report ratios that cannot be proposed: a measure has no annotation of its own (the whole
+/// yet are taken and added. Notes report ratios that cannot be proposed: a measure does not have its own annotation (the whole
 /// object, descriptors, two measures of one annotation) or cannot be taken on the template. `existing` may be empty;
 /// constraints that it already contains are not repeated.
 Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, RelationGraph existing,

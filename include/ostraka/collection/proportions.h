@@ -28,7 +28,7 @@ struct MeasureRow {
     std::string name, unit;
     std::optional<Summary> summary;  ///< none if there are no values
     std::optional<Interval> deviation_interval,
-        variation_interval;  ///< of the standard deviation, of the coefficient of variation
+        variation_interval;  ///< intervals of the standard deviation and of the coefficient of variation
     /// Standard deviation of the logarithm about the common size of the object, estimated from all ratios with this measure (as
     /// in Friedman and Alm 2012, equation 6); none for fewer than three measures of its kind.
     std::optional<double> own_deviation;

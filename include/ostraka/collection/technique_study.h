@@ -22,7 +22,7 @@ struct TechniqueObject {
 struct TechniqueClassifier {
     std::string name;
     std::vector<std::string> descriptors;
-    std::string words;  ///< what it classifies by, for messages
+    std::string words;  ///< text for messages: the descriptors used
 };
 /// Classifiers of the thesis: "roundness", "roundness variance", "roundness mean and variance", the same for "eccentricity",
 /// "both means", "both" (means and variances of both). Others: "equivalent roundness", "ovality", "marks", "coherence",

@@ -4,7 +4,7 @@
 // An options struct has a member
 //     void describe(OptionList& visit);
 // which lists its fields:
-//     visit("max-distance", max_distance, "farthest a correspondence may lie", Range{0, 1}, "share of the box diagonal");
+//     visit("max-distance", max_distance, "maximum distance of a correspondence", Range{0, 1}, "share of the box diagonal");
 //     visit("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
 #pragma once
 

@@ -40,7 +40,7 @@ struct JoinEvidence {
     // On a vessel the normals of the intact surfaces meet its axis, however worn the fractures are: root mean square distances
     // of the normals from the best axis, as shares of the smaller fragment's size.
     double axis = 0;      ///< excess of both together, from one common axis, over each from its own
-    double own_axis = 0;  ///< of both, each from its own axis
+    double own_axis = 0;  ///< deviation of both fragments, each from its own axis
 
     static constexpr std::size_t numbers = 23;  ///< number of members above
     static constexpr std::size_t count = 24;    ///< number of features

@@ -47,8 +47,8 @@ struct FractureJoint {
 struct RotationMatch {
     std::vector<Motion> poses;          ///< per sherd
     std::vector<int> group;             ///< per sherd: sherds with equal numbers are connected by decided joints (or fixed)
-    std::vector<FractureJoint> joints;  ///< of the assembly; joints that carry come first, best first
-    std::vector<double> overlap;        ///< per sherd: area where another sherd lies too, as a share of its own area
+    std::vector<FractureJoint> joints;  ///< joints of the assembly; carrying ones first, best first
+    std::vector<double> overlap;        ///< per sherd: area that another sherd overlaps, as a share of its own area
     std::vector<std::string> notes;     ///< per sherd: why it has no decided joint; else empty
     double wall = 0;                    ///< median width of the fractures: the unit of closeness
 };

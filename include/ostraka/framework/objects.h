@@ -127,7 +127,7 @@ public:
     Slot& flag() { return is_positional = false, *this; }  ///< --name FILE
     Slot& many() { return repeated = true, *this; }
     Slot& words() { return takes_words = repeated = true, *this; }
-    /// Declares an output as the updated version of an input. Without a file of its own it is written in place of the input,
+    /// Declares an output as the updated version of an input. Without its own file it is written in place of the input,
     /// and it is produced whenever the input is required or given. The input file need not exist yet (`exists`); a program may
     /// omit it.
     Slot& updates(Slot& input) { return updated = &input, input.may_be_new = true, *this; }

@@ -123,7 +123,7 @@ public:
     /// Records the name and checksum of an input that is read elsewhere, such as the objects of a collection read by several
     /// threads.
     void record_input(const std::string& name, const std::string& sha256);
-    /// Sets the checksum of an object in memory that has none of its own.
+    /// Sets the checksum of an object in memory that does not have its own.
     void record_object(const Slot& slot, std::size_t i, const std::string& sha256);
     /// Checksum of an object in memory; empty if unknown.
     std::string checksum_of_object(const Slot& slot, std::size_t i);

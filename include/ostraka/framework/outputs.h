@@ -89,7 +89,7 @@ public:
     void write(IndexMap map) const;
 };
 
-/// Any other kind of file, written by a function of its own. In memory it holds the bytes (std::string).
+/// Any other kind of file, written by its own function. In memory it holds the bytes (std::string).
 class FileOutput : public Slot {
 public:
     explicit FileOutput(std::string memory_extension = {}) : extension_(std::move(memory_extension)) {}

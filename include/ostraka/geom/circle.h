@@ -37,7 +37,7 @@ double angle_covered(std::vector<double> angles);
 /// all statements assume that it continues as the circle does.
 struct ArcFit {
     Circle circle;           ///< with minimum mean squared distance
-    double angle = 0;        ///< of the circle that the curve covers, radians
+    double angle = 0;        ///< angle of the circle that the curve covers, radians
     double deviation = 0;    ///< root mean squared distance from the circle
     double independent = 0;  ///< estimated number of independent residuals
     /// 95 % confidence interval of the radius: infinite upper bound if a straight line fits as well, 0 to infinity if there are

@@ -18,7 +18,7 @@ struct SurfacePoint {
     enum class Kind : std::uint8_t { vertex, edge, face };
     Kind kind = Kind::vertex;
     std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, in either order; the face
-    std::array<double, 3> weights{1, 0, 0};            ///< of the vertex; of both ends; of corners(mesh, face); their sum is one
+    std::array<double, 3> weights{1, 0, 0};  ///< weights of the vertex, of both ends, or of corners(mesh, face); their sum is one
 
     [[nodiscard]] bool is_vertex() const { return kind == Kind::vertex; }
     [[nodiscard]] bool is_on_edge() const { return kind == Kind::edge; }

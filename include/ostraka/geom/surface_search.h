@@ -15,7 +15,7 @@ struct SurfaceHit {
     Index face = no_index;
     Point point{0, 0, 0};
     std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face)
-    double distance = 0;                         ///< from the query point; signed along the direction for line hits
+    double distance = 0;                         ///< distance from the query point; signed along the direction for line hits
 };
 
 /// A search tree over the faces of a mesh, which must outlive it and have no garbage. Queries may run in parallel. Degenerate

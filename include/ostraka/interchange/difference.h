@@ -11,8 +11,8 @@ namespace ostraka {
 struct Difference {
     enum class Kind { added, removed, changed };
     Kind kind = Kind::changed;
-    std::optional<int> id;  ///< of the annotation; nullopt for the set itself
-    std::string tag;        ///< of the annotation in the second set, or in the first set if it was removed
+    std::optional<int> id;  ///< id of the annotation; nullopt for the set itself
+    std::string tag;        ///< tag of the annotation in the second set, or in the first set if it was removed
     std::string field;
     std::string before, after;                    ///< values as text; lists are truncated
     std::size_t only_before = 0, only_after = 0;  ///< geometry: number of faces, edges or points in only one of the sets
@@ -47,7 +47,7 @@ struct MergedAnnotations {
     }
 };
 
-/// Three-way merge by id, field by field: a change of only one side is taken, equal changes of both sides as well; different
+/// Three-way merge by id, field by field: a change of only one side is accepted, as are equal changes of both sides; different
 /// changes are conflicts. Each attribute is a separate field, identified by id. Removing an annotation that the other side
 /// changed is a conflict. merge(base, a, base) = a and merge(base, base, b) = b, including the order.
 MergedAnnotations merge_annotations(const AnnotationSet& base, const AnnotationSet& ours, const AnnotationSet& theirs,

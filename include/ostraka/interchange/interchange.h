@@ -22,7 +22,7 @@ struct ExportOptions {
 };
 
 struct ExportedAnnotations {
-    std::string bytes;               ///< of the file
+    std::string bytes;               ///< contents of the file
     std::vector<std::string> notes;  ///< messages about data that the format cannot store
     std::size_t annotations = 0;     ///< number of annotations in the file
 };

@@ -25,7 +25,7 @@ struct LandmarkCurve {
 struct LandmarkSet {
     std::vector<Landmark> landmarks;
     std::vector<LandmarkCurve> curves;
-    std::string unit;                ///< of the coordinates; empty if the file does not give it
+    std::string unit;                ///< unit of the coordinates; empty if the file does not give it
     std::vector<std::string> notes;  ///< messages about content of the file that is not kept
 };
 
@@ -75,7 +75,7 @@ struct PlaceOptions {
 
 /// Position of an imported annotation on the mesh.
 struct PlacedAnnotation {
-    int id = 0;  ///< of the annotation
+    int id = 0;  ///< id of the annotation
     std::string tag;
     std::size_t points = 0;      ///< number of its points placed
     double to_surface = 0;       ///< maximum distance of a point from the surface

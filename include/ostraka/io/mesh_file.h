@@ -74,7 +74,7 @@ struct FaceValues {
 };
 
 struct WriteOptions {
-    Encoding encoding = Encoding::binary;   ///< for PLY and STL
+    Encoding encoding = Encoding::binary;   ///< encoding of PLY and STL
     std::string comment;                    ///< one line (provenance), written if the format supports comments
     std::vector<double> vertex_quality{};   ///< empty or one number per vertex: PLY property "quality", used for colouring
     std::vector<FaceValues> face_values{};  ///< additional PLY properties of faces

@@ -10,10 +10,10 @@ namespace ostraka {
 /// Volume and centroid of the solid bounded by a region.
 struct RegionSolid {
     double volume = 0;  ///< signed: positive if the faces are oriented outwards
-    /// Max change of the volume by the missing surfaces, if each stays inside the convex hull of its outline: the sum of the
-    /// hulls' volumes. 0 if the region is closed or its outlines are planar.
+    /// Maximum change of the volume due to the missing surfaces, if each stays inside the convex hull of its outline: the sum of
+    /// the hulls' volumes. 0 if the region is closed or its outlines are planar.
     double volume_bound = 0;
-    Point centroid{0, 0, 0};   ///< of the solid; of the surface if the volume vanishes
+    Point centroid{0, 0, 0};   ///< centroid of the solid; of the surface if the volume vanishes
     std::size_t outlines = 0;  ///< number of outlines, closed by fans
 };
 

@@ -76,7 +76,7 @@ struct PageObject {
     const Mesh* mesh = nullptr;
     const AnnotationSet* annotations = nullptr;  ///< null: none
     const RelationGraph* graph = nullptr;        ///< null: none
-    std::vector<RelationCheck> checks = {};      ///< of the graph's relationships, or empty
+    std::vector<RelationCheck> checks = {};      ///< checks of the graph's relationships, or empty
     const Mesh* cage = nullptr;                  ///< null: none
     std::vector<PageMap> maps = {};
     const PageSlices* slices = nullptr;         ///< null: none

@@ -38,8 +38,8 @@ struct CompletedObject {
     std::vector<int> fragment;         ///< index of the fragment observed here; -1: none
     std::vector<Index> fragment_face;  ///< face of that fragment that contains it; no_index: it is from the template
     std::vector<Index> template_face;  ///< face of the template that contains it; no_index: it is from a fragment
-    std::vector<double> distance;      ///< of its centroid from the nearest observed face; 0 if observed, -1: none observed
-    std::vector<double> confidence;    ///< 1 if observed, halved with every `halving` of distance
+    std::vector<double> distance;  ///< distance of its centroid from the nearest observed face; 0 if observed, -1: none observed
+    std::vector<double> confidence;  ///< 1 if observed, halved with every `halving` of distance
     std::vector<CompletionNote> notes;
     // Per fragment:
     std::vector<std::size_t> joined;  ///< number of its faces in the mesh

@@ -52,7 +52,7 @@ struct VertexMatch {
     int fragment = -1;      ///< -1: not observed
     Index face = no_index;  ///< face of the fragment
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    double distance = 0;  ///< from the deformed vertex
+    double distance = 0;  ///< distance from the deformed vertex
 };
 
 struct NonRigidFit {

@@ -16,7 +16,7 @@ namespace ostraka {
 struct LandmarkPair {
     std::string name;
     Eigen::Vector3d on_template, on_fragment;
-    Index vertex = no_index;  ///< of the template
+    Index vertex = no_index;  ///< vertex of the template
 };
 
 /// Point annotations of one point with the same tag in both sets, if the tag is unique in either, ordered by tag. `notes` gets

@@ -24,7 +24,7 @@ struct ShapePrior {
 struct PriorOptions {
     int iterations = 40;
     double maximum = 3;   ///< max absolute coefficient, in standard deviations
-    double samples = 20;  ///< min number of independent samples by which the observed surface is weighted against the prior
+    double samples = 20;  ///< minimum number of independent samples as which the observed surface is weighted against the prior
     double search_radius = 0.1;  ///< max distance of a match, as a share of the diagonal
     double angle = 60;           ///< max angle between the normals of a match, degrees
 

@@ -25,7 +25,7 @@ struct VertexAssignmentOptions {
 };
 
 struct VertexAssignment {
-    std::vector<Index> vertices;     ///< of the template's part, ascending
+    std::vector<Index> vertices;     ///< vertices of the template's part, ascending
     std::vector<Index> counterpart;  ///< per vertex, on the fragment; no_index: none
     std::vector<double> cost;        ///< per vertex; infinite without counterpart
     double total = 0;                ///< sum over the vertices with a counterpart

@@ -13,14 +13,14 @@ namespace ostraka {
 
 struct MeshRegistrationOptions {
     bool scale = true;     ///< estimate the scale, as for meshes in different units; else the meshes have the same size
-    double tolerance = 0;  ///< of equal surfaces, share of the target's diagonal; 0: from the resolution of the meshes
+    double tolerance = 0;  ///< tolerance for equal surfaces, share of the target's diagonal; 0: from the resolution of the meshes
     int samples = 4000;    ///< number of registration points on both meshes together, and number of evaluation points on each
 
     void describe(OptionList& visit);
 };
 
 enum class RegistrationVerdict {
-    aligned,     ///< one surface, up to what the resolutions explain
+    aligned,     ///< one surface, up to differences explained by the resolutions
     mirrored,    ///< not by any motion, but by a reflection
     inside_out,  ///< the faces of one mesh are flipped
     different    ///< not the same object

@@ -10,7 +10,7 @@
 namespace ostraka {
 
 struct PartAlignmentOptions {
-    double trim = 0.8;           ///< share of the pairs that are kept, the nearest ones: excludes what is not on the whole
+    double trim = 0.8;  ///< share of the pairs that are kept, the nearest ones: excludes surface that is missing on the whole
     double search_radius = 0.1;  ///< max distance of a pair, as a share of the whole's diagonal
     double angle = 60;           ///< max angle between the normals of a pair, degrees
     double anchors = 1;          ///< weight of all anchors together relative to that of all pairs

@@ -12,7 +12,7 @@
 namespace ostraka {
 
 struct PoseSearchOptions {
-    double min_scale = 1, max_scale = 1;  ///< of the whole; equal: known
+    double min_scale = 1, max_scale = 1;  ///< range of scales of the whole; equal: known
     double tolerance = 0.02;              ///< points nearer than this are on the whole, as a share of the part's size
     double min_confidence = 0.5;          ///< min confidence of an answer; below it the pose is undecided
     int points = 2000;                    ///< number of points on the whole; the part gets the same density
@@ -50,7 +50,7 @@ struct PoseSearchResult {
     double confidence = 0;  ///< confidence that the first is right, up to the motions in `slippable`
     bool decided = false;
     std::string reason;          ///< reason why the pose is undecided; empty if it is decided
-    SlippableMotions slippable;  ///< of the first candidate, on the scaled whole
+    SlippableMotions slippable;  ///< slippable motions of the first candidate, on the scaled whole
     std::vector<SlippableRange> ways;
 };
 

@@ -42,7 +42,7 @@ struct GeneralisedProcrustes {
     /// Mean of the aligned configurations, in the orientation of the first one; with `scaling` normalised to centroid size 1.
     Landmarks mean;
     std::vector<double> centroid_sizes;
-    double sum_of_squares = 0;  ///< of all aligned configurations about the mean
+    double sum_of_squares = 0;  ///< sum over all aligned configurations about the mean
     int iterations = 0;
     bool converged = false;  ///< the sum of squares fell by less than 1e-15 of the squared sizes
 };

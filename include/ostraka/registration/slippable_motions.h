@@ -22,9 +22,9 @@ std::string to_string(SlippableKind kind);
 
 struct SlippableMotions {
     SlippableKind kind = SlippableKind::none;
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< of the line or the plane; the centre of the sphere
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line; normal of the plane
-    double pitch = 0;                                      ///< of a helix: translation per radian
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< point of the line or the plane; centre of the sphere
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< direction of the line; normal of the plane
+    double pitch = 0;                                      ///< pitch of a helix: translation per radian
 
     /// As text, such as "rotation about a line".
     [[nodiscard]] std::string text() const;

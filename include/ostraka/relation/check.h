@@ -1,4 +1,4 @@
-// Which relationships of a graph hold on a mesh, and by how much the others fail.
+// Checks which relationships of a graph hold on a mesh, and measures the deviations of the others.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// Tolerances for what is not stated with its own.
+/// Tolerances of relationships that do not have their own.
 struct RelationOptions {
     double distance = 0.01;
     double angle = 5;
@@ -21,12 +21,12 @@ std::string to_string(Verdict verdict);
 
 struct RelationCheck {
     Verdict verdict = Verdict::unknown;
-    RelationParameters parameters;  ///< as measured on this mesh, with the tolerances that were asked for
+    RelationParameters parameters;  ///< measured on this mesh, with the tolerances in effect
     std::string text;               ///< why it fails or cannot be determined
 };
 
-/// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only
-/// experts can tell, and types whose input is missing; `text` says what. Throws Error (input) if the graph does not fit the set.
+/// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only experts
+/// can decide, and types whose input is missing; `text` gives the reason. Throws Error (input) if the graph does not fit the set.
 std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 

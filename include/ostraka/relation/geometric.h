@@ -22,7 +22,7 @@ public:
     RelationCheck measure(const Relationship& relationship);
 
     /// All relationships that hold between annotations of the set, except the root; doc/relations.md describes the candidates.
-    /// `types`: the types wanted (all if empty). Ids count up from `first_id`. At most 10000 relationships of a type are
+    /// `types`: the requested types (all if empty). Ids count up from `first_id`. At most 10000 relationships of a type are
     /// returned; of pairs that are expensive to measure only the most similar are measured, and `notes` reports that.
     std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id,
                                       std::vector<std::string>* notes = nullptr);

@@ -39,7 +39,7 @@ struct RelationType {
 /// All known types: the geometric ones in the order of GeometricRelation, then the others.
 const std::vector<RelationType>& relation_types();
 const RelationType& relation_type(GeometricRelation kind);
-/// The type of that name, ignoring case; nullptr if there is none: experts may define types of their own.
+/// The type of that name, ignoring case; nullptr if there is none: experts may define further types.
 const RelationType* find_relation_type(const std::string& name);
 /// The known name with the most similar spelling.
 std::string nearest_relation_type(const std::string& name);

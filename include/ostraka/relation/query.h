@@ -34,7 +34,7 @@ struct QueryAnswer {
 };
 
 /// A query such as `2 arm and not handle`, `area(handle) >= area(body) / 3`, `related("same mould", 17)` (grammar:
-/// doc/annotation-find.md). A word stands for the same annotation throughout the query, one that has this meaning (TagMatcher).
+/// doc/annotation-find.md). A word denotes the same annotation throughout the query, one with this meaning (TagMatcher).
 /// The query holds if some assignment of annotations to words satisfies it.
 class AnnotationQuery {
 public:

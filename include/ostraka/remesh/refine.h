@@ -11,7 +11,7 @@
 namespace ostraka {
 
 struct RefineOptions {
-    std::uint64_t vertices = 0;  ///< wanted number of vertices, or 0
+    std::uint64_t vertices = 0;  ///< target number of vertices, or 0
     int levels = 0;              ///< number of uniform subdivisions, or 0
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
@@ -28,11 +28,11 @@ struct RefineResult {
     std::size_t bisections = 0;    ///< number of single edges halved afterwards
 };
 
-/// Splits edges until the wanted number of vertices, or the wanted number of levels, is reached; exactly one of the two must be
-/// given. Old vertices keep their index and, unless the scheme is loop, their position. Values in property maps of types Index,
-/// int, bool, double, float and std::uint8_t are carried along: halves of edges and parts of faces take the values of the
+/// Splits edges until the target number of vertices, or the requested number of levels, is reached; exactly one of the two must
+/// be given. Old vertices keep their index and, unless the scheme is loop, their position. Values in property maps of types
+/// Index, int, bool, double, float and std::uint8_t are carried along: halves of edges and parts of faces take the values of the
 /// element they were cut from; new vertices, and edges inside old faces, take the default of the map. Linear in the size of the
-/// result, except for sorting by length. Deterministic. Throws Error (usage) if the mesh has more vertices than wanted, no
+/// result, except for sorting by length. Deterministic. Throws Error (usage) if the mesh has more vertices than requested, no
 /// edges to split, or if the result would be too large for 32-bit indices.
 ///
 /// Sources: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984 (halving

@@ -9,7 +9,7 @@
 namespace ostraka {
 
 struct RemeshOptions {
-    std::uint64_t vertices = 0;  ///< wanted number of vertices
+    std::uint64_t vertices = 0;  ///< target number of vertices
     int iterations = 3;          ///< rounds of splitting, collapsing, flipping, smoothing and projecting
     double feature_angle = 0;    ///< degrees; edges with a larger angle between their face normals are kept; 0 = none
 
@@ -20,7 +20,7 @@ struct RemeshResult {
     Mesh mesh;
     double target_edge_length = 0;  ///< in the mesh's unit
     std::size_t remeshed = 0;       ///< number of vertices before the adjustment
-    bool reached = false;           ///< whether the wanted number was reached exactly
+    bool reached = false;           ///< whether the target number was reached exactly
     double deviation = 0;           ///< maximum distance of the new vertices from the old surface, in the mesh's unit
 };
 

@@ -11,7 +11,7 @@
 namespace ostraka {
 
 struct SimplifyOptions {
-    std::uint64_t vertices = 0;                                      ///< wanted number of vertices
+    std::uint64_t vertices = 0;                                      ///< target number of vertices
     enum class Method { qem, lindstrom_turk } method = Method::qem;  ///< cost of a collapse and position of its vertex
     enum class Outlines { follow, protect, ignore } outlines = Outlines::follow;  ///< treatment of the marked edges
     /// Maximum rotation of a face normal per collapse, degrees; relaxed if the number cannot be reached otherwise.
@@ -42,7 +42,7 @@ struct SimplifyResult {
     std::vector<Index> vertex_map;
     std::vector<Index> face_map;  ///< old face -> new face, or no_index if it was removed
     std::size_t collapses = 0;
-    bool reached = false;          ///< whether the wanted number was reached exactly
+    bool reached = false;          ///< whether the target number was reached exactly
     std::string stop_reason;       ///< message: why the simplification stopped
     bool outlines_broken = false;  ///< whether marked edges were merged to reach the number (never if protected)
     std::size_t isolated_dropped = 0;
@@ -51,8 +51,9 @@ struct SimplifyResult {
 /// Collapses edges in the order of their cost until `options.vertices` are left. The mesh stays manifold and keeps its topology
 /// (genus, components, borders) and orientation; no face is flipped. Property maps of kept elements keep their values; the
 /// garbage is collected. Neighbouring vertices stay neighbours or are merged, so a poly-line mapped through `vertex_map` is a
-/// poly-line. O(n log n). Deterministic. Throws Error (usage) if the mesh has fewer vertices than wanted or the number of flags
-/// does not match the mesh. If the number cannot be reached, the result gives the reason and contains the smallest mesh found.
+/// poly-line. O(n log n). Deterministic. Throws Error (usage) if the mesh has fewer vertices than requested or the number of
+/// flags does not match the mesh. If the number cannot be reached, the result gives the reason and contains the smallest mesh
+/// found.
 ///
 /// Sources: Garland and Heckbert, "Surface simplification using quadric error metrics", 1997; Lindstrom and Turk, "Fast and
 /// memory efficient polygonal simplification", 1998; link conditions: Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving

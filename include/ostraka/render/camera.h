@@ -19,7 +19,7 @@ struct PictureCamera {
     Vector right{1, 0, 0}, up{0, 0, 1}, toward{0, -1, 0};  ///< `toward` points to the viewer
     Point centre{0, 0, 0};                                 ///< the point shown in the middle of the picture
     double scale = 1;                                      ///< pixels per unit; in perspective at the depth of the centre
-    double distance = 0;                                   ///< from the centre to the eye; 0 for parallel projection
+    double distance = 0;                                   ///< distance from the centre to the eye; 0 for parallel projection
     double middle_x = 0, middle_y = 0;                     ///< pixel coordinates of the centre
 
     struct Ray {

@@ -12,8 +12,8 @@ namespace ostraka {
 /// Agreement of two joined fragments on one axis.
 enum class AxesAgree {
     yes,
-    no,       ///< their axes are farther apart than their errors and a join's error allow
-    unknown,  ///< at least one of them has no axis of its own
+    no,       ///< the deviation of their axes exceeds their errors and that of a join
+    unknown,  ///< at least one of them does not have its own axis
 };
 std::string to_string(AxesAgree agree);
 
@@ -29,7 +29,7 @@ struct GroupAxis {
     double direction_error = 0, place_error = 0;
     double diameter = 0;  ///< largest diameter from a fragment's own profile about its axis; 0: none
     double round = 0;     ///< share of the area (without fractures) on fragments that are rotationally symmetric about the axis
-    double diagonal = 0;  ///< of the group
+    double diagonal = 0;  ///< diagonal of the group
     std::vector<SherdOnProfile> fragments;  ///< own axis, lean, aside, weight, use; only members that depend on the axis
     std::vector<JoinAxes> joins;
 };

@@ -35,7 +35,7 @@ std::string to_string(SherdUse use);
 struct SherdOnProfile {
     std::string name;
     SherdUse use = SherdUse::used;
-    std::string reason;       ///< what a partly used sherd does not contribute, or why it is left out
+    std::string reason;       ///< contribution that a partly used sherd lacks, or why it is left out
     std::string remedy;       ///< how to remedy that, if possible
     Axis axis;                ///< axis of the sherd alone
     double lean = 0;          ///< degrees between its axis and the common one
@@ -70,7 +70,7 @@ struct RevolutionTemplate {
 /// moved by its most likely tilt and offset; one without an axis is not moved.
 ///
 /// At each height, rays are cast from the axis in all directions: the wall is where most of the rays that hit any wall at that
-/// height are inside a sherd, which discards what fractures cut away. Its outline, a level line of sub-row precision, is the
+/// height are inside a sherd, which discards parts cut away by fractures. Its outline, a level line of sub-row precision, is the
 /// profile, swept about the axis with triangles of uniform size. Heights without a sherd between others are bridged by straight
 /// lines. Annotations: regions "outer", "inner" and "base", lines "rim", "widest girth" and "foot", points "base centre" and
 /// "floor centre" (where they exist), the axis as an attribute.

@@ -23,9 +23,9 @@ struct ConstraintReach {
     /// Root mean square distance of the rows from their projection, after the edit (`asked`) and after the solve through the
     /// cage (`left`). For the group of rows (for example, the shape of one part) that is worst relative to its tolerance.
     double asked = 0, left = 0;
-    double tolerance = 0;                ///< for `left`: the distance tolerance relative to that group's own diagonal
+    double tolerance = 0;                ///< tolerance of `left`: the distance tolerance relative to that group's own diagonal
     std::optional<int> lacking;          ///< the annotation of that group, if it is a single one
-    Verdict verdict = Verdict::unknown;  ///< of the constraint in its own quantities, after the solve
+    Verdict verdict = Verdict::unknown;  ///< verdict on the constraint in its own quantities, after the solve
     std::vector<Deviation> deviations;
     bool reached = false;  ///< the rank equals the number of rows; or the constraint holds and `left` is within its tolerance
 };
@@ -45,7 +45,7 @@ struct CageForConstraints {
 };
 
 /// A cage that is denser around the parts of the constraints and, if necessary, closer to the mesh (down to a quarter of the
-/// offset) and with up to twice the number of vertices wanted. Four variants are tried; returns the first that satisfies all
+/// offset) and with up to twice the target number of vertices. Four variants are tried; returns the first that satisfies all
 /// constraints, otherwise the one that satisfies most. Throws as make_cage and cage_reach do.
 CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                  const CageOptions& options, const std::optional<MirrorPlane>& mirror = {},

@@ -35,8 +35,9 @@ struct EditStep {
     /// per_point: that of the largest weight of each vertex. Default: 0.4, or lower if a vertex would have no handle.
     enum class Rule { auto_mesh, auto_cage, per_point };
     std::optional<std::variant<double, Rule>> threshold = {};
-    bool rule_within_selection = false;     ///< the rule considers the selected vertices only, not all of the mesh
-    std::optional<std::size_t> level = {};  ///< of nested cages, 0: the outermost; default: the innermost around the vertices
+    bool rule_within_selection = false;  ///< the rule considers the selected vertices only, not all of the mesh
+    std::optional<std::size_t> level =
+        {};  ///< level of nested cages, 0: the outermost; default: the innermost around the vertices
 
     struct Translate {
         Eigen::Vector3d by;
@@ -55,7 +56,7 @@ struct EditStep {
         double factor;
         struct Base {};                                         ///< the lowest handle along the direction
         struct Middle {};                                       ///< the mean of the handles
-        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< what stays in place
+        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< position that stays in place
     };
     struct MoveTo {
         std::vector<Eigen::Vector3d> places;  ///< one for each handle, in the order of the vertices

@@ -26,7 +26,7 @@ std::optional<Dissimilarity> dissimilarity(const ShapeClass& learnt, const std::
 
 /// Whether a quantity enters the dissimilarity: residuals of the fit and measures of the whole surface.
 bool counts_for_dissimilarity(const ClassQuantity& quantity);
-/// Mean and variance of the members' values on the scale that is taken as normal.
+/// Mean and variance of the members' values on the scale that is assumed to be normal.
 SampleMoments dissimilarity_moments(const LearntRange& range, std::optional<std::size_t> without = {});
 
 /// Dependence of the quantities that enter the dissimilarity, within classes that are queried together: cross products of the

@@ -61,7 +61,7 @@ struct MemberFit {
     std::string placed_by;      ///< "correspondence", "landmarks" or "surface"
     std::string problem;        ///< why it is not fitted, with the remedy; empty if it is fitted
     std::vector<std::string> notes;
-    std::optional<FitResiduals> residuals;  ///< none in correspondence
+    std::optional<FitResiduals> residuals;  ///< nullopt for members in correspondence
     double contact_distance = 0;            ///< distance up to which surfaces lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
     /// (inner_wall_faces). It is excluded from the residuals and from the measures of the whole shape. `outer` is the object

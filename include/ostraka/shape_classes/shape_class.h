@@ -33,7 +33,7 @@ struct LearntRange {
     double min = 0, max = 0, mean = 0;
     double percentile_5 = 0, percentile_25 = 0, median = 0, percentile_75 = 0, percentile_95 = 0;
     std::optional<double> deviation;  ///< standard deviation; none for a single value
-    bool logarithm = false;           ///< whether its logarithm is taken as normal: positive values, except constraints
+    bool logarithm = false;           ///< whether its logarithm is assumed to be normal: positive values, except constraints
     double reject = 0;                ///< rate at which this quantity alone rejects members; 0: it cannot reject
     std::optional<double> low, high;  ///< accepted range; none if it cannot be learnt; a residual has no low
     /// Dissimilarity only: above it an object is not recognised, but only above `high` is it rejected.
@@ -109,7 +109,7 @@ ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<Le
 /// (`predict`) of its values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities
 /// present and among the quantities of each kind (Bonferroni), so that it holds for any dependence between them. Quantities of
 /// single parts, and those that enter the dissimilarity (dissimilarity.h), only reject in combination. Attributes get bounds as
-/// if they were a kind of their own; their rate is additional if they are set to decide.
+/// if they were a separate kind; their rate is additional if they are set to decide.
 void learn_thresholds(ShapeClass& learnt);
 
 /// The same for classes that are queried together. The variance of a geometry quantity, or of the combined parts, is moderated

@@ -20,15 +20,15 @@ struct ClayOptions {
 struct ClayVolume {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double maximum = 0;        ///< unseen regions count as clay; unknown if no slice has an outline
-    double minimum = unknown;  ///< unseen regions count as hollow except for a wall; unknown if no wall is seen or given
+    double minimum = unknown;  ///< unseen regions count as hollow except for a wall; unknown if no wall is visible or given
     double envelope = 0;       ///< volume within the outer surface, cavities filled; unknown where contours cross
     double wall = unknown;     ///< wall thickness used for `minimum`, in the mesh's unit
-    /// Wall thickness where both sides of the wall are seen: mean of the slices' means, 5 % quantile of the slices' minima, 95
+    /// Wall thickness where both sides of the wall are visible: mean of the slices' means, 5 % quantile of the slices' minima, 95
     /// % quantile of their maxima. Quantiles are used because a plane that grazes a floor or a rim does not show the wall
     /// thickness.
     double wall_mean = unknown, wall_min = unknown, wall_max = unknown;
-    int slices = 0;           ///< number of slices that meet the object
-    int with_cavity = 0;      ///< number of these slices with a hole whose whole outline is seen
+    int slices = 0;           ///< number of slices that intersect the object
+    int with_cavity = 0;      ///< number of these slices with a hole whose whole outline is visible
     int without_outline = 0;  ///< number of these slices whose outer contours are all open: interpolated from their neighbours
                               ///< for `maximum` and `envelope`, zero for `minimum`
     int crossing = 0;  ///< number of these slices whose contours cross, so that areas are undefined: `maximum` takes the sum of
@@ -37,7 +37,7 @@ struct ClayVolume {
     bool reversed = false;  ///< whether the mesh is closed and inside out, and was reversed
 };
 
-/// Sums over slices, the mid-planes of layers of equal height. In a slice whose cavity is seen, the area of the material
+/// Sums over slices, the mid-planes of layers of equal height. In a slice whose cavity is visible, the area of the material
 /// counts. Elsewhere each outer contour of area A may hide a cavity: it holds between A and A - pi (r - t)^2 of clay, where r
 /// is the radius of the circle of area A and t the wall thickness. By the Brunn-Minkowski inequality no contour with a wall of
 /// at least t all around holds less, and a disc attains the bound. Everything within t of the lowest and of the highest point

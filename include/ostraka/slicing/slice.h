@@ -75,7 +75,7 @@ struct Completeness {
 struct Slice {
     double height = 0;
     std::vector<Contour> contours;
-    Completeness completeness;  ///< of a slice without contours: all 1, although it encloses nothing
+    Completeness completeness;  ///< for a slice without contours all 1, although it encloses nothing
 };
 
 struct SliceStack {
@@ -108,7 +108,7 @@ std::vector<double> slice_heights(double lowest, double highest, int count);
 /// million heights.
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing);
 
-/// Each outer contour with the holes directly in it, as a slice of its own (an island in a hole is a component too; its
+/// Each outer contour with the holes directly in it, as a separate slice (an island in a hole is a component too; its
 /// completeness is that of its closed contours). Open contours, and holes outside all outer contours, belong to no component.
 std::vector<Slice> components(const Slice& slice);
 

@@ -2,7 +2,7 @@
 //
 // They describe the closed contours only: an open contour encloses no area and is never closed by a straight line. Values that
 // need an area are absent (NaN) in a slice without a closed outer contour; if the slice also has open contours, `Completeness`
-// tells how much is missing. Only the circle may be fitted to open contours, with a confidence interval of its radius; open
+// gives the missing fraction. Only the circle may be fitted to open contours, with a confidence interval of its radius; open
 // contours have no roundness, since the missing part need not be round. The shape is the material: outer contours without their
 // holes. Its outline consists of the outermost contours, filled. Circles are compared with the largest of these, the main
 // outline, so that handles and arms beside the body do not count. If contours intersect (a self-intersecting mesh) by more than

@@ -25,7 +25,7 @@ struct SlicedObject {
 
     /// Barycentres of the material of all slices that have one.
     [[nodiscard]] std::vector<Point> centres() const;
-    /// Whether any plane met the object.
+    /// Whether any plane intersects the object.
     [[nodiscard]] bool met() const;
     [[nodiscard]] SliceStack stack() const { return {frames.empty() ? SliceFrame{} : frames[0], slices, reversed}; }
     [[nodiscard]] std::vector<double> sorted_heights() const;

@@ -23,10 +23,10 @@ struct HardSummary {
     bool met = false;  ///< all hard constraints are met to the tolerance; if not, the points are those of the smallest
                        ///< violation
     int rounds = 0;
-    std::vector<double> violation;      ///< greatest distance of a hard row from its projection per round, in the points' unit
+    std::vector<double> violation;      ///< maximum distance of a hard row from its projection per round, in the points' unit
     std::vector<double> of_constraint;  ///< the same at the end, for each constraint; 0 for soft ones
     double tolerance = 0;               ///< in the points' unit
-    double scale = 1;                   ///< greatest penalty weight reached, as a multiple of the constraint's weight
+    double scale = 1;                   ///< maximum penalty weight reached, as a multiple of the constraint's weight
     SolveSummary last;                  ///< summary of the last round
 };
 

@@ -128,7 +128,8 @@ struct LaplacianDisplacement {
 /// The row is zero; cotangent weights (Pinkall and Polthier 1993), divided by their sum.
 struct CotangentLaplacian {
     static constexpr KindInfo kind{"CotangentLaplacian", 2};
-    std::vector<double> weights = {};  ///< of the neighbours; default: computed, the neighbours being the closed ring in order
+    std::vector<double> weights =
+        {};  ///< weights of the neighbours; default: computed for neighbours that form the closed ring in order
 };
 
 /// The row is a given displacement; weights as for CotangentLaplacian.

@@ -41,7 +41,7 @@ struct AxisDirection {
 struct AxisOnLine {
     static constexpr KindInfo kind{"AxisOnLine", 1};
     Eigen::Vector3d direction, point;  ///< the line
-    std::vector<int> stations = {};    ///< of each point, from 0 on; default: a separate one for each
+    std::vector<int> stations = {};    ///< station of each point, from 0 on; default: a separate one for each
     /// Share of each point that counts for the next station, 0 to 1, the rest for its own: hat functions, which avoid waves of
     /// the length of a group. Default: 0.
     std::vector<double> shares = {};
@@ -51,8 +51,8 @@ struct AxisOnLine {
 struct MeansOnLevel {
     static constexpr KindInfo kind{"MeansOnLevel", 2};
     Eigen::Vector3d up;                 ///< of any length
-    std::vector<int> groups = {};       ///< of each point, from 0 on; default: a separate one for each
-    std::vector<double> weights = {};   ///< of the points in the means of their groups; default: 1
+    std::vector<int> groups = {};       ///< group of each point, from 0 on; default: a separate one for each
+    std::vector<double> weights = {};   ///< weights of the points in the means of their groups; default: 1
     std::optional<Points> places = {};  ///< one per group, whose differences of height are kept; default: none
 };
 
@@ -60,7 +60,7 @@ struct MeansOnLevel {
 struct MeanPosition {
     static constexpr KindInfo kind{"MeanPosition", 1};
     Eigen::Vector3d place;
-    std::vector<double> weights = {};  ///< of the points; default: 1
+    std::vector<double> weights = {};  ///< weights of the points; default: 1
 };
 
 struct MirrorPlane {
@@ -81,7 +81,7 @@ struct MirrorInTriangles {
     static constexpr KindInfo kind{"MirrorInTriangles", 4};
     MirrorPlane plane;
     std::vector<double> barycentric;           ///< three coordinates for each group
-    std::optional<Points> discrepancies = {};  ///< of each group: the mirrored point minus its partner, kept; default: zero
+    std::optional<Points> discrepancies = {};  ///< for each group the mirrored point minus its partner, preserved; default: zero
 };
 
 /// A measure of a part: the distance of two points, or the component of their difference along a direction.
@@ -97,12 +97,12 @@ struct PinnedMeasure {
 /// conflicting constraints cannot degrade the shape over the iterations.
 struct Proportion {
     static constexpr KindInfo kind{"Proportion", 2};
-    Interval range;         ///< of measure / second or, without a second measure, of the measure in the points' unit
+    Interval range;         ///< range of measure / second or, without a second measure, of the measure in the points' unit
     PinnedMeasure measure;  ///< pins within the part
     std::optional<PinnedMeasure> second = {};
-    int part = 0;                      ///< the part is the first so many ids; 0: all
+    int part = 0;                      ///< number of leading ids that form the part; 0: all
     std::vector<int> anchors = {};     ///< positions in ids, within the part
-    std::optional<Points> shape = {};  ///< of the part
+    std::optional<Points> shape = {};  ///< shape of the part
     bool uniform = false;              ///< the shape is scaled instead of stretched
 };
 

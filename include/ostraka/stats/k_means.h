@@ -21,7 +21,7 @@ struct KMeansResult {
     std::vector<int> labels;  ///< one per sample; clusters by decreasing size, ties by their first sample
     Eigen::MatrixXd centres;  ///< one row per cluster; fewer than requested if there are fewer distinct samples
     double cost = 0;          ///< sum of squared distances to the centres
-    int iterations = 0;       ///< of the kept restart
+    int iterations = 0;       ///< iterations of the kept restart
     bool converged = false;   ///< whether no label changed in the last iteration
 };
 
@@ -61,7 +61,7 @@ struct ClusterCount {
     std::vector<Row> rows;  ///< 1, 2, ... clusters
     int by_silhouette = 1;  ///< the number, from 2 up, with the largest mean silhouette; 1 if no larger number can be tried
     int by_gap = 1;         ///< the smallest k with gap(k) >= gap(k + 1) - s(k + 1); the last one tried if there is none
-    int proposed = 1;       ///< by the criterion in the options
+    int proposed = 1;       ///< number proposed by the criterion in the options
 };
 
 /// Tries 1 to `max_clusters` clusters, at most the number of distinct samples (and exactly that number only if each distinct

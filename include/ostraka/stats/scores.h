@@ -9,7 +9,7 @@
 namespace ostraka {
 
 /// Adjusted Rand index (Hubert and Arabie 1985) of two groupings: 1 for equal groupings, 0 on average for random ones. Labels
-/// are arbitrary integers; samples with labels below 0 (noise) count as groups of their own. 1 if both groupings have a single
+/// are arbitrary integers; samples with labels below 0 (noise) count as separate groups. 1 if both groupings have a single
 /// group, or both have one group per sample. Throws Error (input) for no sample, Error (usage) for lists of different lengths.
 double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int>& truth);
 
@@ -49,7 +49,7 @@ enum class Side { above, below, either };
 struct Threshold {
     double value = 0;
     bool above = true;       ///< positive if at least `value`; otherwise positive if at most `value`
-    ConfusionScores scores;  ///< on the samples that it was chosen from
+    ConfusionScores scores;  ///< scores on the samples from which it was chosen
     [[nodiscard]] bool positive(double x) const { return above ? x >= value : x <= value; }
 };
 /// The threshold with the largest F1: midway between consecutive values (the min or max value itself if all are classified as
@@ -67,7 +67,7 @@ struct CrossValidation {
     std::vector<double> f1;                                         ///< one per repeat, over all held-out answers
     double mean_f1 = 0, deviation = 0;                              ///< over the repeats; deviation 0 for a single repeat
     double mean_precision = 0, mean_recall = 0, mean_accuracy = 0;  ///< over the same repeats
-    ConfusionScores first;                                          ///< of the first repeat
+    ConfusionScores first;                                          ///< scores of the first repeat
     std::vector<std::vector<bool>> answers;                         ///< one list per repeat: the answer for each sample
     std::vector<double> positive;  ///< one per sample: fraction of repeats that classified it as positive
 };

@@ -20,7 +20,7 @@ struct CastOptions {
     double beard = 0;      ///< fraction of the casts with a beard
     double chunk = 0;      ///< fraction of the casts with a missing piece
     int dents = 0;         ///< maximum number of dents on the front
-    bool body = false;     ///< the head has a body of its own, and nothing is broken off
+    bool body = false;     ///< the head has its own body, and nothing is broken off
     bool keep_pose = false;
     std::uint64_t vertices = 10000;
     std::uint64_t seed = 1;
@@ -60,7 +60,7 @@ struct PlannedHead {
     HeadShape shape;
     CastOptions cast;
 };
-/// Plans a population: heads are assigned to the moulds in turn and named in random order, so that names carry no information.
+/// Plans a population: heads are assigned to the moulds cyclically and named in random order, so that names carry no information.
 std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, const CastOptions& cast);
 
 }  // namespace ostraka

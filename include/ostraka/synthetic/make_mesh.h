@@ -10,7 +10,7 @@
 namespace ostraka {
 
 struct MakeOptions {
-    std::uint64_t vertices = 10000;  ///< wanted number; reached to 1 %, nearly always exactly
+    std::uint64_t vertices = 10000;  ///< target number; reached to 1 %, nearly always exactly
     std::uint64_t seed = 1;          ///< rotates and shifts the lattice, so that seeds give independent meshes of one object
     double noise = 0;                ///< maximum displacement of vertices along the normal, relative to the mean edge length
 

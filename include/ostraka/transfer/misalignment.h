@@ -10,11 +10,11 @@ namespace ostraka {
 /// Lengths are in the unit of the coordinates. Distances are the means of the smallest nine tenths of the distances from a
 /// sample of the source's vertices to the target's surface, so that parts missing in one of the meshes are ignored.
 struct Misalignment {
-    double distance = 0;       ///< in the given positions
+    double distance = 0;       ///< distance in the given positions
     bool stands_out = false;   ///< far larger than between two resolutions of one surface, and mostly removed by a motion
     double distance_left = 0;  ///< after that motion; this and the following members are valid if stands_out
-    double rotation = 0;       ///< of the target relative to the source, degrees
-    double shift = 0;          ///< of the centroid of the sample
+    double rotation = 0;       ///< rotation of the target relative to the source, degrees
+    double shift = 0;          ///< displacement of the centroid of the sample
     double scale = 1;          ///< size of the target / size of the source
 };
 

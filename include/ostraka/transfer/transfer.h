@@ -36,7 +36,7 @@ struct TransferScore {
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
     TransferOutcome outcome = TransferOutcome::kept;
     std::string note;                             ///< further remarks
-    double source_area = 0, target_area = 0;      ///< of regions
+    double source_area = 0, target_area = 0;      ///< areas of regions
     double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
     std::optional<double> hausdorff;   ///< two-sided, between the outlines (lines, points); nullopt if one of them is empty
     std::optional<double> overlap;     ///< intersection over union of the areas

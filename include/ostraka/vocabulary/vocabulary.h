@@ -42,7 +42,7 @@ struct ForeignStatement {
     std::string property;  ///< URI of the property
     std::string value;     ///< text or URI
     bool is_uri = false;
-    std::string language, datatype;  ///< of a text; at most one of the two is set
+    std::string language, datatype;  ///< language or type of a text; at most one of the two is set
     auto operator<=>(const ForeignStatement&) const = default;
 };
 
@@ -52,7 +52,7 @@ struct Concept {
     Labels labels;
     std::map<std::string, std::vector<std::string>> alternatives;  ///< alternative labels by language
     std::vector<std::string> broader;                              ///< ids of broader concepts
-    std::vector<std::string> part_of;                              ///< ids of concepts that this one is a part of
+    std::vector<std::string> part_of;                              ///< ids of concepts of which this one is a part
     Labels definition;
     std::vector<AllowedAttribute> attributes;
     std::vector<ForeignStatement> others;

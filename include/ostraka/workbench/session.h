@@ -62,7 +62,7 @@ public:
 
     /// Meshes and templates that can be opened, relative to the root.
     [[nodiscard]] std::vector<std::string> openable() const;
-    /// Opens a template, or a mesh with the files of the same name beside it (.ant.json, .graph.json, .cage.ply with .npy).
+    /// Opens a template, or a mesh with the files of the same name next to it (.ant.json, .graph.json, .cage.ply with .npy).
     /// Throws Error (input) if `name` is not among `openable`. `inspect` may reject the object before the session changes.
     void open(const std::string& name, const std::function<void(const SessionObject&)>& inspect = {});
 

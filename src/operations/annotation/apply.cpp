@@ -19,12 +19,12 @@ struct AnnotationApply final : Operation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.order({"mesh", "recipe", "output"});
         p.order({"mesh", "output"});
-        p.options("from-ply-labels", mesh_labels, "take the labels of the mesh file itself instead of a recipe or label file");
+        p.options("from-ply-labels", mesh_labels, "use the labels of the mesh file itself instead of a recipe or label file");
         p.input_option("names", Kind::text, names,
                        "JSON file with the labels' names, such as {\"0\": \"seat\", \"1\": \"back\"}; others are 'part N'");
         p.input_option("edit", Kind::annotations, edited, "annotations that the recipe's steps edit and add to");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) that must contain all tags and attributes");
         words.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);

@@ -17,7 +17,7 @@ struct AnnotationCheck final : Operation {
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
         reading.describe(p.options);
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) that must contain all tags and attributes");
         words.describe(p.options);
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("graph", Kind::graph, graph,

@@ -54,15 +54,15 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         p.options("remove-attribute", remove_attributes, "id or name of an attribute to remove; may be given more than once");
         p.options("attribute", attributes, "NAME=TEXT: a semantic attribute, new or changed; may be given more than once");
         p.options("information", information,
-                  "KIND=VALUE, KIND one of text, image, link, file: what the annotation refers to; the checksum of a local file "
-                  "is stored; may be given more than once");
+                  "KIND=VALUE, KIND one of text, image, link, file: information to which the annotation refers; the checksum of "
+                  "a local file is stored; may be given more than once");
         p.options("remove-information", remove_information, "text, link or file to remove; may be given more than once");
         p.options("set-class", object_class, "class of the object, for the whole file; '' for none");
         p.options("set-unit", unit,
                   "unit of the coordinates, for the whole file (any text, such as mm); numbers are not converted; '' for none");
         p.options("set-up", up, "upward direction, for the whole file; '' for none", direction_words("--set-up"));
-        p.options("duplicate", duplicate, "add a copy; the other changes are made to the copy, the original stays");
-        p.options("split", split, "make each patch, poly-line or point an annotation of its own");
+        p.options("duplicate", duplicate, "add a copy; the other changes apply to the copy, the original is unchanged");
+        p.options("split", split, "make each patch, poly-line or point a separate annotation");
         p.options("remove", remove, "remove the annotation");
         p.report.values(integer("annotations"));
         declare_differences(p.report, "changes");

@@ -14,7 +14,7 @@ struct AnnotationFacets final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
                 "annotations (.ant.json) to update or create: regions \"outer\", \"inner\" and \"fracture\"; 'fit' and 'pair' "
-                "use them if they are called NAME.ant.json beside NAME.ply");
+                "use them if they are called NAME.ant.json next to NAME.ply");
         p.output_option("output", Kind::annotations, output, "write the annotations to this file instead of updating the input")
             .updates(annotations);
         p.output_option("probability", Kind::values, probability,

@@ -65,10 +65,9 @@ struct ReadObject {
 struct AnnotationFind final : Operation {
     void describe(Parameters& p) override {
         p.options("query", query, "query, such as '2 arm and 2 leg' or 'area(handle) >= area(body) / 3'").required().positional();
-        p.input(
-             "objects", Kind::collection, objects,
-             "folders of meshes, lists of objects (.study.json), or single meshes or annotations (.ant.json); NAME.ant.json and "
-             "NAME.graph.json stand beside NAME.ply")
+        p.input("objects", Kind::collection, objects,
+                "folders of meshes, lists of objects (.study.json), or single meshes or annotations (.ant.json); NAME.ant.json "
+                "and NAME.graph.json are next to NAME.ply")
             .many();
         p.order({"query", "objects"});
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,

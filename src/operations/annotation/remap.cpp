@@ -20,7 +20,8 @@ struct AnnotationRemap final : Operation {
         p.input("after", Kind::mesh, after, "mesh after the change");
         p.output("output", Kind::annotations, output, "annotations or labels to write");
         p.input_option("vertex-map", Kind::index_map, vertex_map, "map of the vertices (JSON)");
-        p.input_option("face-map", Kind::index_map, face_map, "map of the faces (JSON); without it faces follow their corners");
+        p.input_option("face-map", Kind::index_map, face_map,
+                       "map of the faces (JSON); without it, faces are mapped through their corners");
         reading.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);

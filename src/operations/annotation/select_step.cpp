@@ -50,10 +50,11 @@ void SelectStep::describe(OptionList& visit) {
     visit("closed", closed, "path: back to the first pick");
     visit("metric", metric, "path and lasso: the length that is minimised", Choices{"euclidean", "segment", "combined"});
     visit("seed", seed, "lasso, segment, distance: a pick");
-    visit("radius", radius, "brush: geodesic radius, in lengths as --frame says");
-    visit("stroke", stroke, "brush: drawn from pick to pick");
-    visit("above", above,
-          "threshold: minimum value; lengths in the unit of --frame (curvature: its inverse), values of a file in their own");
+    visit("radius", radius, "brush: geodesic radius, in the lengths of --frame");
+    visit("stroke", stroke, "brush: along the path through the picks");
+    visit(
+        "above", above,
+        "threshold: minimum value; lengths in the unit of --frame (curvature: its inverse), values of a file in the file's unit");
     visit("below", below, "threshold: maximum value, in the same unit");
     visit("quantiles", quantiles, "threshold: the limits are quantiles by area, 0 to 1");
     visit("scale", scale, "curvature: averaging radius; 0: from the mesh resolution", Range{0, 1}, "share of the diagonal");
@@ -82,12 +83,12 @@ void SelectStep::describe(OptionList& visit) {
     visit("id", id, "id of the annotation; a new annotation without one gets a free id");
     visit("type", type, "type of a new annotation; otherwise that of the selection", Choices{"point", "line", "region"});
     visit("outline", outline,
-          "free: through the faces of the mesh; edges: along its edges; if left out, an edited one is as it is, and a new region "
-          "free where its border is a level (of a volume, a picture's, a threshold's on vertices, a brush's, a lasso's, a "
-          "distance's), along the edges where it is a set of faces; lines run along the edges",
+          "free: through the faces of the mesh; edges: along its edges; if left out, an edited outline keeps its kind; a new "
+          "region is free if a part of its border is a level set (of a volume, a drawn polygon, a threshold on vertices, a "
+          "brush, a lasso or a distance), else along the edges; lines run along the edges",
           Choices{"edges", "free"});
     visit("colour", colour, "red,green,blue", Range{0, 255});
-    visit("action", action, "how the selection changes the annotation of this id",
+    visit("action", action, "effect of the selection on the annotation with this id",
           Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
 }
 

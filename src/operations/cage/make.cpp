@@ -36,7 +36,7 @@ struct CageMake final : Operation {
                   "numbers of vertices, separated by commas: nested cages, each around the finer one, written as output-NUMBER",
                   Range{4, 1000000});
         p.options("together", one_file, "write the levels to one file: nested cages, each of which can be edited");
-        p.options("parts", parts, "regions, by id or tag, that get cages of their own, nested in the cage of the whole object")
+        p.options("parts", parts, "regions, by id or tag, that get their own cages, nested in the cage of the whole object")
             .words();
         p.options("part-vertices", part_vertices, "target number of vertices of a part's cage", Range{4, 1000000});
         p.options("mirror", mirror,

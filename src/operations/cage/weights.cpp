@@ -13,8 +13,8 @@ namespace {
 struct CageCoordinates final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are cut into triangles)");
-        p.output("output", Kind::coordinates, output, "weights to write (.npy; a .coordinates.json goes beside it)");
+        p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are triangulated)");
+        p.output("output", Kind::coordinates, output, "weights to write (.npy; with a .coordinates.json next to it)");
         p.options("kind", kind,
                   "mean-value; local, harmonic or positive-mean-value (inside, none negative); green (strictly inside; without "
                   "constraints "

@@ -21,7 +21,7 @@ struct MeasureMap final : Operation {
         p.options("of", quantity, "quantity to compute", Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"})
             .required();
         p.options("on", element, "whether there is one value per vertex or per face", Choices{"vertex", "face"});
-        p.options("from", source_vertices, "vertices that geodesic distances are measured from, like 12,88",
+        p.options("from", source_vertices, "vertices from which geodesic distances are measured, like 12,88",
                   Range{0, std::numeric_limits<int>::max()});
         p.input_option("annotations", Kind::annotations, annotations,
                        "annotations of the mesh (.ant.json), one of which gets the map as an attribute");

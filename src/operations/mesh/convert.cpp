@@ -16,7 +16,7 @@ struct MeshConvert final : Operation {
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: the source polygon of each triangle");
         p.input_option("polygons-of", Kind::mesh, polygons_of,
-                       "polygon file from which the triangles were cut, possibly with other vertex positions; its polygons are "
+                       "polygon file from which the triangles were made, possibly with other vertex positions; its polygons are "
                        "written instead of the triangles (.obj, .off, .ply)");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));

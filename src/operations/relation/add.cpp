@@ -27,7 +27,7 @@ struct RelationAdd final : RelationOperation {
                   "TYPE: A, B, ...: type and members of a relationship, once for each, instead of --type and --annotation; the "
                   "other options apply to all")
             .words();
-        p.options("own-type", own_type, "the type is one of your own");
+        p.options("own-type", own_type, "the type is user-defined");
         p.options("directed", directed, "the first annotation is the subject");
         p.options("constraint", is_constraint, "the relationship is a constraint on deformations");
         p.options("parameters", parameters, "JSON object with the parameters of the constraint");

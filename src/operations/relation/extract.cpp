@@ -15,7 +15,7 @@ struct RelationExtract final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input_option("graph", Kind::graph, graph, "graph whose stated relationships are kept");
+        p.input_option("graph", Kind::graph, graph, "graph whose user-specified relationships are kept");
         Words told;
         for (const RelationType& type : relation_types())
             if (type.geometric) told.names.push_back(type.name);

@@ -113,12 +113,12 @@ struct StudyProportions final : StudyOperation {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
         vocabulary.describe(p, "by which tags are compared with the names in --measures");
         p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
-        p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template that proportions are proposed for");
+        p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template for which proportions are proposed");
         p.input_option("template-annotations", Kind::annotations, annotations, "its annotations");
         p.input_option("template-graph", Kind::graph, graph_in, "its relationships, to which proposals are added");
         p.output_option("graph", Kind::graph, graph, "graph to write: fixed proportions as constraints on the template");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "the template's annotations, with the measures that the constraints name");
+                        "the template's annotations, with the measures to which the constraints refer");
         options.describe(p.options);
         proposals.describe(p.options);
         p.report.values(integer("objects"));

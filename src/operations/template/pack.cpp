@@ -28,7 +28,7 @@ struct TemplatePack final : Operation {
         p.options("class", object_class, "class of the object; otherwise that of the annotations");
         p.options("unit", unit, "unit of the coordinates, any text such as mm; otherwise that of the annotations");
         up.describe(p, "upward direction; otherwise that of the annotations");
-        p.options("copy", copy, "copy the parts into the template's folder");
+        p.options("copy", copy, "copy the files into the template's folder");
         options.describe(p.options);
         declare_template(p.report, true);
     }
