@@ -72,53 +72,79 @@ std::string csv_row(const std::vector<std::string>& cells) {
     return row + '\n';
 }
 
+namespace {
+
+/// Reads the cells of a CSV text one by one (RFC 4180; lines may end with "\r\n" or "\n").
+class CsvReader {
+public:
+    CsvReader(std::string_view text, char separator, const std::string& where)
+        : text_(text), separator_(separator), where_(where) {}
+
+    [[nodiscard]] bool at_end() const { return i_ == text_.size(); }
+
+    /// The next row; `is_blank`: whether all its cells are unquoted blanks.
+    CsvRow row(bool& is_blank) {
+        CsvRow row{line_, {}};
+        is_blank = true;
+        for (bool more = true; more;) {
+            if (sees('"')) {
+                row.cells.push_back(quoted_cell());
+                is_blank = false;
+            } else {
+                row.cells.push_back(plain_cell());
+                is_blank = is_blank && trimmed(row.cells.back()).empty();
+            }
+            if (sees('\r')) ++i_;
+            more = sees(separator_);
+            if (more) ++i_;
+        }
+        if (sees('\n')) ++i_, ++line_;
+        return row;
+    }
+
+private:
+    [[nodiscard]] bool sees(char c) const { return i_ < text_.size() && text_[i_] == c; }
+
+    std::string quoted_cell() {
+        const std::string location = fmt::format("{}, line {}", where_, line_);
+        std::string cell;
+        for (++i_;; ++i_) {
+            if (at_end()) fail_input(location, "a quoted cell does not end", "close its quotation mark");
+            if (text_[i_] == '"') {
+                ++i_;
+                if (!sees('"')) break;
+            }
+            line_ += text_[i_] == '\n' ? 1 : 0;
+            cell += text_[i_];
+        }
+        if (!at_end() && !sees(separator_) && !sees('\n') && !sees('\r'))
+            fail_input(location, "text follows the closing quotation mark of a cell", "double the marks within the cell");
+        return cell;
+    }
+
+    std::string plain_cell() {
+        const std::size_t begin = i_;
+        while (!at_end() && !sees(separator_) && !sees('\n')) ++i_;
+        std::string cell(text_.substr(begin, i_ - begin));
+        if (!sees(separator_) && !cell.empty() && cell.back() == '\r') cell.pop_back();
+        return cell;
+    }
+
+    std::string_view text_;
+    char separator_;
+    const std::string& where_;
+    std::size_t i_ = 0, line_ = 1;
+};
+
+}  // namespace
+
 std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::string& where) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::vector<CsvRow> rows;
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size();) {
-        CsvRow row{line, {}};
-        bool blank = true;
-        for (bool more = true; more;) {
-            std::string cell;
-            if (i < text.size() && text[i] == '"') {
-                const std::size_t begin = line;
-                bool unclosed = true;
-                for (++i; i < text.size() && unclosed;) {
-                    if (text[i] != '"') {
-                        line += text[i] == '\n' ? 1 : 0;
-                        cell += text[i++];
-                    } else if (i + 1 < text.size() && text[i + 1] == '"') {
-                        cell += '"';
-                        i += 2;
-                    } else {
-                        unclosed = false;
-                        ++i;
-                    }
-                }
-                const std::string location = fmt::format("{}, line {}", where, begin);
-                if (unclosed) fail_input(location, "a quoted cell does not end", "close its quotation mark");
-                if (i < text.size() && text[i] != separator && text[i] != '\n' && text[i] != '\r')
-                    fail_input(location, "text follows the closing quotation mark of a cell", "double the marks within the cell");
-                blank = false;
-            } else {
-                while (i < text.size() && text[i] != separator && text[i] != '\n') cell += text[i++];
-                if ((i == text.size() || text[i] == '\n') && !cell.empty() && cell.back() == '\r') cell.pop_back();
-                blank = blank && trimmed(cell).empty();
-            }
-            row.cells.push_back(std::move(cell));
-            if (i < text.size() && text[i] == '\r') ++i;
-            more = i < text.size() && text[i] == separator;
-            if (more) {
-                ++i;
-                continue;
-            }
-            if (i < text.size() && text[i] == '\n') {
-                ++i;
-                ++line;
-            }
-        }
-        if (!blank) rows.push_back(std::move(row));
+    for (CsvReader reader(text, separator, where); !reader.at_end();) {
+        bool is_blank = true;
+        CsvRow row = reader.row(is_blank);
+        if (!is_blank) rows.push_back(std::move(row));
     }
     return rows;
 }

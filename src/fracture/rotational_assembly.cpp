@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace ostraka {
@@ -23,6 +24,19 @@ std::vector<long> signature(const State& state) {
     return key;
 }
 
+/// The state with one more sherd at a rotation; empty if it gains nothing.
+std::optional<State> with_sherd(const State& state, const RotationPairs& pairs, std::size_t sherd, double rotation) {
+    double gain = 0;
+    for (std::size_t q = 0; q < pairs.count(); ++q)
+        if (state.placed[q]) gain += pairs.value(q, sherd, state.rotations[q], rotation);
+    if (!(gain > 0)) return {};
+    State grown = state;
+    grown.rotations[sherd] = wrapped(rotation);
+    grown.placed[sherd] = true;
+    grown.value += gain;
+    return grown;
+}
+
 }  // namespace
 
 RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vector<bool>& fixed, std::size_t root, int beam) {
@@ -35,24 +49,15 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
         std::vector<State> next;
         std::set<std::vector<long>> visited;
         for (const State& state : states)
-            for (std::size_t u = 0; u < n; ++u) {
-                if (state.placed[u]) continue;
-                for (std::size_t p = 0; p < n; ++p) {
+            for (std::size_t u = 0; u < n; ++u)
+                for (std::size_t p = 0; p < n && !state.placed[u]; ++p) {
                     if (!state.placed[p]) continue;
                     for (const MeetingRotation& meeting : pairs.at(p, u).meetings) {
-                        const double rotation = state.rotations[p] + (p < u ? meeting.rotation : -meeting.rotation);
-                        double gain = 0;
-                        for (std::size_t q = 0; q < n; ++q)
-                            if (state.placed[q]) gain += pairs.value(q, u, state.rotations[q], rotation);
-                        if (!(gain > 0)) continue;
-                        State grown = state;
-                        grown.rotations[u] = wrapped(rotation);
-                        grown.placed[u] = true;
-                        grown.value += gain;
-                        if (visited.insert(signature(grown)).second) next.push_back(std::move(grown));
+                        auto grown =
+                            with_sherd(state, pairs, u, state.rotations[p] + (p < u ? meeting.rotation : -meeting.rotation));
+                        if (grown && visited.insert(signature(*grown)).second) next.push_back(std::move(*grown));
                     }
                 }
-            }
         std::stable_sort(next.begin(), next.end(), [](const State& x, const State& y) { return x.value > y.value; });
         if (next.size() > static_cast<std::size_t>(beam)) next.resize(static_cast<std::size_t>(beam));
         if (!next.empty() && next.front().value > best.value) best = next.front();
@@ -114,7 +119,8 @@ double least_shared_rotation(const RotationPairs& pairs, const std::vector<doubl
         while (length < steps && area[(k + length) % steps] <= minimum * (1 + 1e-9)) ++length;
         if (length > longest) begin = k, longest = length;
     }
-    return wrapped(2 * pi * static_cast<double>(begin + longest / 2) / static_cast<double>(steps));
+    const std::size_t middle = begin + longest / 2;
+    return wrapped(2 * pi * static_cast<double>(middle) / static_cast<double>(steps));
 }
 
 }  // namespace ostraka

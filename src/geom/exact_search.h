@@ -73,6 +73,7 @@ private:
 }  // namespace ostraka::detail
 
 /// CGAL's event, allocated in the memory pool of the search.
+// NOLINTBEGIN(readability-identifier-naming): the names that CGAL uses.
 template <>
 struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostraka::detail::WatchedTraits> {
     using Traits = ostraka::detail::WatchedTraits;
@@ -92,6 +93,7 @@ struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostra
     static void* operator new(std::size_t size) { return ostraka::detail::EventMemory::take(size); }
     static void operator delete(void* place, std::size_t size) { ostraka::detail::EventMemory::give_back(place, size); }
 };
+// NOLINTEND(readability-identifier-naming)
 
 namespace ostraka::detail {
 

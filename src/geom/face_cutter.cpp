@@ -118,7 +118,7 @@ std::vector<Index> FaceCutter::border(Index face) const {
         if (found == on_edge_.end()) continue;
         const auto& list = found->second;
         if (mesh_.halfedge(mesh_.edge(h), 0) == h)
-            for (auto i = list.begin(); i != list.end(); ++i) vertex_path.push_back(i->second);
+            for (const auto& [fraction, v] : list) vertex_path.push_back(v);
         else
             for (auto i = list.rbegin(); i != list.rend(); ++i) vertex_path.push_back(i->second);
     }

@@ -16,7 +16,7 @@ LineFit fit_line(const std::vector<Vector3d>& points, const std::vector<double>&
     for (std::size_t i = 0; i < points.size(); ++i)
         covariance += weights[i] / total * (points[i] - mean) * (points[i] - mean).transpose();
     const SymmetricEigen3 solver(covariance);
-    const Vector3d values = solver.eigenvalues();
+    const Vector3d& values = solver.eigenvalues();
     return {mean, solver.eigenvectors().col(2), std::sqrt(std::max(0.0, values[0]) + std::max(0.0, values[1]))};
 }
 

@@ -41,7 +41,7 @@ std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const st
     parallel_for(
         along.size(),
         [&](std::size_t d) {
-            const Vector3d n = along[d];
+            const Vector3d& n = along[d];
             double low = std::numeric_limits<double>::infinity(), high = -low;
             for (Index v = 0; v < points.size(); ++v) {
                 const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];

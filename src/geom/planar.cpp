@@ -36,7 +36,7 @@ PlaneRectangle smallest_rectangle(const std::vector<Vector2d>& hull) {
     if (hull.empty()) return best;
     best.centre = hull[0];
     if (hull.size() == 1) return best;
-    const Vector2d reference = hull[0];
+    const Vector2d& reference = hull[0];
     std::vector<Vector2d> corners;
     for (const auto& p : hull) corners.push_back(p - reference);
     const auto rectangle = [&](const Vector2d& a, const Extent& e) {
