@@ -237,7 +237,7 @@ std::vector<std::uint8_t> merge_knots(const TriangleSoup& soup, const Border& bo
     struct Pair {
         double squared;
         Index a, q, b, p;
-        auto operator<=>(const Pair&) const = default;
+        auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr): false positive
     };
     std::vector<Pair> points, sides;
     while (!queue.empty()) {  // propagates to all points within a crack width
@@ -424,7 +424,7 @@ std::size_t drop_repeated(RepairSoup& work, const SoupEdges& edges, std::vector<
         Index apex;
         bool reversed;
         Index triangle;
-        auto operator<=>(const Entry&) const = default;
+        auto operator<=>(const Entry&) const = default;  // NOLINT(modernize-use-nullptr): false positive
     };
     std::vector<Entry> group;
     std::size_t dropped = 0;

@@ -67,16 +67,16 @@ struct DescriptorSearch::Cache {
 
     /// Caches the box of the last region: its three quantities are queried one after the other.
     const OrientedBox& box_of(const Mesh& mesh, const Annotation& annotation) {
-        if (boxed_faces != annotation.faces) {
+        if (boxed_faces_ != annotation.faces) {
             std::vector<std::array<double, 3>> points;
             for (const Index v : touched_vertices(mesh, annotation)) {
                 const Point& p = mesh.point(Vertex(v));
                 points.push_back({p.x(), p.y(), p.z()});
             }
-            box = oriented_box(points);
-            boxed_faces = annotation.faces;
+            box_ = oriented_box(points);
+            boxed_faces_ = annotation.faces;
         }
-        return box;
+        return box_;
     }
 
     /// The mesh cut along the curves of free annotations, with a search for quantities on it.
@@ -93,7 +93,7 @@ struct DescriptorSearch::Cache {
         }
     };
     const Cut& cut_of(const Mesh& mesh, const Annotation& annotation) {
-        if (cut && cut->along_edges(annotation) != nullptr) return *cut;
+        if (cut_ && cut_->along_edges(annotation) != nullptr) return *cut_;
         AnnotationSet requested_annotations;
         requested_annotations.annotations = std::move(expected);
         expected.clear();
@@ -102,20 +102,20 @@ struct DescriptorSearch::Cache {
             requested_annotation->faces != annotation.faces)
             requested_annotations.annotations = {annotation};
         CutMesh object = cut_along_curves(mesh, requested_annotations);
-        cut = std::make_unique<Cut>(Cut{std::move(requested_annotations), std::move(object), nullptr});
-        cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
-        return *cut;
+        cut_ = std::make_unique<Cut>(Cut{std::move(requested_annotations), std::move(object), nullptr});
+        cut_->search = std::make_unique<DescriptorSearch>(cut_->object.mesh);
+        return *cut_;
     }
     std::vector<Annotation> expected;  ///< free annotations to be queried: the mesh is cut along all at once
 
 private:
-    std::vector<Index> boxed_faces;
-    OrientedBox box;
-    std::unique_ptr<Cut> cut;
+    std::vector<Index> boxed_faces_;
+    OrientedBox box_;
+    std::unique_ptr<Cut> cut_;
 };
 
 DescriptorSearch::DescriptorSearch(const Mesh& mesh, DescriptorOptions options)
-    : mesh_(mesh), options_(std::move(options)), cache_(std::make_unique<Cache>()) {
+    : mesh_(mesh), options_(options), cache_(std::make_unique<Cache>()) {
     check_options(options_, "descriptors");
 }
 DescriptorSearch::~DescriptorSearch() = default;

@@ -51,7 +51,7 @@ PairEffort pair_effort(std::size_t fragments, const ReassemblyOptions& options) 
 }
 
 FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedFracture>>& fragments, const PairEffort& effort) {
-    const FragmentPairs pairs = pairs_of_similar_width(fragments, std::max<std::size_t>(60, 2 * effort.partners));
+    FragmentPairs pairs = pairs_of_similar_width(fragments, std::max<std::size_t>(60, 2 * effort.partners));
     if (effort.all_pairs) return pairs;
     // Very many pairs are compared with fewer frames each.
     constexpr std::size_t very_many = 5000;

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Fitter::Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
-               std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options)
+               const std::vector<CorrespondenceConstraint>& correspondences, double diagonal, const NonRigidOptions& options)
     : system_(system),
       mesh_(system.mesh),
       search_(search),
@@ -26,7 +26,7 @@ Fitter::Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labe
       rest_(system.rest),
       current_(system.rest),
       rings_(system.rings) {
-    for (CorrespondenceConstraint& correspondence : correspondences)
+    for (const CorrespondenceConstraint& correspondence : correspondences)
         correspondences_[correspondence.vertex].push_back(correspondence);
 }
 

@@ -17,7 +17,7 @@ class Fitter {
 public:
     /// Lengths are in the template's unit. All outlive it.
     Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
-           std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options);
+           const std::vector<CorrespondenceConstraint>& correspondences, double diagonal, const NonRigidOptions& options);
 
     /// Solves for the points of a cage instead; `weights` (one row per vertex) must outlive it.
     void use_cage(const CageWeights& weights, const Points& cage);

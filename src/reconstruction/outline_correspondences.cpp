@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 namespace ostraka {
 
@@ -103,75 +104,114 @@ struct PathCorrespondences {
     std::size_t pieces = 0;  ///< number of intervals between consecutive landmarks on both paths
 };
 
-/// Correspondences of one path from the landmarks on it (arc lengths on ours and theirs). Lengths on theirs are `scale` times
-/// those on ours.
-PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLengthPath& theirs,
-                                          std::vector<std::pair<double, double>> marks, double scale) {
-    constexpr double share_beyond = 0.25;
-    std::sort(marks.begin(), marks.end());
-    marks.erase(std::unique(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
-                marks.end());
-    const std::size_t n = marks.size();
+/// Correspondences of one path from the landmarks on it.
+class PathMatcher {
+public:
+    /// `marks`: arc lengths of the landmarks on ours and theirs. Lengths on theirs are `scale` times those on ours.
+    PathMatcher(const ArcLengthPath& ours, const ArcLengthPath& theirs, std::vector<std::pair<double, double>> marks,
+                double scale)
+        : ours_(ours), theirs_(theirs), marks_(std::move(marks)) {
+        std::sort(marks_.begin(), marks_.end());
+        marks_.erase(std::unique(marks_.begin(), marks_.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+                     marks_.end());
+        add_pieces(scale);
+    }
+
+    [[nodiscard]] PathCorrespondences run() const {
+        constexpr double share_beyond = 0.25;
+        PathCorrespondences result;
+        result.pieces = pieces_.size();
+        for (std::size_t i = 0; i < ours_.places.size(); ++i) {
+            OutlineCorrespondence correspondence{ours_.vertex_path.vertices[i], Vector3d::Zero(), length_at(i)};
+            if (const auto between = place_between(i)) {
+                correspondence.place = *between;
+            } else if (const auto beyond = place_beyond(i)) {
+                correspondence.place = beyond->place;
+                if (beyond->distance > 0) correspondence.length *= share_beyond;
+            } else {
+                continue;
+            }
+            result.correspondences.push_back(correspondence);
+        }
+        return result;
+    }
+
+private:
     struct Piece {
         double from, to, there_from, there_to;
     };
-    std::vector<Piece> pieces;
-    double known_length = 0, known_length_there = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        const bool last = k + 1 == n;
-        if (last && !ours.vertex_path.closed) break;
-        const auto& [a, b] = marks[k];
-        auto [c, d] = marks[(k + 1) % n];
-        if (last) c += ours.length;
-        if (theirs.vertex_path.closed && (d < b || (n == 1 && d <= b))) d += theirs.length;
-        if (!(d > b)) continue;  // interrupted on their side
-        if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
-        pieces.push_back({a, c, b, d});
-        known_length += c - a;
-        known_length_there += d - b;
+    struct Beyond {
+        Vector3d place;
+        double distance;  ///< arc length to the nearest landmark
+    };
+
+    void add_pieces(double scale) {
+        const std::size_t n = marks_.size();
+        double known_length = 0, known_length_there = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            const bool last = k + 1 == n;
+            if (last && !ours_.vertex_path.closed) break;
+            const auto& [a, b] = marks_[k];
+            auto [c, d] = marks_[(k + 1) % n];
+            if (last) c += ours_.length;
+            if (theirs_.vertex_path.closed && (d < b || (n == 1 && d <= b))) d += theirs_.length;
+            if (!(d > b)) continue;  // interrupted on their side
+            if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
+            pieces_.push_back({a, c, b, d});
+            known_length += c - a;
+            known_length_there += d - b;
+        }
+        ratio_ = known_length > 0 ? known_length_there / known_length : scale;
     }
-    const double ratio = known_length > 0 ? known_length_there / known_length : scale;
-    PathCorrespondences result;
-    result.pieces = pieces.size();
-    for (std::size_t i = 0; i < ours.places.size(); ++i) {
-        const std::size_t count = ours.places.size();
+
+    /// Half the length of the edges at the i-th vertex of the path.
+    [[nodiscard]] double length_at(std::size_t i) const {
+        const std::size_t count = ours_.places.size();
+        const bool closed = ours_.vertex_path.closed;
         double length = 0;
-        if (i > 0 || ours.vertex_path.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
-        if (i + 1 < count || ours.vertex_path.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
-        OutlineCorrespondence correspondence{ours.vertex_path.vertices[i], Vector3d::Zero(), length};
-        bool is_found = false;
-        for (const double arc_length : {ours.arc_lengths[i], ours.arc_lengths[i] + ours.length}) {
-            if (arc_length > ours.length && !ours.vertex_path.closed) break;
-            for (const Piece& piece : pieces) {
-                if (is_found || arc_length < piece.from || arc_length > piece.to) continue;
+        if (i > 0 || closed) length += 0.5 * (ours_.places[i] - ours_.places[(i + count - 1) % count]).norm();
+        if (i + 1 < count || closed) length += 0.5 * (ours_.places[(i + 1) % count] - ours_.places[i]).norm();
+        return length;
+    }
+
+    /// Interpolated between two landmarks.
+    [[nodiscard]] std::optional<Vector3d> place_between(std::size_t i) const {
+        for (const double arc_length : {ours_.arc_lengths[i], ours_.arc_lengths[i] + ours_.length}) {
+            if (arc_length > ours_.length && !ours_.vertex_path.closed) break;
+            for (const Piece& piece : pieces_) {
+                if (arc_length < piece.from || arc_length > piece.to) continue;
                 const double fraction = piece.to > piece.from ? (arc_length - piece.from) / (piece.to - piece.from) : 0;
-                correspondence.place = theirs.place(piece.there_from + fraction * (piece.there_to - piece.there_from));
-                is_found = true;
+                return theirs_.place(piece.there_from + fraction * (piece.there_to - piece.there_from));
             }
         }
-        if (!is_found) {
-            // From the nearest landmark, in either direction.
-            double nearest = std::numeric_limits<double>::infinity(), their_arc_length = 0;
-            for (const auto& [a, b] : marks)
-                for (const double wrap : {-1.0, 0.0, 1.0}) {
-                    if (wrap != 0 && !ours.vertex_path.closed) continue;
-                    const double offset = ours.arc_lengths[i] + wrap * ours.length - a;
-                    if (std::abs(offset) >= nearest) continue;
-                    nearest = std::abs(offset);
-                    their_arc_length = b + ratio * offset;
-                }
-            if (!std::isfinite(nearest) ||
-                (!theirs.vertex_path.closed && (their_arc_length < 0 || their_arc_length > theirs.length)))
-                continue;
-            // Near the opposite point of a closed path the position is unreliable.
-            if (ours.vertex_path.closed && nearest > 0.4 * ours.length) continue;
-            correspondence.place = theirs.place(their_arc_length);
-            if (nearest > 0) correspondence.length *= share_beyond;
-        }
-        result.correspondences.push_back(correspondence);
+        return {};
     }
-    return result;
-}
+
+    /// Extrapolated from the nearest landmark, in either direction.
+    [[nodiscard]] std::optional<Beyond> place_beyond(std::size_t i) const {
+        const bool closed = ours_.vertex_path.closed;
+        double nearest = std::numeric_limits<double>::infinity(), their_arc_length = 0;
+        for (const auto& [a, b] : marks_)
+            for (const double wrap : {-1.0, 0.0, 1.0}) {
+                if (wrap != 0 && !closed) continue;
+                const double offset = ours_.arc_lengths[i] + wrap * ours_.length - a;
+                if (std::abs(offset) >= nearest) continue;
+                nearest = std::abs(offset);
+                their_arc_length = b + ratio_ * offset;
+            }
+        if (!std::isfinite(nearest)) return {};
+        if (!theirs_.vertex_path.closed && (their_arc_length < 0 || their_arc_length > theirs_.length)) return {};
+        // Near the opposite point of a closed path the position is unreliable.
+        if (closed && nearest > 0.4 * ours_.length) return {};
+        return Beyond{theirs_.place(their_arc_length), nearest};
+    }
+
+    const ArcLengthPath& ours_;
+    const ArcLengthPath& theirs_;
+    std::vector<std::pair<double, double>> marks_;
+    std::vector<Piece> pieces_;
+    double ratio_ = 1;  ///< lengths on theirs divided by those on ours
+};
 
 double mean_square(const Mesh& mesh, const std::vector<OutlineCorrespondence>& correspondences, double scale) {
     double sum = 0;
@@ -210,9 +250,9 @@ std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, con
     for (const auto& [vertex_paths, path_marks] : marks) {
         const ArcLengthPath& path = ours[static_cast<std::size_t>(vertex_paths.first)];
         const auto their_index = static_cast<std::size_t>(vertex_paths.second);
-        PathCorrespondences best = correspondences_along(path, forward[their_index], path_marks.first, scale);
+        PathCorrespondences best = PathMatcher(path, forward[their_index], path_marks.first, scale).run();
         if (line) {
-            PathCorrespondences other = correspondences_along(path, backward[their_index], path_marks.second, scale);
+            PathCorrespondences other = PathMatcher(path, backward[their_index], path_marks.second, scale).run();
             if (other.pieces > best.pieces || (other.pieces == best.pieces && mean_square(mesh, other.correspondences, scale) <
                                                                                   mean_square(mesh, best.correspondences, scale)))
                 best = std::move(other);

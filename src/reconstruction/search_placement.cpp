@@ -42,10 +42,9 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
             if (results[k] && results[k]->decided) scales.push_back(results[k]->candidates.front().scale);
         if (!scales.empty()) scale = upper_median(scales);
         if (maximum > minimum && !scales.empty()) {
-            const auto separate = results;
-            search_all(scale, scale);
             for (const std::size_t k : searched)
-                if (separate[k] && separate[k]->decided) placed[k].own_scale = separate[k]->candidates.front().scale;
+                if (results[k] && results[k]->decided) placed[k].own_scale = results[k]->candidates.front().scale;
+            search_all(scale, scale);
         }
     }
     for (const std::size_t k : searched) {

@@ -41,11 +41,11 @@ public:
                 static_cast<std::int8_t>(std::min(angles - 1.0, std::acos(2 * (k + 0.5) / size - 1) / pi * angles));
     }
     int operator()(double cosine) const {
-        return bin_[static_cast<std::size_t>(std::clamp(static_cast<int>((cosine + 1) * (size / 2)), 0, size - 1))];
+        return bin_[static_cast<std::size_t>(std::clamp(static_cast<int>((cosine + 1) * half_size), 0, size - 1))];
     }
 
 private:
-    static constexpr int size = 4096;
+    static constexpr int size = 4096, half_size = size / 2;
     std::array<std::int8_t, size> bin_{};
 };
 
@@ -139,7 +139,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
                 for (std::size_t e = begin; e < end; ++e) {
                     const double turn = entries_[e].angle * (rotation_bins / 65536.0) - part_bin + rotation_bins;
-                    int bin = static_cast<int>(turn + 0.5);
+                    int bin = static_cast<int>(turn + 0.5);  // NOLINT(bugprone-incorrect-roundings): never negative
                     if (bin >= rotation_bins) bin -= rotation_bins;
                     if (bin >= rotation_bins) bin -= rotation_bins;
                     votes[entries_[e].reference * static_cast<std::size_t>(rotation_bins) + static_cast<std::size_t>(bin)] +=

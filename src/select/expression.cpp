@@ -54,7 +54,7 @@ void ExpressionEvaluator::fail(const std::string& at, const std::string& what, c
 
 std::pair<std::string, const JsonValue*> ExpressionEvaluator::only_kind(const JsonValue& expression,
                                                                         const std::string& at) const {
-    const auto found = kind_of(expression);
+    auto found = kind_of(expression);
     for (const auto& member : expression.GetObject()) {
         const std::string name = text_of(member.name);
         if (name != "frame" && name != found.first)

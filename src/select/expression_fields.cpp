@@ -27,7 +27,7 @@ double ExpressionEvaluator::length(double value, PlaceFrame frame) const {
 }
 
 std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
-    const std::vector<Index> vertices = picks(list, frame, at);
+    std::vector<Index> vertices = picks(list, frame, at);
     for (std::size_t i = 0; i < vertices.size(); ++i)
         if (mesh_.is_isolated(Vertex(vertices[i])))
             fail(at + '/' + to_string(i), "vertex " + to_string(vertices[i]) + " has no face", "pick another one");
@@ -35,7 +35,7 @@ std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Pla
 }
 
 std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
-    const std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
+    std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
     if (!flag_in(value, "stroke") || centres.size() < 2) return centres;
     return path_through(mesh_, centres, false, PathMetric::combined, where_ + ", at " + at);
 }

@@ -139,7 +139,8 @@ std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double toleran
     while (!stack.empty()) {
         const auto [from, to] = stack.back();
         stack.pop_back();
-        const Vector2d a = curve[from], along = curve[to % n] - a;
+        const Vector2d& a = curve[from];
+        const Vector2d along = curve[to % n] - a;
         double maximum = tolerance;
         std::size_t worst = from;
         for (std::size_t i = from + 1; i < to; ++i) {
