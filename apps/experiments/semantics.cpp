@@ -100,7 +100,7 @@ void Trials::write(const Path& folder, TextTable& table, const std::function<std
                    const std::function<std::vector<double>(const Outcome&)>& value_per_face) const {
     for (const Outcome& outcome : outcomes) {
         const Mesh mesh = with_points(subject_.mesh, outcome.points);
-        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation(mesh, subject_.set), {.comment = outcome.name});
+        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation({mesh, subject_.set}), {.comment = outcome.name});
         if (&outcome != &outcomes.front()) {
             const std::vector<double> values = value_per_face(outcome);
             write_npy(folder / (outcome.file + ".npy"), std::span(values), {values.size()});

@@ -168,7 +168,7 @@ void Slot::take_shared() const {
 void AnnotationsInput::describe(OptionList& options) { describe_shared(options, options_of(reading)); }
 
 std::string checksum_of(const AnnotationSet& set, const Mesh& mesh) {
-    return sha256(to_text(annotations_to_json(set, mesh, "", {})));
+    return sha256(to_text(annotations_to_json({mesh, set}, "", {})));
 }
 
 const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const {
@@ -179,7 +179,9 @@ const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const
     const auto& set = loaded<AnnotationSet>(
         *this, i, key, [&](const Path& path) { return read_annotations(path, mesh, reading); },
         [&](const AnnotationSet& annotations) { return checksum_of(annotations, mesh); }, {},
-        [&](const AnnotationSet& annotations) { check_annotations(annotations, mesh, object.name); });
+        [&](const AnnotationSet& annotations) {
+            check_annotations({mesh, annotations}, object.name);
+        });
     context->notes(size() > 1 ? sources[i].name() : std::string(), set.notes);
     return set;
 }

@@ -51,7 +51,7 @@ public:
         : mesh_(mesh),
           set_(set),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
-          native_(annotations_to_json(set, mesh, mesh_file, provenance)),
+          native_(annotations_to_json({mesh, set}, mesh_file, provenance)),
           originals_(originals),
           notes_(notes) {}
 
@@ -384,14 +384,15 @@ private:
 
 std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes) {
-    const AlongEdges along_edges(mesh, set);
+    const AlongEdges along_edges({mesh, set});
     if (along_edges.cut())
         notes.emplace_back("the mesh is cut along free outlines; the curves on the original mesh are stored as well");
     const bool informed = std::any_of(set.annotations.begin(), set.annotations.end(),
                                       [](const Annotation& annotation) { return !annotation.information.empty(); });
     Json originals;
-    if (along_edges.cut() || informed) originals = annotations_to_json(set, mesh, mesh_file, provenance);
-    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, originals, notes).write();
+    if (along_edges.cut() || informed) originals = annotations_to_json({mesh, set}, mesh_file, provenance);
+    return FeatureWriter(along_edges.object().mesh, along_edges.object().annotations, mesh_file, provenance, originals, notes)
+        .write();
 }
 
 }  // namespace ostraka

@@ -92,7 +92,7 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes)
 ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format_name,
                                        const std::string& mesh_file, const Provenance& provenance, const ExportOptions& options) {
     check_options(options, "annotation export");
-    check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
+    check_annotations({mesh, set}, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     ExportedAnnotations result;
     const auto count = [&](auto&& predicate) {
         return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), predicate));
@@ -152,7 +152,7 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set = read_prototype_facets(bytes, mesh, where);
     }
     if (onto != nullptr && format != Format::attributes_csv) result = added_to(*onto, std::move(result));
-    check_annotations(result.set, mesh, where);
+    check_annotations({mesh, result.set}, where);
     return result;
 }
 

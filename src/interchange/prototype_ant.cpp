@@ -27,7 +27,7 @@ std::string value_text(const Descriptor& descriptor) {
 }  // namespace
 
 std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, std::vector<std::string>& notes) {
-    const Json native = annotations_to_json(set, mesh, "", {});
+    const Json native = annotations_to_json({mesh, set}, "", {});
     Json document(rapidjson::kObjectType);
     auto& a = document.GetAllocator();
     JsonValue entries(rapidjson::kArrayType);

@@ -31,7 +31,7 @@ std::string uuid_of(const std::string& content) {
 class WebWriter {
 public:
     WebWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
-        : mesh_(mesh), set_(set), native_(annotations_to_json(set, mesh, mesh_file, provenance)), number_(components()) {
+        : mesh_(mesh), set_(set), native_(annotations_to_json({mesh, set}, mesh_file, provenance)), number_(components()) {
         document_.SetObject();
         checksum_ = text_in(native_["mesh"], "sha256");
         source_ = percent_encoded(Path(mesh_file).filename().string());  // a relative IRI

@@ -114,7 +114,7 @@ private:
     void paint(const AnnotationSet& set) {
         scene_.face_colours.assign(mesh_.number_of_faces(), clay);
         top_.assign(mesh_.number_of_faces(), nullptr);
-        for (const Annotation* region : regions_largest_first(mesh_, set))
+        for (const Annotation* region : regions_largest_first({mesh_, set}))
             for (const Index face : region->faces) {
                 scene_.face_colours[face] = annotation_colour(*region);
                 top_[face] = region;
@@ -223,9 +223,8 @@ private:
 
 void draw_annotations(Scene& scene, const Mesh& given_mesh, const AnnotationSet& given, const AnnotationStyle& given_style) {
     // Free outlines are drawn exactly, on the mesh cut along them.
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
+    const AlongEdges along_edges({given_mesh, given});
+    const auto& [mesh, set] = along_edges.object();
     AnnotationStyle style = given_style;
     if (const auto& cut = along_edges.cut()) {
         scene.mesh = to_soup(mesh);

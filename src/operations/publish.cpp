@@ -98,9 +98,9 @@ struct Publish final : AnnotatedMeshOperation {
         Page page(name);
         PageObject page_object;
         page_object.name = name;
-        const AlongEdges along_edges(surface, annotation_set);  // free outlines are shown on the mesh cut along them
-        page_object.mesh = &along_edges.mesh();
-        page_object.annotations = &along_edges.annotations();
+        const AlongEdges along_edges({surface, annotation_set});  // free outlines are shown on the mesh cut along them
+        page_object.mesh = &along_edges.object().mesh;
+        page_object.annotations = &along_edges.object().annotations;
         page.add(page_object);
         if (!annotation_set.annotations.empty()) page.add(annotation_table(surface, annotation_set, 0, name));
         write_file(folder.in("index.html"), page.html(context.provenance().to_line()));

@@ -95,9 +95,8 @@ void check_adjacency(const SharedLengths& adjacent, const std::string& unit, con
 std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const AnnotationSet& given, const RelationGraph& graph,
                                            const RelationOptions& options) {
     check_graph(graph, given, "graph");
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
+    const AlongEdges along_edges({given_mesh, given});
+    const auto& [mesh, set] = along_edges.object();
     const bool cut = along_edges.cut().has_value();
     SharedLengths stated, adjacent;  // only the pairs that occur in the graph
     for (const auto& relationship : graph.relationships)

@@ -368,9 +368,9 @@ ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set,
     using enum GeometricRelation;
     for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
         if (!set.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
-    const AlongEdges along_edges(mesh, set);
+    const AlongEdges along_edges({mesh, set});
     for (Relationship& relationship :
-         RelationMeter(along_edges.mesh(), along_edges.annotations(), options).extract(types, 0, &result.notes))
+         RelationMeter(along_edges.object().mesh, along_edges.object().annotations, options).extract(types, 0, &result.notes))
         add(std::move(relationship));
     return result;
 }

@@ -308,10 +308,9 @@ void require_few(const AnnotationSet& set) {
 
 Topology topology(const Mesh& given_mesh, const AnnotationSet& given) {
     require_few(given);
-    check_annotations(given, given_mesh, "annotations");
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
+    check_annotations({given_mesh, given}, "annotations");
+    const AlongEdges along_edges({given_mesh, given});
+    const auto& [mesh, set] = along_edges.object();
     FaceClasses classes(mesh, set);
     if (along_edges.cut()) classes.drop_slivers(mesh, set);
     Containments containments = contain(mesh, set, classes);

@@ -36,7 +36,7 @@ std::vector<PartCage> make_part_cages(const Mesh& mesh, const AnnotationSet& set
                                       const CageOptions& options, const RelationGraph& graph, const std::string& graph_name) {
     std::vector<PartCage> cages(parts.size());
     std::vector<Mesh> part;
-    for (const std::size_t place : parts) part.push_back(cut_out_part(mesh, set, {place}, {}, true).mesh);
+    for (const std::size_t place : parts) part.push_back(cut_out_part({mesh, set}, {place}, {}, true).mesh);
     std::vector<bool> done(parts.size(), false);
     const auto id_of = [&](std::size_t i) { return set.annotations[parts[i]].id; };
     for (std::size_t i = 0; i < parts.size(); ++i) {

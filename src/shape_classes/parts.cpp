@@ -70,7 +70,8 @@ using Overlap = std::map<std::pair<std::int32_t, std::int32_t>, double>;
 Overlap overlap_of(const ClassTemplate& class_template, const Mesh& fitted, const AnnotationSet& parts, const WholeObject& member,
                    const AnnotationSet& member_parts) {
     Overlap overlap;
-    const auto transferred_labels = labels_of(class_template.mesh, parts), member_labels = labels_of(member.mesh, member_parts);
+    const auto transferred_labels = labels_of({class_template.mesh, parts}),
+               member_labels = labels_of({member.mesh, member_parts});
     const SurfaceSearch search(fitted);
     for (const Face face : member.mesh.faces()) {
         const std::int32_t label = transferred_labels[search.closest(centroid(member.mesh, face)).face];
@@ -140,7 +141,7 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& class_template, 
         if (value && std::isfinite(*value)) quantity.value = value;
     };
     std::set<std::pair<std::int32_t, std::int32_t>> neighbours;
-    const auto labels = labels_of(class_template.mesh, parts);
+    const auto labels = labels_of({class_template.mesh, parts});
     for (const Edge edge : class_template.mesh.edges()) {
         if (class_template.mesh.is_border(edge)) continue;
         const std::int32_t a = labels[class_template.mesh.face(class_template.mesh.halfedge(edge, 0))],

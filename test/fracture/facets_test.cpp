@@ -233,7 +233,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     Annotation twice = more.annotations[0];
     twice.id = again;
     more.annotations.insert(more.annotations.end(), {mark, handle, twice});
-    write_annotations(scratch / "sherd.ant.json", more, sherd.mesh, "sherd.ply", {});
+    write_annotations(scratch / "sherd.ant.json", {sherd.mesh, more}, "sherd.ply", {});
     const std::string update = "annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ant.json");
     EXPECT_EQ(test::run_command(update + " --unit cm").code, 2) << "the file says mm";
     ASSERT_EQ(test::run_command(update).code, 0);

@@ -76,7 +76,7 @@ TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
         set.annotations[0].attributes[0].name = "height";
         set.annotations[0].attributes[0].measure = measure("bounding", {ends[0], ends[1]}, direction);
         set.up = direction;
-        EXPECT_NO_THROW(check_annotations(set, mesh, "set")) << length;
+        EXPECT_NO_THROW(check_annotations({mesh, set}, "set")) << length;
     }
 }
 

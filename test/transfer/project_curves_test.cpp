@@ -80,7 +80,7 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
     const TransferResult there = transfer(coarse, set, on_fine);
     const TransferResult back = transfer(fine, there.annotations, on_coarse);
-    check_annotations(there.annotations, fine, "there");
+    check_annotations({fine, there.annotations}, "there");
     for (const Annotation& one : set.annotations) {
         ASSERT_TRUE(is_free(one));
         const Annotation *moved = there.annotations.find(one.id), *again = back.annotations.find(one.id);
@@ -105,7 +105,7 @@ TEST(ProjectCurves, APartitionStaysOne) {
     const TransferResult there = transfer(fine, set, on_coarse);
     EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-6);
     // On the cut mesh no piece of any size is in two regions or in none.
-    const CutMesh cut = cut_along_curves(coarse, there.annotations);
+    const CutMesh cut = cut_along_curves({coarse, there.annotations});
     std::vector<int> holders(cut.mesh.number_of_faces(), 0);
     for (const Annotation& one : cut.annotations.annotations)
         for (const Index f : one.faces) ++holders[f];
@@ -185,7 +185,7 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     SimplifyOptions simplifying;
     simplifying.vertices = 3000;
     bound.simplify(simplifying);
-    check_annotations(*bound.annotations, bound.mesh, "simplified");
+    check_annotations({bound.mesh, *bound.annotations}, "simplified");
     EXPECT_NEAR(area_sum(bound.mesh, *bound.annotations) / surface_area(bound.mesh), 1, 1e-6);
     for (const Annotation& one : bound.annotations->annotations) {
         const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
@@ -292,9 +292,9 @@ TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
         options.overlap = false;
         const SurfaceSearch on_coarse(coarse);
         const TransferResult there = transfer(fine, set, on_coarse, options);
-        check_annotations(there.annotations, coarse, "there");
+        check_annotations({coarse, there.annotations}, "there");
         EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-9) << object;
-        const CutMesh cut = cut_along_curves(coarse, there.annotations);
+        const CutMesh cut = cut_along_curves({coarse, there.annotations});
         std::vector<int> holders(cut.mesh.number_of_faces(), 0);
         for (const Annotation& one : cut.annotations.annotations)
             for (const Index f : one.faces) ++holders[f];

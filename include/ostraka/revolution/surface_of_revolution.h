@@ -48,7 +48,8 @@ struct SherdOnProfile {
     double residual = 0;             ///< root mean square distance of its walls from the template
 };
 
-struct RevolutionTemplate {
+/// The mesh is closed, oriented outwards, in the frame of the sherds.
+struct RevolutionTemplate : AnnotatedMesh {
     Axis axis;                             ///< common axis of all sherds; its direction points up
     double direction_error = 0;            ///< standard error of the axis, degrees
     double place_error = 0;                ///< standard error of the axis's position, at the centroid of the sherds
@@ -56,8 +57,6 @@ struct RevolutionTemplate {
     bool base = false;                     ///< the sherds reach the axis at the bottom
     bool rim = false;                      ///< the top ends at the same height in all directions where it is preserved
     std::vector<double> present;           ///< degrees of wall at equal steps of the height
-    Mesh mesh;                             ///< closed, oriented outwards, in the frame of the sherds
-    AnnotationSet annotations;
     std::vector<SherdOnProfile> sherds;
     std::vector<std::string> notes;
 };

@@ -40,7 +40,7 @@ struct AnnotationCheck final : Operation {
         std::vector<Finding> findings;
         std::optional<AnnotationSet> set;
         try {
-            if (in_memory) check_annotations(*in_memory, surface, annotations.file());
+            if (in_memory) check_annotations({surface, *in_memory}, annotations.file());
             set = in_memory ? *annotations.annotations_on(surface)
                             : annotations_from_json(*document, surface, annotations.file(), reading);
         } catch (const Error& error) {
@@ -54,7 +54,7 @@ struct AnnotationCheck final : Operation {
                 findings.insert(findings.end(), further.begin(), further.end());
             };
             append(examine(surface, *set));
-            if (!in_memory) append(check_files(*set, surface, Path(annotations.file()).parent_path()));
+            if (!in_memory) append(check_files({surface, *set}, Path(annotations.file()).parent_path()));
             if (vocabulary_words != nullptr) append(check_against_vocabulary(*set, *vocabulary_words, words));
             if (vocabulary_words != nullptr) append(check_parts(surface, *set, *vocabulary_words));
             if (class_rules != nullptr) check_rules(*class_rules, vocabulary_words, surface, *set, findings);

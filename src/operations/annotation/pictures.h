@@ -20,9 +20,9 @@ struct AnnotationPictures {
                         "label file to write: for each face the id of the smallest region on it, -1 for none");
     }
     void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
-        if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
+        if (coloured) coloured.write(mesh, colour_by_annotation({mesh, set}));
         if (!labels) return;
-        const FaceLabels face_ids = face_labels(mesh, set);
+        const FaceLabels face_ids = face_labels({mesh, set});
         write_labels(labels.path(), face_ids.of_face);
         if (face_ids.lost > 0)
             report.note(number(100 * face_ids.lost, 3) +

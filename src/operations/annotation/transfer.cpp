@@ -103,7 +103,7 @@ struct AnnotationTransfer final : Operation {
         }
 
         // All work is done, so what is written now is complete.
-        if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
+        if (coloured) coloured.write(on, colour_by_annotation({on, there.annotations}));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
         report.run("checks", there.times.checks);
         report.run("correspondence", there.times.correspondence);
