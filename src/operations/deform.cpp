@@ -109,7 +109,7 @@ struct Deform final : Operation {
         if (cage_out) cage_out.write(with_points(*space.cage, result.cage), subject.around->extras);
         if (annotations_out) {
             AnnotationSet set = space.set;
-            move_extents(space.mesh, space.set, shaped, set);
+            move_extents({space.mesh, space.set}, shaped, set);
             report.notes(refresh_measures(shaped, set).notes);
             annotations_out.write(std::move(set), shaped, output.file());
         }

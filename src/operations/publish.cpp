@@ -90,10 +90,11 @@ struct Publish final : AnnotatedMeshOperation {
         const std::string name = title.empty() ? Path(mesh.file_name()).stem().string() : title;
         folder.open();
         std::vector<std::string> notes;
-        const std::string model = feature_glb(surface, annotation_set, mesh.file(), context.provenance(), notes);
+        const std::string model = feature_glb({surface, annotation_set}, mesh.file(), context.provenance(), notes);
         report.notes(notes);
         write_file(folder.in("model.glb"), model);
-        write_file(folder.in("annotations.jsonld"), web_annotations(surface, annotation_set, mesh.file(), context.provenance()));
+        write_file(folder.in("annotations.jsonld"),
+                   web_annotations({surface, annotation_set}, mesh.file(), context.provenance()));
         write_png(folder.in("thumbnail.png"), thumbnail(surface, &annotation_set, "400x300"));
         Page page(name);
         PageObject page_object;

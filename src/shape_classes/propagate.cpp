@@ -36,7 +36,7 @@ Propagated propagate(const ClassTemplate& class_template, const WholeObject& mem
     }
     const Mesh fitted = with_points(class_template.mesh, result.fit.points);
     result.on_template = copy_of(class_template.set);
-    move_extents(class_template.mesh, class_template.set, fitted, result.on_template);
+    move_extents({class_template.mesh, class_template.set}, fitted, result.on_template);
     for (std::string& note : refresh_measures(fitted, result.on_template).notes) result.notes.push_back(std::move(note));
     if (result.fit.placed_by == "correspondence") {
         result.on_member = copy_of(result.on_template);
@@ -50,7 +50,7 @@ Propagated propagate(const ClassTemplate& class_template, const WholeObject& mem
     result.on_member = std::move(carried.annotations);
     result.lost = class_template.set.annotations.size() -
                   std::min(class_template.set.annotations.size(), result.on_member->annotations.size());
-    move_extents(fitted, result.on_template, member.mesh, *result.on_member);
+    move_extents({fitted, result.on_template}, member.mesh, *result.on_member);
     static_cast<void>(refresh_measures(member.mesh, *result.on_member));
     return result;
 }

@@ -20,7 +20,7 @@ int main() try {
         std::cout << score.tag << ": " << to_string(score.outcome) << ", area " << score.source_area << " -> "
                   << score.target_area << '\n';
 
-    const std::vector<Finding> findings = examine(target.mesh, result.annotations);
+    const std::vector<Finding> findings = examine({target.mesh, result.annotations});
     const bool sound = std::none_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.defect; });
     const bool kept = std::all_of(result.scores.begin(), result.scores.end(),
                                   [](const TransferScore& score) { return score.outcome == ostraka::TransferOutcome::kept; });

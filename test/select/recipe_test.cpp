@@ -293,7 +293,7 @@ TEST(Recipe, TheLionHeadIsAnnotatedOnItsPictures) {
     const AnnotationSet set = apply_recipe(file, mesh);
     EXPECT_EQ(to_text(annotations_to_json({mesh, set}, "m", {})),
               to_text(annotations_to_json({mesh, apply_recipe(file, mesh)}, "m", {})));
-    for (const Finding& finding : examine(mesh, set)) EXPECT_FALSE(finding.defect) << finding.where << ": " << finding.text;
+    for (const Finding& finding : examine({mesh, set})) EXPECT_FALSE(finding.defect) << finding.where << ": " << finding.text;
     const auto area = [&](int id) { return measure_region(mesh, set.find(id)->faces).area; };
     EXPECT_NEAR(area(1) + area(2), area(0), 1e-9 * area(0)) << "neck and head are the whole";
     for (const int id : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})

@@ -139,7 +139,7 @@ TEST(DeformVerdict, AnExtentIsThatOfTheResult) {
     EXPECT_LT(off, result.constraints[0].before_values[0]);
     // As the annotations of the result say, with their pins where they are now.
     AnnotationSet set = hand.set;
-    move_extents(hand.made.mesh, hand.set, now, set);
+    move_extents({hand.made.mesh, hand.set}, now, set);
     refresh_measures(now, set);
     for (const Attribute& attribute : set.find(finger.id)->attributes)
         if (attribute.name == "reach") {

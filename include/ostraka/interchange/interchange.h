@@ -29,9 +29,8 @@ struct ExportedAnnotations {
 
 /// Exports the set in the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an
 /// unknown format, Error (input) if the set does not fit the mesh.
-ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format,
-                                       const std::string& mesh_file, const Provenance& provenance,
-                                       const ExportOptions& options = {});
+ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::string& format, const std::string& mesh_file,
+                                       const Provenance& provenance, const ExportOptions& options = {});
 
 struct ImportOptions {
     LandmarkFileOptions landmarks;

@@ -53,7 +53,7 @@ struct AnnotationCheck final : Operation {
             const auto append = [&](std::vector<Finding> further) {
                 findings.insert(findings.end(), further.begin(), further.end());
             };
-            append(examine(surface, *set));
+            append(examine({surface, *set}));
             if (!in_memory) append(check_files({surface, *set}, Path(annotations.file()).parent_path()));
             if (vocabulary_words != nullptr) append(check_against_vocabulary(*set, *vocabulary_words, words));
             if (vocabulary_words != nullptr) append(check_parts(surface, *set, *vocabulary_words));
