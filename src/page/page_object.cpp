@@ -313,7 +313,7 @@ std::size_t Page::add(const PageObject& object) {
     const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
     const AnnotationSet no_annotations;
     const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : no_annotations;
-    const ContainmentOrder order = topology(mesh, set).order;
+    const ContainmentOrder order = topology({mesh, set}).order;
     JsonValue annotations = annotations_json(mesh, set, order, relative, keep, allocator);
     JsonValue maps(rapidjson::kArrayType);
     for (const PageMap& map : object.maps) {

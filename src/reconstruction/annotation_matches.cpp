@@ -30,7 +30,7 @@ struct MatchFeatures {
 };
 
 std::vector<MatchFeatures> matching_features(const Mesh& mesh, const AnnotationSet& set, const Motion& pose) {
-    const ContainmentOrder order = topology(mesh, set).order;
+    const ContainmentOrder order = topology({mesh, set}).order;
     std::vector<MatchFeatures> result;
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];

@@ -47,9 +47,7 @@ private:
 
 }  // namespace detail
 
-struct RelationMeter::State {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct RelationMeter::State : AnnotatedMeshView {
     RelationOptions options;
     double diagonal = 0;
     std::map<int, detail::Part> parts;

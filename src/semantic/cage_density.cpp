@@ -64,7 +64,7 @@ MirrorPlane find_mirror_plane(const Mesh& mesh, AnnotationSet set, const std::st
     Relationship stated;
     stated.type = "mirror symmetry";
     stated.annotations = {ensure_root(set, mesh).id};
-    const RelationCheck check = RelationMeter(mesh, set).measure(stated);
+    const RelationCheck check = RelationMeter({mesh, set}).measure(stated);
     if (check.verdict != Verdict::holds || !check.parameters.plane)
         throw Error(ErrorKind::failure, where, "is not mirror-symmetric: " + check.text, "give the plane, or leave --mirror out");
     const auto& [p, n] = *check.parameters.plane;

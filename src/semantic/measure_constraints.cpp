@@ -109,7 +109,7 @@ std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const Annotatio
         one.is_constraint = false;
         one.constraint.clear();
     }
-    std::vector<RelationCheck> checks = check_relations(mesh, set, relations, tolerances);
+    std::vector<RelationCheck> checks = check_relations({mesh, set}, relations, tolerances);
     std::size_t next = 0;
     for (std::size_t i = 0; i < checks.size(); ++i) {
         if (!graph.relationships[i].is_constraint) continue;

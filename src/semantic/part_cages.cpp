@@ -19,7 +19,7 @@ std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet&
         if (members != annotations) continue;
         std::optional<PointAndDirection> plane = relationship.parameters.plane;
         if (!plane) {
-            const RelationCheck check = RelationMeter(mesh, set).measure(relationship);
+            const RelationCheck check = RelationMeter({mesh, set}).measure(relationship);
             plane = check.parameters.plane;
             if (!plane)
                 fail_input(graph_name + ", relationship " + std::to_string(relationship.id),

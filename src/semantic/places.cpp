@@ -159,7 +159,7 @@ Statement mirror_symmetry(const MembersPtr& members, const spec::MirrorSymmetry&
     if (!given) {
         Relationship stated = members->relationship();
         stated.is_constraint = false;
-        const RelationCheck check = RelationMeter(members->shape().mesh, members->shape().set, tolerances).measure(stated);
+        const RelationCheck check = RelationMeter({members->shape().mesh, members->shape().set}, tolerances).measure(stated);
         if (!check.parameters.plane) members->fail("has no plane of symmetry: " + check.text, "give direction and point");
         const auto& plane = *check.parameters.plane;
         given = kinds::MirrorPlane{{plane.direction[0], plane.direction[1], plane.direction[2]},

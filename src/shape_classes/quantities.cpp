@@ -132,7 +132,7 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_templat
         const int id = report.id;
         constraints.emplace(id, std::move(report));
     }
-    const auto relations = check_relations(framed, class_template.set, class_template.graph);
+    const auto relations = check_relations({framed, class_template.set}, class_template.graph);
     for (std::size_t i = 0; i < class_template.graph.relationships.size(); ++i) {
         const Relationship& relationship = class_template.graph.relationships[i];
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {

@@ -381,7 +381,7 @@ void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /
     const Deformation& drag = deformation();
     std::vector<std::vector<std::size_t>> annotations_of_vertex(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
     const auto& annotations = drag.set->annotations;
-    const ContainmentOrder order = topology(drag.rest->mesh->mesh, *drag.set).order;
+    const ContainmentOrder order = topology({drag.rest->mesh->mesh, *drag.set}).order;
     std::vector<bool> contains(annotations.size(), false);
     for (std::size_t i = 0; i < annotations.size(); ++i)
         if (order.parent[i] && annotations[i].type == AnnotationType::region) contains[*order.parent[i]] = true;

@@ -27,7 +27,7 @@ struct RelationCheck {
 
 /// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only
 /// experts can tell, and types whose input is missing; `text` says what. Throws Error (input) if the graph does not fit the set.
-std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+std::vector<RelationCheck> check_relations(AnnotatedMeshView object, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 
 }  // namespace ostraka

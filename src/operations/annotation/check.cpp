@@ -56,7 +56,7 @@ struct AnnotationCheck final : Operation {
             append(examine({surface, *set}));
             if (!in_memory) append(check_files({surface, *set}, Path(annotations.file()).parent_path()));
             if (vocabulary_words != nullptr) append(check_against_vocabulary(*set, *vocabulary_words, words));
-            if (vocabulary_words != nullptr) append(check_parts(surface, *set, *vocabulary_words));
+            if (vocabulary_words != nullptr) append(check_parts({surface, *set}, *vocabulary_words));
             if (class_rules != nullptr) check_rules(*class_rules, vocabulary_words, surface, *set, findings);
         }
         report.findings(findings);
@@ -66,7 +66,7 @@ struct AnnotationCheck final : Operation {
                      const AnnotationSet& set, std::vector<Finding>& findings) const {
         const RelationGraph* relationships = graph ? &graph.on(set) : nullptr;
         for (const RuleViolation& broken :
-             broken_rules(surface, set, class_rules, vocabulary_words, relationships, rules.file())) {
+             broken_rules({surface, set}, class_rules, vocabulary_words, relationships, rules.file())) {
             std::string where;
             for (std::size_t i = 0; i < set.annotations.size(); ++i)
                 if (broken.annotation == set.annotations[i].id) where = "/annotations/" + std::to_string(i);
