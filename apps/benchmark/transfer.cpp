@@ -90,7 +90,7 @@ void transfer_regions(benchmark::State& state, std::size_t vertices, bool with_t
             std::unique_ptr<SurfaceSearch> search;
             if (with_tree) search = std::make_unique<SurfaceSearch>(mesh);
             const TransferResult result =
-                transfer(source_data.mesh, source_data.regions, with_tree ? *search : *existing_search, options);
+                transfer({source_data.mesh, source_data.regions}, with_tree ? *search : *existing_search, options);
             times = result.times;
             if (const std::string problem = problem_of(result, overlap); !problem.empty()) state.SkipWithError(problem.c_str());
             return search;

@@ -12,7 +12,7 @@ AnnotationSet completed_annotations(const Mesh& mesh, const AnnotationSet& set, 
     const Mesh fitted = with_points(mesh, result.points);
     AnnotationSet moved_set = set;
     move_extents({mesh, set}, fitted, moved_set);
-    AnnotationSet carried = transfer(fitted, moved_set, SurfaceSearch(result.object.mesh), options).annotations;
+    AnnotationSet carried = transfer({fitted, moved_set}, SurfaceSearch(result.object.mesh), options).annotations;
     move_extents({fitted, moved_set}, result.object.mesh, carried);
     return carried;
 }

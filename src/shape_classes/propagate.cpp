@@ -42,7 +42,7 @@ Propagated propagate(const ClassTemplate& class_template, const WholeObject& mem
         result.on_member = copy_of(result.on_template);
         return result;
     }
-    TransferResult carried = transfer(fitted, result.on_template, SurfaceSearch(member.mesh), options.transfer);
+    TransferResult carried = transfer({fitted, result.on_template}, SurfaceSearch(member.mesh), options.transfer);
     for (const TransferScore& score : carried.scores)
         if (score.outcome != TransferOutcome::kept || !score.note.empty())
             result.notes.push_back(fmt::format("annotation {} ({}) {}{}", score.id, score.tag, to_string(score.outcome),

@@ -15,7 +15,7 @@ int main() try {
     const SyntheticMesh target = make_mesh(object, {.vertices = 4000, .seed = 2});
     const AnnotationSet annotations = regions_from_labels(source.mesh, source.face_labels);
 
-    const TransferResult result = transfer(source.mesh, annotations, SurfaceSearch(target.mesh));
+    const TransferResult result = transfer({source.mesh, annotations}, SurfaceSearch(target.mesh));
     for (const TransferScore& score : result.scores)
         std::cout << score.tag << ": " << to_string(score.outcome) << ", area " << score.source_area << " -> "
                   << score.target_area << '\n';

@@ -46,9 +46,9 @@ AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
     return set;
 }
 
-double area_sum(const Mesh& mesh, const AnnotationSet& set) {
+double area_sum(AnnotatedMeshView object) {
     double sum = 0;
-    for (const Annotation& one : set.annotations) sum += area_of(mesh, one);
+    for (const Annotation& one : object.annotations.annotations) sum += area_of(object.mesh, one);
     return sum;
 }
 
@@ -78,8 +78,8 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
     const Mesh coarse = made("teapot", 2500, 1), fine = made("teapot", 20000, 2);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 4);
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
-    const TransferResult there = transfer(coarse, set, on_fine);
-    const TransferResult back = transfer(fine, there.annotations, on_coarse);
+    const TransferResult there = transfer({coarse, set}, on_fine);
+    const TransferResult back = transfer({fine, there.annotations}, on_coarse);
     check_annotations({fine, there.annotations}, "there");
     for (const Annotation& one : set.annotations) {
         ASSERT_TRUE(is_free(one));
@@ -100,10 +100,10 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
 TEST(ProjectCurves, APartitionStaysOne) {
     const Mesh coarse = made("statuette", 3000, 1), fine = made("statuette", 12000, 5);
     const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
-    ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
+    ASSERT_NEAR(area_sum({fine, set}) / surface_area(fine), 1, 1e-9);
     const SurfaceSearch on_coarse(coarse);
-    const TransferResult there = transfer(fine, set, on_coarse);
-    EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-6);
+    const TransferResult there = transfer({fine, set}, on_coarse);
+    EXPECT_NEAR(area_sum({coarse, there.annotations}) / surface_area(coarse), 1, 1e-6);
     // On the cut mesh no piece of any size is in two regions or in none.
     const CutMesh cut = cut_along_curves({coarse, there.annotations});
     std::vector<int> holders(cut.mesh.number_of_faces(), 0);
@@ -125,16 +125,16 @@ TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
     const SurfaceSearch on_fine(fine);
     TransferOptions options;
     set.annotations[0].information = {{Information::Kind::text, "cracked", "", ""}};
-    const TransferResult along_edges = transfer(coarse, set, on_fine, options);
+    const TransferResult along_edges = transfer({coarse, set}, on_fine, options);
     EXPECT_FALSE(is_free(along_edges.annotations.annotations.at(0)));
     options.outlines = TransferOptions::Outlines::free;
-    const TransferResult free = transfer(coarse, set, on_fine, options);
+    const TransferResult free = transfer({coarse, set}, on_fine, options);
     EXPECT_TRUE(is_free(free.annotations.annotations.at(0)));
     for (const TransferResult* one : {&along_edges, &free})
         EXPECT_EQ(one->annotations.annotations[0].information, set.annotations[0].information);
     EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
     options.outlines = TransferOptions::Outlines::edges;
-    EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
+    EXPECT_FALSE(is_free(transfer({fine, free.annotations}, on_fine, options).annotations.annotations.at(0)));
 }
 
 TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
@@ -144,7 +144,7 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
     TransferOptions options;
     options.overlap = false;
     const auto worst_perimeter = [&] {
-        const TransferResult moved = transfer(fine, set, on_coarse, options);
+        const TransferResult moved = transfer({fine, set}, on_coarse, options);
         double worst = 0;
         for (std::size_t i = 0; i < set.annotations.size(); ++i) {
             const double before = measure_region(fine, set.annotations[i]).perimeter;
@@ -152,19 +152,19 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
         }
         return worst;
     };
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_TRUE(is_free(one));
+    for (const Annotation& one : transfer({fine, set}, on_coarse, options).annotations.annotations) EXPECT_TRUE(is_free(one));
     const double free = worst_perimeter();
     EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
     // Others stay as they are: what is asked for, and what leaves a gap.
     options.outlines = TransferOptions::Outlines::kept;
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& one : transfer({fine, set}, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
     EXPECT_GT(worst_perimeter(), 5 * free);
     options.outlines = TransferOptions::Outlines::partitions;
     options.cover = TransferOptions::Cover::enclosing;
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& one : transfer({fine, set}, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
     options.cover = TransferOptions::Cover::overlapping;
     set.annotations.pop_back();
-    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    for (const Annotation& one : transfer({fine, set}, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
 }
 
 TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
@@ -186,7 +186,7 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     simplifying.vertices = 3000;
     bound.simplify(simplifying);
     check_annotations({bound.mesh, *bound.annotations}, "simplified");
-    EXPECT_NEAR(area_sum(bound.mesh, *bound.annotations) / surface_area(bound.mesh), 1, 1e-6);
+    EXPECT_NEAR(area_sum({bound.mesh, *bound.annotations}) / surface_area(bound.mesh), 1, 1e-6);
     for (const Annotation& one : bound.annotations->annotations) {
         const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
         EXPECT_NEAR(after.perimeter / before.perimeter, 1, 0.02);
@@ -201,7 +201,7 @@ TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
     std::vector<std::vector<std::vector<SurfacePoint>>> curves;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
-        const TransferResult there = transfer(coarse, set, search);
+        const TransferResult there = transfer({coarse, set}, search);
         curves.emplace_back();
         for (const Annotation& one : there.annotations.annotations)
             for (const auto& curve : one.curves) curves.back().push_back(curve);
@@ -273,8 +273,8 @@ TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
     TransferOptions options;
     options.force = true;
-    const TransferResult there = transfer(coarse, set, on_fine, options);
-    const TransferResult back = transfer(fine, there.annotations, on_coarse, options);
+    const TransferResult there = transfer({coarse, set}, on_fine, options);
+    const TransferResult back = transfer({fine, there.annotations}, on_coarse, options);
     ASSERT_EQ(back.annotations.annotations.size(), 1U);
     const Annotation& again = back.annotations.annotations[0];
     EXPECT_EQ(again.curves.size(), 1U);
@@ -291,9 +291,9 @@ TEST(ProjectCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
         options.outlines = TransferOptions::Outlines::free;
         options.overlap = false;
         const SurfaceSearch on_coarse(coarse);
-        const TransferResult there = transfer(fine, set, on_coarse, options);
+        const TransferResult there = transfer({fine, set}, on_coarse, options);
         check_annotations({coarse, there.annotations}, "there");
-        EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-9) << object;
+        EXPECT_NEAR(area_sum({coarse, there.annotations}) / surface_area(coarse), 1, 1e-9) << object;
         const CutMesh cut = cut_along_curves({coarse, there.annotations});
         std::vector<int> holders(cut.mesh.number_of_faces(), 0);
         for (const Annotation& one : cut.annotations.annotations)
@@ -311,7 +311,7 @@ TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
     const auto measured = [&](double scale, const Vector& by, double noise) {
         const Mesh from = moved_and_scaled(coarse, scale, by, noise), to = moved_and_scaled(fine, scale, by, noise);
         const SurfaceSearch on_to(to), on_from(from);
-        const TransferResult there = transfer(from, set, on_to), back = transfer(to, there.annotations, on_from);
+        const TransferResult there = transfer({from, set}, on_to), back = transfer({to, there.annotations}, on_from);
         std::vector<double> values;
         for (const auto& [mesh, result] : {std::pair(&to, &there), std::pair(&from, &back)})
             for (const Annotation& one : result->annotations.annotations) {
@@ -343,7 +343,7 @@ TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
     const SurfaceSearch search(target);
     TransferOptions options;
     options.force = true;
-    const TransferResult there = transfer(whole, set, search, options);
+    const TransferResult there = transfer({whole, set}, search, options);
     ASSERT_EQ(there.annotations.annotations.size(), 1U);
     EXPECT_EQ(there.annotations.annotations[0].curves.size(), 1U);
     EXPECT_EQ(there.scores.at(0).note, "2 outlines became 1");

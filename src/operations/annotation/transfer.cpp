@@ -87,7 +87,7 @@ struct AnnotationTransfer final : Operation {
         const Stopwatch tree;
         const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
         report.run("tree", tree.seconds());
-        TransferResult there = in_file(target.file(), [&] { return transfer(from, set, *search, options); });
+        TransferResult there = in_file(target.file(), [&] { return transfer({from, set}, *search, options); });
         const Misalignment apart = find_misalignment(from, *search);
         report("meanDistance", apart.distance);
         if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(set.unit, 20)));
@@ -98,7 +98,7 @@ struct AnnotationTransfer final : Operation {
             const auto home = in_file(source.file(), [&] { return std::make_unique<SurfaceSearch>(from); });
             TransferOptions how = options;
             how.refine = false;
-            again = transfer(on, there.annotations, *home, how);
+            again = transfer({on, there.annotations}, *home, how);
             if (registered) take_home(*registered, again->annotations);
         }
 
@@ -139,7 +139,7 @@ struct AnnotationTransfer final : Operation {
                        "or --force to go on with the best motion found");
         report.notes(remarks_on(found));
         RegisteredSource registered{moved(from, found.motion),
-                                    moved_annotations(from, set, found.motion, unit_scaled(set.unit, found.motion.scale)),
+                                    moved_annotations({from, set}, found.motion, unit_scaled(set.unit, found.motion.scale)),
                                     found.motion};
         report("registration", json_object(report.allocator(), "verdict", to_string(found.verdict), "matrix",
                                            pose_to_json(found.motion, report.allocator()), "scale", found.motion.scale, "rms",
@@ -154,7 +154,8 @@ struct AnnotationTransfer final : Operation {
 
     /// Transforms annotations of the registered source back to the source, and measures there.
     void take_home(const RegisteredSource& registered, AnnotationSet& set) const {
-        AnnotationSet home = moved_annotations(source->mesh, set, registered.motion.inverse(), annotations.on(source->mesh).unit);
+        AnnotationSet home =
+            moved_annotations({source->mesh, set}, registered.motion.inverse(), annotations.on(source->mesh).unit);
         refresh_measures(source->mesh, home);
         set = std::move(home);
     }
