@@ -69,7 +69,7 @@ DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& ed
                             DeformOptions options, const std::string& name) {
     options.conflicts = 0;
     if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
-    return deform({subject.mesh, subject.set}, graph, moved_to(points_of(subject.mesh), edited), name, options);
+    return deform({{subject.mesh, subject.set}}, graph, moved_to(points_of(subject.mesh), edited), name, options);
 }
 
 void Trials::thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options) {

@@ -408,7 +408,7 @@ struct MakeReport final : Operation {
         shown.constraints = std::move(object.constraints);
         shown.conflicts = std::move(object.conflicts);
         shown.conformance = std::move(object.conformance);
-        if (object.graph && object.set) shown.checks = judge_relationships(object.file.mesh, *object.set, *object.graph);
+        if (object.graph && object.set) shown.checks = judge_relationships({object.file.mesh, *object.set}, *object.graph);
         PageTable table;
         if (object.set && !object.set->annotations.empty()) {
             table = annotation_table(object.file.mesh, *object.set, static_cast<int>(place), object.name);

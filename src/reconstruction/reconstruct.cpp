@@ -351,7 +351,7 @@ private:
         DeformOptions options;
         options.handles = 1e5;  // constraints must not move the observed part
         DeformResult restored = restore_constraints(
-            scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, observed_),
+            {scaled_, prepared_.set}, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, observed_),
             result_.points, observed_, options, {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);

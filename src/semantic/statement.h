@@ -15,9 +15,7 @@
 namespace ostraka::semantic {
 
 /// The shape on which constraints are stated. `rest`: the mesh's points before the edit, one per column.
-struct Shape {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct Shape : AnnotatedMeshView {
     const Points& rest;
     /// There is no rest state: the mesh is judged by the explicit parameters of the constraint only.
     bool alone = false;

@@ -128,7 +128,8 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_templat
     const Mesh framed = with_points(class_template.mesh, normal),
                shape = with_points(class_template.mesh, in_template_frame(class_template.mesh, points, true));
     std::map<int, ConstraintReport> constraints;
-    for (ConstraintReport& report : measure_constraints(class_template.mesh, class_template.set, class_template.graph, normal)) {
+    for (ConstraintReport& report :
+         measure_constraints({class_template.mesh, class_template.set}, class_template.graph, normal)) {
         const int id = report.id;
         constraints.emplace(id, std::move(report));
     }

@@ -151,7 +151,7 @@ private:
             const std::vector<Point> start = points_of(to_frame.apply(factor * shape));
             DeformOptions deform_options;
             deform_options.conflicts = 0;
-            const DeformResult restored = restore_constraints(class_template_.mesh, class_template_.set, class_template_.graph,
+            const DeformResult restored = restore_constraints({class_template_.mesh, class_template_.set}, class_template_.graph,
                                                               start, std::vector<bool>(start.size(), false), deform_options);
             for (std::size_t i = 0; i < start.size(); ++i)
                 sample.moved = std::max(sample.moved, (eigen(restored.points[i]) - eigen(start[i])).norm() / diagonal_);

@@ -414,7 +414,7 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
 void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
     if (!drag.rest->graph) fail_request(drag.object_name + " has no relationships", "state a constraint first");
-    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    const HandleSpace space{{drag.rest->mesh->mesh, *drag.set}, &drag.rest->cage->mesh, &drag.coordinates};
     const auto reaches = cage_reach(space, *drag.rest->graph);
     std::vector<std::string> texts;
     for (const ConstraintReach& constraint : reaches)
@@ -440,7 +440,7 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
     if (flag_in(request, "constraints") && drag.rest->graph)
         for (const Relationship& relationship : drag.rest->graph->relationships)
             if (relationship.is_constraint) graph.relationships.push_back(relationship);
-    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    const HandleSpace space{{drag.rest->mesh->mesh, *drag.set}, &drag.rest->cage->mesh, &drag.coordinates};
     if (drag.weights.size() == 0) drag.weights = drag.coordinates.vertex.cast<float>();
     drag.live = std::make_unique<LiveDeformation>(space, graph, edit_from_json(drag.edit, "the drag"), drag.handles);
     const auto& cage = drag.live->cage();

@@ -135,7 +135,7 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     EXPECT_TRUE(std::find(flowers.begin(), flowers.end(), *coarse.lacking) != flowers.end());
     EXPECT_NE(describe(coarse, object.set).find("'" + object.set.find(*coarse.lacking)->tag + "'"), std::string::npos);
     // A cage that is made for it comes nearer, and still is one.
-    const CageForConstraints made = make_cage_for(object.made.mesh, object.set, graph, {.vertices = 150});
+    const CageForConstraints made = make_cage_for({object.made.mesh, object.set}, graph, {.vertices = 150});
     ASSERT_EQ(made.reach.size(), 1u);
     EXPECT_LT(made.reach[0].left, 0.8 * coarse.left);
     EXPECT_LE(made.made.cage.number_of_vertices(), 300u);
@@ -161,7 +161,7 @@ TEST(CageReach, OfNothing) {
     EXPECT_TRUE(cage_reach(object.handles(), one(constraint(0, "same level", flowers, "{}", 0))).empty());
     EXPECT_THROW(cage_reach(object.bare(), {}), Error);
     EXPECT_THROW(cage_reach(object.handles(), one(constraint(0, "same level", {99, 100}, "{}"))), Error);
-    const CageForConstraints made = make_cage_for(object.made.mesh, object.set, {}, {.vertices = 100});
+    const CageForConstraints made = make_cage_for({object.made.mesh, object.set}, {}, {.vertices = 100});
     EXPECT_EQ(made.made.cage.number_of_vertices(), 100u);
     EXPECT_TRUE(made.reach.empty());
 }

@@ -27,8 +27,8 @@ struct Caged {
           set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)),
           cage(make_cage(made.mesh, {.vertices = cage_vertices}).cage),
           coordinates(compute_coordinates("mean-value", cage, made.mesh)) {}
-    [[nodiscard]] HandleSpace handles() const { return {made.mesh, set, &cage, &coordinates}; }
-    [[nodiscard]] HandleSpace bare() const { return {made.mesh, set}; }
+    [[nodiscard]] HandleSpace handles() const { return {{made.mesh, set}, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace bare() const { return {{made.mesh, set}}; }
 };
 
 inline const Caged& teapot() {

@@ -21,7 +21,7 @@ struct Annotated {
     explicit Annotated(const std::string& name, std::uint64_t vertices = 6000)
         : made(make_mesh(synthetic_object(name), {.vertices = vertices})),
           set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), made.mesh, made.face_labels)) {}
-    [[nodiscard]] HandleSpace space() const { return {made.mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {{made.mesh, set}}; }
     [[nodiscard]] Annotation& tagged(const std::string& tag) {
         return *std::find_if(set.annotations.begin(), set.annotations.end(), [&](const auto& one) { return one.tag == tag; });
     }
@@ -96,7 +96,7 @@ TEST(DeformVerdict, OtherCrossingsThanAtRestAreNotAcceptable) {
     for (Index v = half; v < mesh.number_of_vertices(); ++v) vertices += (vertices.empty() ? "" : ", ") + std::to_string(v);
     const AnnotationSet none;
     const DeformResult result =
-        deform({mesh, none}, {}, edit(R"({"select": {"vertices": [)" + vertices + R"(]}, "translate": [0.6, 0, 0]})"), "e");
+        deform({{mesh, none}}, {}, edit(R"({"select": {"vertices": [)" + vertices + R"(]}, "translate": [0.6, 0, 0]})"), "e");
     EXPECT_GT(result.surface.crossings, 0U);
     EXPECT_LT(result.surface.crossings, result.surface.crossings_before);
     EXPECT_GT(result.surface.crossings_new, 0U);

@@ -70,7 +70,7 @@ struct Column {
         }
         region(whole, "column", -1, 13);
     }
-    [[nodiscard]] HandleSpace space() const { return {mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {{mesh, set}}; }
     [[nodiscard]] Eigen::Vector3d mean(int id, const std::vector<Point>& points) const {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         const auto vertices = vertices_of(mesh, *set.find(id));
@@ -299,7 +299,7 @@ TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
         graph.relationships.push_back(constraint(0, other, {top}, parameters));
         graph.relationships.push_back(constraint(1, "keep position", {top}, R"({"hard": true})"));
         const DeformResult result =
-            deform({column.mesh, column.set}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
+            deform({{column.mesh, column.set}}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
         for (const ConstraintReport& one : result.constraints) EXPECT_EQ(one.verdict, Verdict::holds) << one.type;
         EXPECT_TRUE(result.conflicts.empty()) << other;
         EXPECT_LT((column.mean(top, result.points) - place).norm(), 1e-6) << other;
@@ -315,7 +315,7 @@ TEST(PartsKept, ABaseIsWhatIsLowestThen) {
             constraint(0, "same level", {left_line, right_line},
                        hard ? R"({"reference": "base", "shapes": "free", "hard": true})" : R"({"reference": "base"})", 10));
         const DeformResult result =
-            deform({column.mesh, column.set}, graph,
+            deform({{column.mesh, column.set}}, graph,
                    edit(R"({"select": {"all": true}, "rotate": {"axis": [0, 1, 0], "angle": 10}})"), "e", DeformOptions());
         const auto base = [&](int id) {
             const auto vertices = vertices_of(column.mesh, *column.set.find(id));
@@ -339,7 +339,7 @@ TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("true")));
     graph.relationships.push_back(constraint(1, "same level", {foot, top}, R"({"hard": true})"));
     const DeformResult result =
-        deform({column.mesh, column.set}, graph,
+        deform({{column.mesh, column.set}}, graph,
                edit(R"({"select": {"annotation": "top"}, "scale": {"factor": 1.2, "centre": [0, 0, 8]}})"), "e");
     const Mesh there = with_points(column.mesh, result.points);
     for (const int id : {foot, top})
@@ -358,7 +358,7 @@ TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
         const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
         RelationGraph graph;
         graph.relationships.push_back(constraint(0, "part similarity", {1, 2}, "{}"));
-        const ConstraintReport judged = judge_constraints(mesh, set, graph).at(0);
+        const ConstraintReport judged = judge_constraints({mesh, set}, graph).at(0);
         EXPECT_FALSE(judged.deviations.empty()) << judged.text;
         for (const Deviation& one : judged.deviations)
             if (one.quantity == "area") return one.value.value();

@@ -78,7 +78,7 @@ TEST(Sizes, PartsWithinPartsComeToTheirMeasures) {
         Object object(name);
         const RelationGraph graph = object.ask(asked);
         const std::vector<Point> rest = points_of(object.made.mesh);
-        const DeformResult result = deform({object.made.mesh, object.set}, graph, edit(""), "e");
+        const DeformResult result = deform({{object.made.mesh, object.set}}, graph, edit(""), "e");
         for (std::size_t i = 0; i < asked.size(); ++i) {
             EXPECT_NEAR(object.extent(asked[i].tag, asked[i].direction, result.points) /
                             object.extent(asked[i].tag, asked[i].direction, rest),
@@ -95,7 +95,7 @@ TEST(Sizes, PartsWithinPartsComeToTheirMeasures) {
 TEST(Sizes, TwoMeasuresOfOnePart) {
     Object object("statuette");
     const std::vector<Asked> asked{{"base", x, 0.8}, {"base", y, 1.1}, {"base", z, 1.2}};
-    const DeformResult result = deform({object.made.mesh, object.set}, object.ask(asked), edit(""), "e");
+    const DeformResult result = deform({{object.made.mesh, object.set}}, object.ask(asked), edit(""), "e");
     for (const Asked& one : asked)
         EXPECT_NEAR(object.extent(one.tag, one.direction, result.points) /
                         object.extent(one.tag, one.direction, points_of(object.made.mesh)),
@@ -108,7 +108,7 @@ TEST(Sizes, APartCannotBeLongerThanWhatHoldsIt) {
     const std::vector<Point> rest = points_of(object.made.mesh);
     const double all = object.extent("statuette", z, rest), body = object.extent("body", z, rest);
     const RelationGraph graph = object.ask({{"statuette", z, 0.7}, {"body", z, 0.8 * all / body}, {"cap", z, 1.1}});
-    const DeformResult result = deform({object.made.mesh, object.set}, graph, edit(""), "e");
+    const DeformResult result = deform({{object.made.mesh, object.set}}, graph, edit(""), "e");
     EXPECT_FALSE(result.acceptable);
     EXPECT_TRUE(result.constraints[0].verdict == Verdict::fails || result.constraints[1].verdict == Verdict::fails);
     ASSERT_FALSE(result.conflicts.empty());
@@ -125,12 +125,12 @@ TEST(Sizes, APartCannotBeLongerThanWhatHoldsIt) {
 TEST(Sizes, AMeasureThatHoldsIsLeftAlone) {
     Object object("statuette");
     const DeformResult result =
-        deform({object.made.mesh, object.set}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
+        deform({{object.made.mesh, object.set}}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
     EXPECT_TRUE(result.acceptable);
     EXPECT_EQ(result.points, result.edited);
     // One that others take away is not.
     const DeformResult pulled =
-        deform({object.made.mesh, object.set}, object.ask({{"cap", z, 1}, {"statuette", z, 1.2}}), edit(""), "e");
+        deform({{object.made.mesh, object.set}}, object.ask({{"cap", z, 1}, {"statuette", z, 1.2}}), edit(""), "e");
     EXPECT_TRUE(pulled.constraints[0].verdict == Verdict::holds && pulled.constraints[1].verdict == Verdict::holds);
     EXPECT_NEAR(object.extent("cap", z, pulled.points), object.extent("cap", z, points_of(object.made.mesh)), 0.05);
 }
@@ -139,7 +139,7 @@ TEST(Sizes, PartsThatMovedAreListedForAnEditWithoutSteps) {
     Object object("statuette");
     const double diagonal = box_diagonal(object.made.mesh);
     const std::vector<Point> rest = points_of(object.made.mesh);
-    const DeformResult result = deform({object.made.mesh, object.set}, object.ask({{"head", z, 1.4}}), edit(""), "e");
+    const DeformResult result = deform({{object.made.mesh, object.set}}, object.ask({{"head", z, 1.4}}), edit(""), "e");
     std::size_t listed = 0;
     for (const Annotation& annotation : object.set.annotations) {
         double sum = 0, largest = 0;
@@ -168,7 +168,7 @@ TEST(Sizes, AMeasureComesToTheNearerEndOfItsRangeAndNoFarther) {
         parameters["minValue"].SetDouble(share < 1 ? 0.5 * rest : share * rest);
         parameters["maxValue"].SetDouble(share < 1 ? share * rest : 2 * rest);
         graph.relationships[0].constraint = to_compact_text(parameters);
-        const DeformResult result = deform({object.made.mesh, object.set}, graph, edit(""), "e");
+        const DeformResult result = deform({{object.made.mesh, object.set}}, graph, edit(""), "e");
         EXPECT_NEAR(object.extent("lip", z, result.points) / rest, share, 2e-4);
     }
 }

@@ -1,7 +1,7 @@
 // A scanned fragment of an object.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <cstdint>
@@ -27,7 +27,7 @@ std::optional<Facet> named_facet(const Annotation& annotation);
 
 /// Facets from annotations (`named_facet`); faces in none of them are `other`. Throws Error (input) if two such annotations
 /// share a face.
-std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other = Facet::outer);
+std::vector<Facet> facets_of(AnnotatedMeshView object, Facet other = Facet::outer);
 
 /// The mesh moved, or scaled about the origin.
 Mesh moved(const Mesh& mesh, const Motion& motion);

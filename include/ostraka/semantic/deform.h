@@ -144,12 +144,11 @@ std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& stat
 /// The same from positions that stand already (of a fit, say) instead of an edit: `held` vertices count as handles that were
 /// moved there, the others tend to their positions. Constraints refer to `mesh` as the shape at rest. Throws Error (usage) unless
 /// there are as many positions and flags as vertices, and for cage space; (input) as deform.
-DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const std::vector<Point>& points, const std::vector<bool>& held,
-                                 const DeformOptions& options = {}, const RelationOptions& tolerances = {},
-                                 const std::string& graph_name = "graph");
+DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
+                                 const std::vector<bool>& held, const DeformOptions& options = {},
+                                 const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
 
 /// Throws as deform does where it could not make sense of a relationship that is a constraint.
-void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where);
+void check_constraint(AnnotatedMeshView object, const Relationship& relationship, const std::string& where);
 
 }  // namespace ostraka

@@ -75,7 +75,7 @@ struct CageMake final : Operation {
         AnnotationSet set;
         if (annotations) set = annotations.on(object);
         CageDensity density;
-        if (annotations) density = annotation_density(object, set, factors(set));
+        if (annotations) density = annotation_density({object, set}, factors(set));
         report.set_unit(set.unit);
         const auto border =
             std::count_if(object.halfedges().begin(), object.halfedges().end(), [&](Halfedge h) { return object.is_border(h); });
@@ -135,7 +135,7 @@ struct CageMake final : Operation {
     [[nodiscard]] std::vector<CageResult> for_constraints(const Mesh& object, const AnnotationSet& set,
                                                           const std::optional<MirrorPlane>& plane, Report& report) const {
         CageForConstraints cage_for =
-            make_cage_for(object, set, constraints.on(set), options, plane, deform_tolerances(), constraints.file());
+            make_cage_for({object, set}, constraints.on(set), options, plane, deform_tolerances(), constraints.file());
         report_reach(report, cage_for.reach, set);
         for (const ConstraintReach& reach : cage_for.reach) {
             if (reach.reached) continue;
@@ -153,8 +153,9 @@ struct CageMake final : Operation {
                               Report& report) const {
         CageOptions part_options = options;
         part_options.vertices = part_vertices;
-        const std::vector<PartCage> inner = in_file(
-            annotations.file(), [&] { return make_part_cages(object, set, regions, part_options, relations, graph.file()); });
+        const std::vector<PartCage> inner = in_file(annotations.file(), [&] {
+            return make_part_cages({object, set}, regions, part_options, relations, graph.file());
+        });
         for (std::size_t k = 0; k < inner.size(); ++k)
             if (inner[k].check.components > 1)
                 fail_input(annotations.file(),
@@ -267,7 +268,7 @@ struct CageMake final : Operation {
                                                        const AnnotationSet& set) const {
         for (const Annotation& annotation : set.annotations)
             if (is_whole(object, annotation))
-                if (const auto plane = symmetry_plane(object, set, relations, {annotation.id}, graph.file())) return plane;
+                if (const auto plane = symmetry_plane({object, set}, relations, {annotation.id}, graph.file())) return plane;
         return {};
     }
 

@@ -34,7 +34,7 @@ struct RelationCheckAll final : RelationOperation {
     void run(Context&, Report& report) override {
         const RelationGraph relations = read_relations();
         const std::vector<RelationCheck> checks = in_file(rest ? rest.file() : annotations.file(), [&] {
-            return judge_relationships(mesh->mesh, set(), relations, rest ? &rest->mesh : nullptr, tolerances, graph.file());
+            return judge_relationships({mesh->mesh, set()}, relations, rest ? &rest->mesh : nullptr, tolerances, graph.file());
         });
         std::array<std::size_t, 3> counts{};
         report.empty_table("relationships");
