@@ -83,7 +83,7 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
     std::map<std::string, double> seconds;
     double laps = 0;
     for ([[maybe_unused]] const auto lap : state) {
-        const Reconstruction result = reconstruct(template_class.mesh, template_class.set, {}, {&fragment});
+        const Reconstruction result = reconstruct({template_class.mesh, template_class.set}, {}, {&fragment});
         if (!result.placement.any()) state.SkipWithError("the fragment was not placed");
         for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
         seconds["fit: matching"] += result.fit.seconds_matching;
@@ -107,7 +107,7 @@ void change(benchmark::State& state, const std::string& variant, bool without_la
     options.search.search = without_landmarks ? SearchOptions::Search::always : SearchOptions::Search::never;
     set_threads(2);
     const RelationGraph no_graph;
-    Reconstructor reconstructor(template_class.mesh, template_class.set, no_graph, options);
+    Reconstructor reconstructor({template_class.mesh, template_class.set}, no_graph, options);
     reconstructor.add(*fragments[0]);
     (void)reconstructor.run();
     std::map<std::string, double> seconds;
@@ -121,9 +121,9 @@ void change(benchmark::State& state, const std::string& variant, bool without_la
         state.ResumeTiming();
         Reconstruction result;
         if (variant == "two") {
-            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0], fragments[1]}, options);
+            result = reconstruct({template_class.mesh, template_class.set}, {}, {fragments[0], fragments[1]}, options);
         } else if (variant == "one") {
-            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0]}, options);
+            result = reconstruct({template_class.mesh, template_class.set}, {}, {fragments[0]}, options);
         } else {
             if (variant == "added") reconstructor.add(*fragments[1]);
             else reconstructor.remove(1);

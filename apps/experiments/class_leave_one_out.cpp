@@ -139,7 +139,7 @@ void LeaveOneOut::fit(Source& source, bool second, Rows& csv, std::vector<double
 
 void LeaveOneOut::measure(Source& source, std::size_t i) {
     const WholeObject& with = objects_[i].member;
-    const WholeObject bare{with.name, with.mesh, {}};
+    const WholeObject bare{{with.mesh, {}}, with.name};
     const MemberFit& fit = source.fits.at(i);
     const ClassTemplate plain{source.mesh, none_, no_graph_}, known{source.mesh, source.parts, no_graph_};
     source.measured[0][i] = measure_member(plain, bare, fit, how_, &objects_[i].whole);

@@ -1,6 +1,7 @@
 // Shared by the sources of operations: common slots, and text arguments such as lists of numbers, directions, annotation names.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/operations/table.h"
 
 #include "ostraka/core/message_text.h"

@@ -3,6 +3,7 @@
 
 #include "relation/parts.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/geometric.h"
 
 #include <list>

@@ -1,6 +1,7 @@
 // Detects parts that should have kept their shape and were distorted by solving.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/semantic/deform.h"
 #include "ostraka/solver/constraint.h"
 

@@ -4,6 +4,7 @@
 
 #include "semantic/reattachment.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/relation/check.h"
 #include "ostraka/semantic/deform.h"

@@ -277,7 +277,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
     MemberFit best;
     std::vector<Place> places;
     if (!options.ignore_landmarks) {
-        const auto pairs = common_landmarks(mesh, set, member.mesh, member.annotations, &best.notes);
+        const auto pairs = common_landmarks({mesh, set}, member, &best.notes);
         if (pairs.size() >= 3) {
             const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
             const FragmentPlacement& fragment_placement = placement.fragments.front();
@@ -309,11 +309,11 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
     for (const Place& place : places) {
         const Mesh scaled = scaled_by(mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
-        placed.matches =
-            match_annotations(scaled, template_annotations, member.mesh, member_annotations, place.pose, {}, options.annotations);
+        placed.matches = match_annotations({scaled, template_annotations}, {member.mesh, member_annotations}, place.pose, {},
+                                           options.annotations);
         std::vector<PlacedFragment> placed_fragments;
         placed_fragments.push_back(std::move(placed));
-        const NonRigidFit fit = fit_template(scaled, set, placed_fragments, options.fit);
+        const NonRigidFit fit = fit_template({scaled, set}, placed_fragments, options.fit);
         const Mesh fitted = with_points(mesh, fit.points);
         const auto outer =
             without_inner_walls(fitted, placed_fragments.front().mesh, options.observed * place.scale * box_diagonal(mesh));

@@ -395,7 +395,7 @@ TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
             evaluate(mesh, template_tower.set.annotations[0], template_tower.set.annotations[0].attributes[0].measure);
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
-        WholeObject object{"sample", mesh, {}};
+        WholeObject object{{mesh, {}}, "sample"};
         EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).against.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);

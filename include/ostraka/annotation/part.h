@@ -1,6 +1,7 @@
 // Annotated parts of a mesh as separate meshes.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/geom/submesh.h"
 

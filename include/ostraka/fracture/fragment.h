@@ -15,10 +15,8 @@ namespace ostraka {
 enum class Facet : std::uint8_t { outer, inner, fracture };
 std::string to_string(Facet facet);
 
-struct Fragment {
+struct Fragment : AnnotatedMesh {
     std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;
     std::vector<Facet> facets;  ///< per face; empty: all outer
 };
 

@@ -1,6 +1,7 @@
 // Annotations in other formats. doc/interchange.md states what each format keeps and loses.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/options.h"
 #include "ostraka/interchange/landmarks.h"

@@ -1,6 +1,7 @@
 // Which relationships of a graph hold on a mesh, and by how much the others fail.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/graph.h"
 

@@ -1,6 +1,7 @@
 // Relationships determined by the geometry of the parts, each with its measured deviation and a tolerance.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"

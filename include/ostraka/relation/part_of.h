@@ -1,6 +1,7 @@
 // Compares the part-whole relations of a vocabulary with the containment of the selections.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/vocabulary/vocabulary.h"

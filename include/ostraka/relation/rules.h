@@ -1,6 +1,7 @@
 // Checks the rules of a class on annotations and their relationships.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/vocabulary/class_rules.h"
 

@@ -1,6 +1,7 @@
 // Relationships that follow from the selections alone: containment and adjacency of annotations (thesis, section 2.3).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 
 namespace ostraka {

@@ -1,6 +1,7 @@
 // Template of a vessel from its sherds: the surface of revolution through their walls.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/fracture/fragment.h"

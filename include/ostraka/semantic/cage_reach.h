@@ -1,6 +1,7 @@
 // Which constraints can be satisfied through the vertices of a cage (doc/cages.md, "What a cage can hold").
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/semantic/deform.h"
 

@@ -1,6 +1,7 @@
 // Deformation that keeps what annotations and relations ask for (thesis, chapters 4 and 5; doc/deformation.md).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"
 #include "ostraka/semantic/edit.h"

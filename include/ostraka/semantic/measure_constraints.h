@@ -1,6 +1,7 @@
 // Measures how well the constraints of a graph hold on a given shape, without solving.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/semantic/deform.h"
 
 namespace ostraka {

@@ -1,6 +1,7 @@
 // Cages of annotated parts, which are nested in the cage of the whole (coords/nested.h; doc/cages.md).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/relation/graph.h"
 

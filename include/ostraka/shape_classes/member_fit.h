@@ -1,6 +1,7 @@
 // Registration of a template to a whole object of its class: vertex correspondence and residual distances.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/placement.h"
@@ -31,11 +32,9 @@ struct MemberFitOptions {
     void describe(OptionList& visit);
 };
 
-/// A whole object.
-struct WholeObject {
+/// A whole object; it may have no annotations.
+struct WholeObject : AnnotatedMesh {
     std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;  ///< may be empty
 };
 
 /// Differences between template and object after the fit. Lengths are relative to the box diagonal of the template at the

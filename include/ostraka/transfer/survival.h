@@ -1,6 +1,7 @@
 // The smallest resolution at which an annotation survives.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/transfer/transfer.h"
 

@@ -3,6 +3,7 @@
 
 #include "operations/operations.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 
 #include <string>
