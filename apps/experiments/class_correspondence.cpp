@@ -67,7 +67,7 @@ void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& 
                 Table& table) {
     const WholeObject bare{{to.mesh, {}}, to.name};
     const Stopwatch watch;
-    const MemberFit fit = fit_member(from, set, guides ? to : bare);
+    const MemberFit fit = fit_member({from, set}, guides ? to : bare);
     const double seconds = watch.seconds().processor;
     const char* guided = guides ? "yes" : "no";
     if (!fit.problem.empty()) {

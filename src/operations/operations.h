@@ -20,6 +20,7 @@ struct AnnotatedMeshOperation : Operation {
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
     }
     [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
+    [[nodiscard]] AnnotatedMeshView object() const { return {mesh->mesh, set()}; }
 
     MeshInput mesh;
     AnnotationsInput annotations;

@@ -411,8 +411,8 @@ struct MakeReport final : Operation {
         if (object.graph && object.set) shown.checks = judge_relationships({object.file.mesh, *object.set}, *object.graph);
         PageTable table;
         if (object.set && !object.set->annotations.empty()) {
-            table = annotation_table(object.file.mesh, *object.set, static_cast<int>(place), object.name);
-            if (are_apart(object.file.mesh, *object.set))
+            table = annotation_table({object.file.mesh, *object.set}, static_cast<int>(place), object.name);
+            if (are_apart({object.file.mesh, *object.set}))
                 for (std::size_t i = 0; i < object.set->annotations.size(); ++i) shown.parts.push_back(i);
         }
         std::optional<BoundMesh> simplified_mesh;

@@ -54,8 +54,7 @@ struct SelectionLevel {
 /// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name the file and the JSON pointer.
 class ExpressionEvaluator {
 public:
-    ExpressionEvaluator(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, const AnnotationSet& set,
-                        std::string where);
+    ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels, std::string where);
     /// Sets the cameras and frames; `surroundings.cameras` must outlive the evaluator.
     void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
 
@@ -143,9 +142,8 @@ private:
     const CutMesh* cut_ = nullptr;
     const SelectionBorders* borders_ = nullptr;
     mutable ScalarMap uncut_;  ///< last values requested, on the uncut mesh
-    const Mesh& mesh_;
+    const AnnotatedMeshView object_;
     const std::vector<std::int32_t>& face_labels_;
-    const AnnotationSet& set_;
     std::string where_;
     CGAL::Bbox_3 bounds_;
     Surroundings surroundings_;

@@ -27,7 +27,7 @@ public:
           face_labels_(std::move(start.face_labels)),
           set_(std::move(start.annotations)),
           folder_(std::move(start.folder)),
-          evaluator_(mesh, face_labels_, set_, where_) {
+          evaluator_({mesh, set_}, face_labels_, where_) {
         for (const Annotation& one : set_.annotations) before_.insert(one.id);
     }
 

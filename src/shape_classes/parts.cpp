@@ -57,10 +57,10 @@ FaceMoments part_moments(const Mesh& mesh, const Annotation& part, const Vector3
     return moments;
 }
 
-AnnotationSet parts_of(const Mesh& mesh, const AnnotationSet& set) {
+AnnotationSet parts_of(AnnotatedMeshView object) {
     AnnotationSet parts;
-    for (const Annotation& annotation : set.annotations)
-        if (is_part(mesh, annotation)) parts.annotations.push_back(annotation);
+    for (const Annotation& annotation : object.annotations.annotations)
+        if (is_part(object.mesh, annotation)) parts.annotations.push_back(annotation);
     return parts;
 }
 
@@ -105,14 +105,14 @@ bool is_part(const Mesh& mesh, const Annotation& annotation) {
 
 std::vector<ClassQuantity> part_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
                                            const WholeObject* member) {
-    const AnnotationSet parts = parts_of(class_template.mesh, class_template.set);
+    const AnnotationSet parts = parts_of(class_template);
     std::vector<ClassQuantity> quantities;
     if (parts.annotations.empty()) return quantities;
     const Mesh fitted = with_points(class_template.mesh, points);
     std::map<std::int32_t, std::int32_t> counterpart_labels;
     AnnotationSet own_parts;
     if (member != nullptr) {
-        own_parts = parts_of(member->mesh, member->annotations);
+        own_parts = parts_of(*member);
         if (!own_parts.annotations.empty())
             counterpart_labels = counterparts(overlap_of(class_template, fitted, parts, *member, own_parts));
     }
@@ -173,8 +173,7 @@ bool is_size_of_part(const ClassQuantity& quantity) { return !quantity.name.star
 
 std::optional<double> own_disagreement(const ClassTemplate& class_template, const std::vector<Point>& points,
                                        const WholeObject& member) {
-    const AnnotationSet parts = parts_of(class_template.mesh, class_template.set),
-                        own = parts_of(member.mesh, member.annotations);
+    const AnnotationSet parts = parts_of(class_template), own = parts_of(member);
     if (parts.annotations.empty() || own.annotations.empty()) return {};
     const Overlap overlap = overlap_of(class_template, with_points(class_template.mesh, points), parts, member, own);
     // The index for areas, as the limit of a division into many equal grains; the number of grains cancels.

@@ -76,7 +76,7 @@ const char* const all_kinds = R"(
 TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
     const Ball ball(10);
     const auto measures =
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
+        take_measures({ball.mesh, ball.set}, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
                                                                          {"name": "height", "tool": "bounding", "direction": "up"})"));
     ASSERT_TRUE(measures.values[0].has_value());
     EXPECT_EQ(measures.powers[0], 3);
@@ -91,7 +91,7 @@ TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
 TEST(MeasureDefinitions, AreTakenOnABall) {
     for (const double r : {1.0, 1e-6, 1e6}) {
         const Ball ball(r);
-        const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(all_kinds));
+        const ObjectMeasures measures = take_measures({ball.mesh, ball.set}, definitions(all_kinds));
         ASSERT_TRUE(measures.notes.empty()) << measures.notes.front();
         ASSERT_EQ(measures.values.size(), 8u);
         EXPECT_NEAR(*measures.values[0], 2 * r, 1e-12 * r);
@@ -109,7 +109,7 @@ TEST(MeasureDefinitions, AreTakenOnABall) {
 
 TEST(MeasureDefinitions, ImpossibleMeasuresAreMissingWithANote) {
     Ball ball(1);
-    const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(R"(
+    const ObjectMeasures measures = take_measures({ball.mesh, ball.set}, definitions(R"(
         {"name": "a", "tool": "ruler", "from": "pole", "to": "nose"},
         {"name": "b", "tool": "ruler", "from": "pole", "to": "cap"},
         {"name": "c", "tool": "ruler", "from": "pole", "to": "pole 3"},
@@ -126,10 +126,10 @@ TEST(MeasureDefinitions, ImpossibleMeasuresAreMissingWithANote) {
     EXPECT_NE(measures.notes[1].find("not a point"), std::string::npos);
     ball.set.up.reset();
     EXPECT_FALSE(
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "h", "tool": "bounding", "direction": "up"})")).values[0]);
+        take_measures({ball.mesh, ball.set}, definitions(R"({"name": "h", "tool": "bounding", "direction": "up"})")).values[0]);
     ball.set.annotations.push_back(ball.set.annotations[1]);
-    EXPECT_FALSE(
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "h", "annotation": "cap", "descriptor": "area"})")).values[0])
+    EXPECT_FALSE(take_measures({ball.mesh, ball.set}, definitions(R"({"name": "h", "annotation": "cap", "descriptor": "area"})"))
+                     .values[0])
         << "two annotations of one name";
 }
 
@@ -254,7 +254,7 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     const MeasureDefinitions two_measures = definitions(R"(
         {"name": "cap width", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]},
         {"name": "belt width", "tool": "bounding", "annotation": "belt", "direction": [1, 0, 0]})");
-    const Proposals proposals = propose_proportions(ball.mesh, ball.set, {}, two_measures, fixed_ratio(1.25, 2));
+    const Proposals proposals = propose_proportions({ball.mesh, ball.set}, {}, two_measures, fixed_ratio(1.25, 2));
     ASSERT_EQ(proposals.proposed, 1u);
     const Relationship& r = proposals.graph.relationships.at(0);
     EXPECT_EQ(r.type, "proportion");
@@ -271,7 +271,7 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     RelationGraph relabelled;
     relabelled.relationships.push_back(copy);
     const Proposals second_proposals =
-        propose_proportions(ball.mesh, proposals.set, std::move(relabelled), two_measures, fixed_ratio(1.25, 2));
+        propose_proportions({ball.mesh, proposals.set}, std::move(relabelled), two_measures, fixed_ratio(1.25, 2));
     EXPECT_EQ(second_proposals.proposed, 0u);
     EXPECT_EQ(second_proposals.graph.relationships.size(), 1u);
     EXPECT_EQ(second_proposals.notes.size(), 1u);
@@ -287,7 +287,7 @@ TEST(ProposedProportions, ReportRejectedProposals) {
           R"({"name": "a", "annotation": "cap", "attribute": "height"})",
           R"({"name": "a", "annotation": "cap", "tool": "ruler", "from": "pole", "to": "nose"})"}) {
         const Proposals proposals = propose_proportions(
-            ball.mesh, ball.set, {},
+            {ball.mesh, ball.set}, {},
             definitions(first + R"(, {"name": "b", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]})"),
             fixed_ratio(1, 2));
         EXPECT_EQ(proposals.proposed, 0u) << first;

@@ -161,7 +161,7 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
     const Annotated annotated;
     Page page("a sphere");
     page.add(annotated.object());
-    page.add(annotation_table(annotated.mesh, annotated.set, 0, "sphere"));
+    page.add(annotation_table({annotated.mesh, annotated.set}, 0, "sphere"));
     const ReadPage read(page.html(""));
     const JsonValue& annotations = read.data["objects"][0]["annotations"];
     ASSERT_EQ(annotations.Size(), 4U);
@@ -349,7 +349,7 @@ TEST(Page, EscapesMarkupInTexts) {
     PageObject object = annotated.object();
     object.name = evil;
     page.add(object);
-    page.add(annotation_table(annotated.mesh, annotated.set, 0, evil));
+    page.add(annotation_table({annotated.mesh, annotated.set}, 0, evil));
     page.add_drawing(evil, "<svg/>");
     page.note(evil);
     const std::string html = page.html(evil), plain = Page("").html("");

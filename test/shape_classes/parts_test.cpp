@@ -111,7 +111,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
     object.annotations = other.set;
     object.annotations.annotations[0].tag = "part 1";
     object.annotations.annotations[1].tag = "part 0";
-    const MemberFit fit = fit_member(template_tower.mesh, template_tower.set, object);
+    const MemberFit fit = fit_member({template_tower.mesh, template_tower.set}, object);
     ASSERT_TRUE(fit.problem.empty()) << fit.problem;
     EXPECT_TRUE(std::any_of(fit.notes.begin(), fit.notes.end(),
                             [](const std::string& note) { return note.find("'part' are numbered") != std::string::npos; }));
@@ -123,7 +123,7 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
         template_tower.set.annotations[1].tag = "top";
         object.annotations.annotations[0].tag = low;
         object.annotations.annotations[1].tag = high;
-        return fit_member(template_tower.mesh, template_tower.set, object);
+        return fit_member({template_tower.mesh, template_tower.set}, object);
     };
     const MemberFit words = with_tags("base", "top");
     EXPECT_TRUE(words.notes.empty());

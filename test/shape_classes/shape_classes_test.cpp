@@ -310,7 +310,7 @@ TEST(MemberFit, FitsATowerWithOtherTrianglesAndTransfersAnnotations) {
     object.mesh = build_mesh(refined);
     EXPECT_FALSE(in_correspondence(template_tower.mesh, object.mesh));
     EXPECT_THROW(static_cast<void>(member_in_correspondence(template_tower.mesh, object)), Error);
-    const MemberFit fit = fit_member(template_tower.mesh, template_tower.set, object);
+    const MemberFit fit = fit_member({template_tower.mesh, template_tower.set}, object);
     ASSERT_TRUE(fit.problem.empty()) << fit.problem;
     ASSERT_TRUE(fit.residuals.has_value());
     EXPECT_LT(fit.residuals->distance, 0.01);

@@ -12,7 +12,7 @@ struct Tower {
     Mesh mesh;
     AnnotationSet set;
     RelationGraph graph;
-    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
+    [[nodiscard]] ClassTemplate known() const { return {{mesh, set}, graph}; }
 };
 
 /// A class's answer about an object.

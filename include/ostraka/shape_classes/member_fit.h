@@ -92,7 +92,7 @@ bool in_correspondence(const Mesh& mesh, const Mesh& member);
 /// area and aligned by trimmed iterative closest points in both directions (`align`, with free scale within `shrinkage`),
 /// started from the four orientations of the principal axes and from the given pose. The residuals are measured on the
 /// surfaces. Throws Error (input) for an object or a template without area.
-MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options = {});
+MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const MemberFitOptions& options = {});
 
 /// Fit of a member in correspondence: its own points.
 MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member);

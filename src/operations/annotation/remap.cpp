@@ -53,8 +53,8 @@ struct AnnotationRemap final : Operation {
         for (auto& note : project_free_annotations({source, set}, target, remapped)) remapped.notes.push_back(std::move(note));
         for (const auto& note : refresh_measures(target, remapped).notes) remapped.notes.push_back(note);
         write_annotations(output.path(), {target, remapped}, after.file(), context.provenance());
-        pictures.write(target, remapped, report);
-        report_annotations(context, report, target, remapped);
+        pictures.write({target, remapped}, report);
+        report_annotations(context, report, {target, remapped});
     }
 
     /// The old mesh may be defective: labels only need its number of faces.

@@ -44,7 +44,7 @@ struct MeshExtract final : AnnotatedMeshOperation {
         };
         for (const std::string& name : names) add_regions(name, regions);
         for (const std::string& name : without) add_regions(name, left_out);
-        CutPart part = in_file(annotations.file(), [&] { return cut_out_part({surface, set()}, regions, left_out, closed); });
+        CutPart part = in_file(annotations.file(), [&] { return cut_out_part(object(), regions, left_out, closed); });
         const double area = surface_area(part.mesh);
         report.set_unit(part.annotations.unit);
         report("vertices", part.mesh.number_of_vertices())("faces", part.mesh.number_of_faces())("area", area)("cuts", part.cuts);

@@ -3,7 +3,6 @@
 
 #include "operations/operations.h"
 
-#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 
 #include <string>
