@@ -390,14 +390,14 @@ TEST(ConstraintCheck, EveryTypeIsJudgedByWhatPositionsSay) {
             const RelationGraph graph = graph_of(one);
             const std::string what =
                 std::string(one.type) + " " + one.parameters + ", wrong by " + std::to_string(one.wrong.at(i));
-            const ConstraintReport alone = judge_constraints({object, bench().set}, graph).at(0);
+            const ConstraintReport alone = judge_constraints({object, bench().annotations}, graph).at(0);
             if (one.rest) {
                 EXPECT_EQ(alone.verdict, Verdict::unknown) << what;
                 EXPECT_NE(alone.text.find("--rest"), std::string::npos) << what << ": " << alone.text;
             }
             // Against the shape at rest the verdict is that of deformations.
             const ConstraintReport judged =
-                one.rest ? judge_constraints({object, bench().set}, graph, &bench().mesh).at(0) : alone;
+                one.rest ? judge_constraints({object, bench().annotations}, graph, &bench().mesh).at(0) : alone;
             ASSERT_FALSE(judged.deviations.empty()) << what << ": " << judged.text;
             EXPECT_EQ(judged.verdict, value <= one.tolerance ? Verdict::holds : Verdict::fails)
                 << what << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
@@ -419,7 +419,7 @@ TEST(ConstraintCheck, SelectionsAreJudgedByTheirFaces) {
     graph.relationships.push_back(constraint(0, "containment", {a, a_lower}, "{}"));
     graph.relationships.push_back(constraint(1, "containment", {a_lower, a}, "{}"));
     graph.relationships.push_back(constraint(2, "equal selections", {a_lower, a_upper}, "{}"));
-    const auto judged = judge_constraints({bench().mesh, bench().set}, graph);
+    const auto judged = judge_constraints(bench(), graph);
     EXPECT_EQ(judged.at(0).verdict, Verdict::holds);
     EXPECT_EQ(judged.at(1).verdict, Verdict::fails);
     EXPECT_EQ(judged.at(2).verdict, Verdict::fails);
@@ -435,12 +435,12 @@ TEST(ConstraintCheck, WhatIsSolvedIsWhatIsMeasured) {
         graph.relationships[0].weight = 1000;
         const std::vector<Point> start = wrong_by(one, one.wrong[2]);
         const std::vector<bool> held(start.size(), false);
-        DeformResult result = restore_constraints({bench().mesh, bench().set}, graph, start, held, options);
+        DeformResult result = restore_constraints(bench(), graph, start, held, options);
         const Mesh object = from_file(scratch, result.points);
         const double value = one.value(places_of(object)), before = one.value(places_of(from_file(scratch, start)));
         const std::string what = std::string(one.type) + " " + one.parameters;
         const ConstraintReport &solved = result.constraints.at(0),
-                               judged = judge_constraints({object, bench().set}, graph, &bench().mesh).at(0);
+                               judged = judge_constraints({object, bench().annotations}, graph, &bench().mesh).at(0);
         EXPECT_EQ(solved.verdict, judged.verdict) << what;
         std::cout << what << ": " << before << " -> " << value << " (at most " << one.tolerance << "), "
                   << to_string(solved.verdict) << "\n";
@@ -455,14 +455,14 @@ TEST(ConstraintCheck, AShapeAtRestHasTheVerticesOfTheMesh) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep shape", {a}, "{}"));
     const Mesh other = make_mesh(synthetic_object("teapot"), {.vertices = 2000}).mesh;
-    EXPECT_THROW(judge_constraints({bench().mesh, bench().set}, graph, &other), Error);
+    EXPECT_THROW(judge_constraints(bench(), graph, &other), Error);
 }
 
 TEST(ConstraintCheck, WhatCannotBeReadIsSaidAndTheOthersAreJudged) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {a}, R"({"measure": "girth"})"));
     graph.relationships.push_back(constraint(1, "same level", {a, b}, "{}"));
-    const auto judged = judge_constraints({bench().mesh, bench().set}, graph);
+    const auto judged = judge_constraints(bench(), graph);
     EXPECT_EQ(judged.at(0).verdict, Verdict::unknown);
     EXPECT_NE(judged.at(0).text.find("measure"), std::string::npos) << judged.at(0).text;
     EXPECT_EQ(judged.at(1).verdict, Verdict::holds);
@@ -475,7 +475,7 @@ TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsWhole) {
         constraint(4, "keep direction", {b}, R"({"angle": 0, "direction": [0.5, 0, 0.866], "hard": true})"));
     DeformOptions options;
     options.followed = 0;
-    const DeformResult result = deform({{bench().mesh, bench().set}}, graph, edit(""), "e", options);
+    const DeformResult result = deform({bench()}, graph, edit(""), "e", options);
     EXPECT_FALSE(result.acceptable);
     EXPECT_EQ(result.constraints.at(0).verdict, Verdict::holds);
     EXPECT_EQ(result.constraints.at(1).verdict, Verdict::fails);

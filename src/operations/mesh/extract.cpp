@@ -30,7 +30,6 @@ struct MeshExtract final : AnnotatedMeshOperation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& surface = mesh->mesh;
         const TagMatcher words = vocabulary.words();
         std::vector<std::size_t> regions, left_out;
         const auto add_regions = [&](const std::string& name, std::vector<std::size_t>& target) {
