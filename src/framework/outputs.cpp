@@ -244,9 +244,8 @@ void FolderOutput::write(const std::string& file_in_folder, const Mesh& mesh, co
     options.comment = context->provenance().to_line();
     write_mesh(in(file_in_folder), mesh, extras, options);
 }
-void FolderOutput::write(const std::string& file_in_folder, const AnnotationSet& set, const Mesh& mesh,
-                         const std::string& mesh_name) const {
-    write_annotations(in(file_in_folder), {mesh, set}, mesh_name, context->provenance());
+void FolderOutput::write(const std::string& file_in_folder, AnnotatedMeshView object, const std::string& mesh_name) const {
+    write_annotations(in(file_in_folder), object, mesh_name, context->provenance());
 }
 void FolderOutput::write(const std::string& file_in_folder, const JsonValue& document) const {
     write_json(in(file_in_folder), signed_document(document, *context));

@@ -183,7 +183,7 @@ struct Fit final : Operation {
             AnnotationSet carried_annotations =
                 completed_annotations({object_template->mesh->mesh, *object_template->annotations}, result);
             report.notes(refresh_measures(result.object.mesh, carried_annotations).notes);
-            output.write("completed.ant.json", carried_annotations, result.object.mesh, "completed.ply");
+            output.write("completed.ant.json", {result.object.mesh, carried_annotations}, "completed.ply");
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
             if (const FragmentPlacement& placement = result.placement.fragments[k]; placement.problem.empty())

@@ -17,7 +17,7 @@ struct AnnotatedMesh {
 /// function that changes the annotations takes `const Mesh&` and `AnnotationSet&` instead.
 struct AnnotatedMeshView {
     AnnotatedMeshView(const AnnotatedMesh& object) : AnnotatedMeshView(object.mesh, object.annotations) {}
-    AnnotatedMeshView(const Mesh& its_mesh, const AnnotationSet& set) : mesh(its_mesh), annotations(set) {}
+    AnnotatedMeshView(const Mesh& object_mesh, const AnnotationSet& set) : mesh(object_mesh), annotations(set) {}
 
     const Mesh& mesh;
     const AnnotationSet& annotations;

@@ -197,7 +197,7 @@ public:
 };
 
 /// Checksum of annotations in memory: that of their file without its provenance.
-std::string checksum_of(const AnnotationSet& set, const Mesh& mesh);
+std::string checksum_of(AnnotatedMeshView object);
 
 /// Annotations; adds the option --force-mesh.
 class AnnotationsInput : public Slot {
@@ -369,7 +369,7 @@ public:
     [[nodiscard]] Path path() const;
     /// Writes a file into the folder, with the provenance.
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras = {}, WriteOptions options = {}) const;
-    void write(const std::string& name, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_name) const;
+    void write(const std::string& name, AnnotatedMeshView object, const std::string& mesh_name) const;
     void write(const std::string& name, const JsonValue& document) const;
     void check() const override;
     [[nodiscard]] bool fills_folder(std::size_t /*i*/) const override { return true; }

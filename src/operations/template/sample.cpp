@@ -46,7 +46,7 @@ struct TemplateSample final : Operation {
             move_extents(template_of_class, mesh, set);
             static_cast<void>(refresh_measures(mesh, set));
             output.write(names[i] + ".ply", mesh);
-            output.write(names[i] + ".ant.json", set, mesh, names[i] + ".ply");
+            output.write(names[i] + ".ant.json", {mesh, set}, names[i] + ".ply");
         }
         const Json document = samples_document(class_data.learnt.name, result, names);
         report.values(document);
