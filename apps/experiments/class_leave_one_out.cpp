@@ -128,7 +128,7 @@ void LeaveOneOut::fit(Source& source, bool second, Rows& csv, std::vector<double
         if (i == source.object || (second && !own && i % 3 != 0)) continue;
         if (!own && !object.asked && i - objects_of_class_.at(object.class_name).front() >= max_strangers) continue;
         const Stopwatch watch;
-        source.fits[i] = fit_member({source.mesh, {}}, {object.member.name, object.member.mesh, {}}, how_.fit);
+        source.fits[i] = fit_member({source.mesh, {}}, {{object.member.mesh, {}}, object.member.name}, how_.fit);
         seconds.push_back(watch.seconds().processor);
         measure(source, i);
         for (std::size_t arm = 0; arm < 3; ++arm)

@@ -162,7 +162,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
     if (whole_ != nullptr)
         if (const SelectionLevel* level = whole_->level_of(expression, around, at)) {
             const double infinite = std::numeric_limits<double>::infinity();
-            return faces_between(object_.mesh, {cut_->vertex_values(whole_->mesh_, level->values), false},
+            return faces_between(object_.mesh, {cut_->vertex_values(whole_->object_.mesh, level->values), false},
                                  level->above ? ScalarRange{level->level, infinite} : ScalarRange{-infinite, level->level});
         }
     // Selections along the edges of the mesh are evaluated on the uncut mesh.

@@ -43,7 +43,7 @@ std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, Pl
 ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     if (whole_ != nullptr) {
         ScalarMap map = uncut_ = whole_->scalar(value, frame, at);
-        map.values = map.on_faces ? cut_->face_values(map.values) : cut_->vertex_values(whole_->mesh_, map.values);
+        map.values = map.on_faces ? cut_->face_values(map.values) : cut_->vertex_values(whole_->object_.mesh, map.values);
         return map;
     }
     std::string chosen;
@@ -170,7 +170,8 @@ std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, c
     if (kind == "brush" && whole_ != nullptr) {
         const double radius = length(value["radius"].GetDouble(), frame);
         const ScalarMap distance{
-            cut_->vertex_values(whole_->mesh_, distances_within(whole_->mesh_, whole_->brush_centres(value, frame, at), radius)),
+            cut_->vertex_values(whole_->object_.mesh,
+                                distances_within(whole_->object_.mesh, whole_->brush_centres(value, frame, at), radius)),
             false};
         return faces_between(object_.mesh, distance, {-std::numeric_limits<double>::infinity(), radius});
     }

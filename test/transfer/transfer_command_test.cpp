@@ -54,8 +54,8 @@ TEST_F(TransferCommand, ThereAndBack) {
 TEST_F(TransferCommand, OptionsThatFreeOutlinesDoNotUseAreReported) {
     const std::string note = "free outlines, which do not depend on --rounding";
     EXPECT_NE(transfer("--outlines free --rounding area").err.find(note), std::string::npos);
-    EXPECT_EQ(transfer({"--outlines edges --rounding area", "t.ply"}, "e.ant.json").err.find(note), std::string::npos);
-    EXPECT_EQ(transfer({"--outlines free", "t.ply"}, "f.ant.json").err.find("do not depend on"), std::string::npos);
+    EXPECT_EQ(transfer("--outlines edges --rounding area", "t.ply", "e.ant.json").err.find(note), std::string::npos);
+    EXPECT_EQ(transfer("--outlines free", "t.ply", "f.ant.json").err.find("do not depend on"), std::string::npos);
 }
 
 TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
@@ -111,8 +111,8 @@ TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
 }
 
 TEST_F(TransferCommand, SameBytesForAnyNumberOfThreads) {
-    ASSERT_EQ(transfer({"--threads 1", "t.ply"}, "one.ant.json").code, 0);
-    ASSERT_EQ(transfer({"--threads 2", "t.ply"}, "two.ant.json").code, 0);
+    ASSERT_EQ(transfer("--threads 1", "t.ply", "one.ant.json").code, 0);
+    ASSERT_EQ(transfer("--threads 2", "t.ply", "two.ant.json").code, 0);
     EXPECT_EQ(read_file(at("one.ant.json")), read_file(at("two.ant.json")));
 }
 
@@ -151,7 +151,7 @@ TEST_F(TransferCommand, BadInputIsOneNamesTheFileAndTouchesNothing) {
     fails(transfer("", "away.ply"), "not aligned");
     fails(run_command("annotation transfer " + at("t.ply") + " " + at("s.ant.json") + " " + at("s.ply") + " " + at("o.ant.json")),
           "s.ant.json");
-    fails(transfer({"", "t.ply"}, "no/such/folder.json"), "folder");
+    fails(transfer("", "t.ply", "no/such/folder.json"), "folder");
     write_file(scratch / "cut.ply", read_file(at("t.ply")).substr(0, 5000));
     fails(transfer("", "cut.ply"), "cut.ply");
 }
@@ -169,7 +169,7 @@ TEST_F(TransferCommand, SmallMisalignmentIsNoted) {
 
 TEST_F(TransferCommand, FullDiskLeavesTheEarlierFile) {
     write_file(scratch / "o.ant.json", "earlier");
-    const CommandResult result = transfer({"", "t.ply"}, "o.ant.json", "ulimit -f 1;");
+    const CommandResult result = transfer("", "t.ply", "o.ant.json", "ulimit -f 1;");
     EXPECT_EQ(result.code, 1) << result.err;
     EXPECT_EQ(read_file(at("o.ant.json")), "earlier");
 }
