@@ -103,10 +103,10 @@ Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph e
     for (const RatioRow& ratio : study.ratios) {
         if (ratio.fixedness != Fixedness::fixed && !(options.stable && ratio.fixedness == Fixedness::stable)) continue;
         try {
-            const TemplateMeasure part = measure_on_template(template_object.mesh, result.set,
-                                                             definitions.measures.at(ratio.denominator)),
-                                  reference = measure_on_template(template_object.mesh, result.set,
-                                                                  definitions.measures.at(ratio.numerator));
+            const auto taken = [&](std::size_t measure) {
+                return measure_on_template(template_object.mesh, result.set, definitions.measures.at(measure));
+            };
+            const TemplateMeasure part = taken(ratio.denominator), reference = taken(ratio.numerator);
             if (part.annotation == reference.annotation)
                 throw RejectedProposal{
                     fmt::format("both measures belong to '{}', but a constraint relates two annotations", part.tag)};

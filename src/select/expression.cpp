@@ -46,7 +46,11 @@ std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression) {
 
 ExpressionEvaluator::ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels,
                                          std::string where)
-    : object_(object), face_labels_(face_labels), where_(std::move(where)), bounds_(bounding_box(object.mesh)) {}
+    : mesh_(object.mesh),
+      face_labels_(face_labels),
+      set_(object.annotations),
+      where_(std::move(where)),
+      bounds_(bounding_box(object.mesh)) {}
 
 void ExpressionEvaluator::fail(const std::string& at, const std::string& what, const std::string& remedy) const {
     fail_input(where_, "at " + at + ": " + what, remedy);
@@ -81,32 +85,30 @@ Point ExpressionEvaluator::point(const JsonValue& list, PlaceFrame frame, const 
 
 Index ExpressionEvaluator::vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
     if (whole_ != nullptr) return whole_->vertex(pick, frame, at);  // vertices of the uncut mesh keep their index
-    if (pick.IsArray()) return nearest_vertex(object_.mesh, point(pick, frame, at));
+    if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame, at));
     if (pick.IsObject()) {
         const SurfaceHit hit = seen(pick, frame, at);
-        const auto corner = corners(object_.mesh, Face(hit.face));
+        const auto corner = corners(mesh_, Face(hit.face));
         return *std::min_element(corner.begin(), corner.end(), [&](Vertex a, Vertex b) {
-            return std::make_pair(CGAL::squared_distance(object_.mesh.point(a), hit.point), a) <
-                   std::make_pair(CGAL::squared_distance(object_.mesh.point(b), hit.point), b);
+            return std::make_pair(CGAL::squared_distance(mesh_.point(a), hit.point), a) <
+                   std::make_pair(CGAL::squared_distance(mesh_.point(b), hit.point), b);
         });
     }
-    if (pick.GetUint() >= object_.mesh.number_of_vertices())
-        fail(at,
-             "vertex " + to_string(pick.GetUint()) + " of a mesh with " + to_string(object_.mesh.number_of_vertices()) +
-                 " vertices",
+    if (pick.GetUint() >= mesh_.number_of_vertices())
+        fail(at, "vertex " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_vertices()) + " vertices",
              "pick by coordinates, or another vertex");
     return pick.GetUint();
 }
 
 Index ExpressionEvaluator::face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
-    if (pick.IsArray()) return nearest_face(object_.mesh, point(pick, frame, at));
+    if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame, at));
     if (pick.IsObject()) return seen(pick, frame, at).face;
     if (whole_ != nullptr) {
         const auto& origin = cut_->face_origin;
         return static_cast<Index>(std::lower_bound(origin.begin(), origin.end(), whole_->face(pick, frame, at)) - origin.begin());
     }
-    if (pick.GetUint() >= object_.mesh.number_of_faces())
-        fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(object_.mesh.number_of_faces()) + " faces",
+    if (pick.GetUint() >= mesh_.number_of_faces())
+        fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_faces()) + " faces",
              "pick by coordinates, or another face");
     return pick.GetUint();
 }
@@ -138,7 +140,7 @@ std::function<bool(const Point&)> ExpressionEvaluator::volume(const std::string&
 }
 
 const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationType type, const std::string& at) const {
-    const Annotation* found = object_.annotations.find(id.GetInt());
+    const Annotation* found = set_.find(id.GetInt());
     if (found == nullptr)
         fail(at + "/annotation", "no earlier annotation has the id " + to_string(id.GetInt()), "define it before it is used");
     if (found->type != type)
@@ -153,16 +155,16 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
     check_cancelled();
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
-    if (is_volume(kind)) return faces_within(object_.mesh, volume(kind, *value, frame, at));
+    if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));
     if (is_drawn(kind)) {
         const ScreenCamera from = camera(*value, frame, at + '/' + kind);
-        return faces_seen(object_.mesh, from.camera, screen_area(kind, *value, from, at + '/' + kind),
+        return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                           visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
     if (whole_ != nullptr)
         if (const SelectionLevel* level = whole_->level_of(expression, around, at)) {
             const double infinite = std::numeric_limits<double>::infinity();
-            return faces_between(object_.mesh, {cut_->vertex_values(whole_->object_.mesh, level->values), false},
+            return faces_between(mesh_, {cut_->vertex_values(whole_->mesh_, level->values), false},
                                  level->above ? ScalarRange{level->level, infinite} : ScalarRange{-infinite, level->level});
         }
     // Selections along the edges of the mesh are evaluated on the uncut mesh.
@@ -171,9 +173,9 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         return faces_of_origin(whole_->faces(expression, around, at));
     if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
     if (whole_ != nullptr && kind == "lasso") return lassoed(*value, frame, at + "/lasso");
-    std::vector<bool> result(object_.mesh.number_of_faces(), false);
+    std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
-        result.assign(object_.mesh.number_of_faces(), true);
+        result.assign(mesh_.number_of_faces(), true);
     } else if (kind == "faces") {
         for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
             result[face((*value)[i], frame, at + "/faces/" + to_string(i))] = true;
@@ -183,12 +185,11 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         std::optional<Point> place;
         if (pick.IsObject()) place = seen(pick, frame, at + "/lasso/seed").point;
         if (pick.IsArray()) {
-            const auto [a, b, c] = corners(object_.mesh, Face(seed));
-            place = point_at(
-                object_.mesh, seed,
-                nearest_barycentric(object_.mesh.point(a), object_.mesh.point(b), object_.mesh.point(c), point(pick, frame, at)));
+            const auto [a, b, c] = corners(mesh_, Face(seed));
+            place = point_at(mesh_, seed,
+                             nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame, at)));
         }
-        result = lasso(object_.mesh, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
+        result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
                        where_ + ", at " + at + "/lasso", place);
     } else if (kind == "component") {
         const Index seed = face((*value)["seed"], frame, at + "/component/seed");
@@ -199,7 +200,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
                 fail(at + "/component/seed", "face " + to_string(seed) + " does not belong to the selection",
                      "put the seed within it");
         }
-        result = component_of(object_.mesh, seed, within);
+        result = component_of(mesh_, seed, within);
     } else if (kind == "labels") {
         if (face_labels_.empty())
             fail(at + "/labels", "the mesh has no face labels",
@@ -232,10 +233,10 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
 std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
-    if (is_volume(kind)) return vertices_within(object_.mesh, volume(kind, *value, frame, at));
+    if (is_volume(kind)) return vertices_within(mesh_, volume(kind, *value, frame, at));
     if (is_drawn(kind)) {
         const ScreenCamera from = camera(*value, frame, at + '/' + kind);
-        return vertices_seen(object_.mesh, from.camera, screen_area(kind, *value, from, at + '/' + kind),
+        return vertices_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                              visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
     if (is_reckoned(kind) && kind != "segments") return reckoned_vertices(kind, *value, frame, at + '/' + kind);
@@ -245,8 +246,8 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Pl
     } else if (kind == "invert") {
         const std::vector<Index> part = vertices(*value, frame, at + "/invert");
         const std::set<Index> members(part.begin(), part.end());
-        for (const Vertex v : object_.mesh.vertices())
-            if (!object_.mesh.is_isolated(v) && !members.contains(v)) result.push_back(v);
+        for (const Vertex v : mesh_.vertices())
+            if (!mesh_.is_isolated(v) && !members.contains(v)) result.push_back(v);
     } else if (kind == "nearest") {
         result = {vertex(*value, frame, at + "/nearest")};
     } else if (kind == "annotation") {
@@ -272,7 +273,7 @@ std::vector<std::vector<Index>> ExpressionEvaluator::polylines(const JsonValue& 
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (kind == "path") {
-        return {path_through(object_.mesh, picks((*value)["points"], frame, at + "/path/points"), flag_in(*value, "closed"),
+        return {path_through(mesh_, picks((*value)["points"], frame, at + "/path/points"), flag_in(*value, "closed"),
                              metric_of(*value), where_ + ", at " + at + "/path")};
     }
     if (kind == "vertices") return {picks(*value, frame, at + "/vertices")};

@@ -142,8 +142,9 @@ private:
     const CutMesh* cut_ = nullptr;
     const SelectionBorders* borders_ = nullptr;
     mutable ScalarMap uncut_;  ///< last values requested, on the uncut mesh
-    const AnnotatedMeshView object_;
+    const Mesh& mesh_;
     const std::vector<std::int32_t>& face_labels_;
+    const AnnotationSet& set_;
     std::string where_;
     CGAL::Bbox_3 bounds_;
     Surroundings surroundings_;

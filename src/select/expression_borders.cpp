@@ -66,8 +66,7 @@ void add_level(const Mesh& mesh, const std::vector<double>& values, double level
 class DrawnSides {
 public:
     DrawnSides(const Mesh& mesh, const PictureCamera& camera, const std::vector<Pixel>& corners)
-        : object_.mesh(mesh),
-    camera_(camera), corners_(corners), pixels_(mesh.number_of_vertices()) {
+        : mesh_(mesh), camera_(camera), corners_(corners), pixels_(mesh.number_of_vertices()) {
         parallel_for(pixels_.size(),
                      [&](std::size_t v) { pixels_[v] = camera.project(mesh.point(Vertex(static_cast<Index>(v)))); });
         for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -80,8 +79,8 @@ public:
     }
 
     std::vector<SurfaceCurve> pieces() const {
-        std::vector<std::vector<SurfaceCurve>> parts((object_.mesh.number_of_faces() + block - 1) / block);
-        parallel_blocks(object_.mesh.number_of_faces(), block, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::vector<SurfaceCurve>> parts((mesh_.number_of_faces() + block - 1) / block);
+        parallel_blocks(mesh_.number_of_faces(), block, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) add(Face(static_cast<Index>(f)), parts[begin / block]);
         });
         std::vector<SurfaceCurve> all;
@@ -97,26 +96,25 @@ private:
     };
 
     void add(Face f, std::vector<SurfaceCurve>& curves) const {
-        const auto corner = ostraka::corners(object_.mesh, f);
+        const auto corner = ostraka::corners(mesh_, f);
         Pixel low{infinite, infinite}, high{-infinite, -infinite};
         for (const Vertex v : corner) {
             const auto& pixel = pixels_[v];
             if (!pixel) return;
             for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], (*pixel)[k]), high[k] = std::max(high[k], (*pixel)[k]);
         }
-        const Vector area = area_vector(object_.mesh, f);
+        const Vector area = area_vector(mesh_, f);
         for (std::size_t i = 0; i < corners_.size(); ++i) {
             const Pixel &p = corners_[i], &q = corners_[(i + 1) % corners_.size()];
             if (std::min(p[0], q[0]) > high[0] || std::max(p[0], q[0]) < low[0] || std::min(p[1], q[1]) > high[1] ||
                 std::max(p[1], q[1]) < low[1])
                 continue;
             std::array<double, 3> side{};
-            for (std::size_t k = 0; k < 3; ++k) side[k] = (object_.mesh.point(corner[k]) - planes_[i].origin) * planes_[i].normal;
+            for (std::size_t k = 0; k < 3; ++k) side[k] = (mesh_.point(corner[k]) - planes_[i].origin) * planes_[i].normal;
             // Intersection of the plane with the face: a chord with its ends on edges.
             std::vector<std::pair<double, SurfacePoint>> ends;
-            for (const Halfedge h : object_.mesh.halfedges_around_face(object_.mesh.halfedge(f))) {
-                const Vertex v = std::min(object_.mesh.source(h), object_.mesh.target(h)),
-                             w = std::max(object_.mesh.source(h), object_.mesh.target(h));
+            for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
+                const Vertex v = std::min(mesh_.source(h), mesh_.target(h)), w = std::max(mesh_.source(h), mesh_.target(h));
                 const auto at = [&](Vertex x) {
                     return side[static_cast<std::size_t>(std::find(corner.begin(), corner.end(), x) - corner.begin())];
                 };
@@ -124,7 +122,7 @@ private:
                 if ((a > 0) == (b > 0)) continue;
                 const double t = a / (a - b);
                 const SurfacePoint end = t < at_vertex || t > 1 - at_vertex ? vertex_point(t < 0.5 ? v : w) : edge_point(v, w, t);
-                const auto pixel = camera_.project(position(object_.mesh, end));
+                const auto pixel = camera_.project(position(mesh_, end));
                 if (!pixel) return;
                 const double x = q[0] - p[0], y = q[1] - p[1];
                 ends.emplace_back((((*pixel)[0] - p[0]) * x + ((*pixel)[1] - p[1]) * y) / (x * x + y * y), end);
@@ -146,17 +144,16 @@ private:
         const auto ray = camera_.ray(corners_[i][0], corners_[i][1]);
         const double slope = ray.direction * area;
         if (slope == 0) return false;
-        const auto corner = ostraka::corners(object_.mesh, f);
-        const Point place = ray.origin + ((object_.mesh.point(corner[0]) - ray.origin) * area / slope) * ray.direction;
-        end = surface_point(object_.mesh, f,
-                            nearest_barycentric(object_.mesh.point(corner[0]), object_.mesh.point(corner[1]),
-                                                object_.mesh.point(corner[2]), place),
+        const auto corner = ostraka::corners(mesh_, f);
+        const Point place = ray.origin + ((mesh_.point(corner[0]) - ray.origin) * area / slope) * ray.direction;
+        end = surface_point(mesh_, f,
+                            nearest_barycentric(mesh_.point(corner[0]), mesh_.point(corner[1]), mesh_.point(corner[2]), place),
                             at_vertex);
         return true;
     }
 
     static constexpr double infinite = std::numeric_limits<double>::infinity();
-    const Mesh& object_.mesh;
+    const Mesh& mesh_;
     const PictureCamera& camera_;
     const std::vector<Pixel>& corners_;
     std::vector<std::optional<Pixel>> pixels_;
@@ -171,14 +168,13 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
     const auto [kind, value] = only_kind(expression, at);
     const std::string here = at + '/' + kind;
     if (const SelectionLevel* level = level_of(expression, around, at)) {
-        add_level(object_.mesh, level->values, level->level, level->above, borders.curves);
+        add_level(mesh_, level->values, level->level, level->above, borders.curves);
     } else if (kind == "box" || kind == "sphere" || kind == "halfspace") {
         const auto inside = volume(kind, *value, frame, at);
-        std::vector<bool> flags(object_.mesh.number_of_vertices());
-        for (const Vertex v : object_.mesh.vertices()) flags[v] = inside(object_.mesh.point(v));
+        std::vector<bool> flags(mesh_.number_of_vertices());
+        for (const Vertex v : mesh_.vertices()) flags[v] = inside(mesh_.point(v));
         add_level(
-            object_.mesh, flags,
-            [&](Vertex a, Vertex b) { return root_of(inside, object_.mesh.point(a), object_.mesh.point(b)); }, borders.curves);
+            mesh_, flags, [&](Vertex a, Vertex b) { return root_of(inside, mesh_.point(a), mesh_.point(b)); }, borders.curves);
     } else if (kind == "rectangle" || kind == "polygon") {
         const ScreenCamera from = camera(*value, frame, here);
         screen_area(kind, *value, from, here);  // validates the area
@@ -192,18 +188,17 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
                 if (const Pixel p = pixel(one); points.empty() || points.back() != p) points.push_back(p);
             while (points.size() > 1 && points.front() == points.back()) points.pop_back();
         }
-        std::vector<SurfaceCurve> pieces = DrawnSides(object_.mesh, from.camera, points).pieces();
+        std::vector<SurfaceCurve> pieces = DrawnSides(mesh_, from.camera, points).pieces();
         std::move(pieces.begin(), pieces.end(), std::back_inserter(borders.curves));
     } else if (kind == "threshold") {
         const ScalarMap map = scalar(*value, frame, here);
         if (map.on_faces) return;
         const ScalarRange range = interval(*value, map, here);
-        add_level(object_.mesh, map.values, range.above, true, borders.curves);
-        add_level(object_.mesh, map.values, range.below, false, borders.curves);
+        add_level(mesh_, map.values, range.above, true, borders.curves);
+        add_level(mesh_, map.values, range.below, false, borders.curves);
     } else if (kind == "brush") {
         const double radius = length((*value)["radius"].GetDouble(), frame);
-        add_level(object_.mesh, distances_within(object_.mesh, brush_centres(*value, frame, here), radius), radius, false,
-                  borders.curves);
+        add_level(mesh_, distances_within(mesh_, brush_centres(*value, frame, here), radius), radius, false, borders.curves);
     } else if (kind == "lasso" && !keeps_to_edges(*value)) {
         static_cast<void>(faces(expression, around, at));  // throws if the lasso crosses itself or has its seed on the outline
         const std::vector<Index> points = picks((*value)["points"], frame, here + "/points");
@@ -211,7 +206,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Index a = points[i], b = points[(i + 1) % points.size()];
             if (a == b) continue;
-            const auto leg = geodesic_curve(object_.mesh, vertex_point(a), vertex_point(b));
+            const auto leg = geodesic_curve(mesh_, vertex_point(a), vertex_point(b));
             if (!leg)
                 fail(here, "no path along the surface joins vertices " + std::to_string(a) + " and " + std::to_string(b),
                      "they lie on separate parts of the mesh: pick points on one part");
@@ -240,7 +235,7 @@ bool ExpressionEvaluator::ends_at_levels(const JsonValue& expression, PlaceFrame
     if (kind == "grow" || kind == "shrink") return by_distance(*value, here);
     if (kind == "invert") return ends_at_levels(*value, frame, here);
     if (kind == "annotation") {
-        const Annotation* found = object_.annotations.find(value->GetInt());
+        const Annotation* found = set_.find(value->GetInt());
         return found != nullptr && is_free(*found);
     }
     if (kind == "component") {
@@ -260,7 +255,7 @@ bool ExpressionEvaluator::keeps_to_edges(const JsonValue& lasso) const {
 CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const {
     SelectionBorders borders;
     add_borders(expression, frame, at, borders);
-    CutSelection result{cut_along_curves(object_, borders.curves), {}};
+    CutSelection result{cut_along_curves({mesh_, set_}, borders.curves), {}};
     const std::vector<std::int32_t> labels =
         face_labels_.empty() ? std::vector<std::int32_t>() : result.cut.face_values(face_labels_);
     ExpressionEvaluator there(result.cut, labels, where_);
@@ -305,10 +300,10 @@ const SelectionLevel* ExpressionEvaluator::level_of(const JsonValue& expression,
         known->above = false;
     } else if (fresh) {
         const std::vector<bool> chosen = faces(expression, around, at);
-        std::vector<double> area(object_.mesh.number_of_vertices(), 0), part = area;
-        for (const Face face : object_.mesh.faces()) {
-            const double size = face_area(object_.mesh, face);
-            for (const Vertex v : corners(object_.mesh, face)) area[v] += size, part[v] += chosen[face] ? size : 0;
+        std::vector<double> area(mesh_.number_of_vertices(), 0), part = area;
+        for (const Face face : mesh_.faces()) {
+            const double size = face_area(mesh_, face);
+            for (const Vertex v : corners(mesh_, face)) area[v] += size, part[v] += chosen[face] ? size : 0;
         }
         bool any = false;
         for (std::size_t v = 0; v < area.size(); ++v) {
@@ -327,17 +322,17 @@ std::vector<bool> ExpressionEvaluator::faces_of_origin(const std::vector<bool>& 
 }
 
 std::vector<bool> ExpressionEvaluator::lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
-    std::vector<bool> wall(object_.mesh.number_of_edges(), false);
+    std::vector<bool> wall(mesh_.number_of_edges(), false);
     for (const std::size_t leg : borders_->lassos.at(at)) {
         const std::vector<Index>& path = cut_->more_paths[leg];
         for (std::size_t i = 0; i + 1 < path.size(); ++i)
-            if (const Halfedge h = find_halfedge(object_.mesh, Vertex(path[i]), Vertex(path[i + 1])); h.is_valid())
-                wall[object_.mesh.edge(h)] = true;
+            if (const Halfedge h = find_halfedge(mesh_, Vertex(path[i]), Vertex(path[i + 1])); h.is_valid())
+                wall[mesh_.edge(h)] = true;
     }
     const Index seed = face(value["seed"], frame, at + "/seed");
-    std::vector<bool> inside(object_.mesh.number_of_faces(), false), component = inside;
-    flood_faces(object_.mesh, Face(seed), inside, [&](Halfedge h) -> bool { return !wall[object_.mesh.edge(h)]; });
-    flood_faces(object_.mesh, Face(seed), component);
+    std::vector<bool> inside(mesh_.number_of_faces(), false), component = inside;
+    flood_faces(mesh_, Face(seed), inside, [&](Halfedge h) -> bool { return !wall[mesh_.edge(h)]; });
+    flood_faces(mesh_, Face(seed), component);
     if (inside == component)
         fail(at, "the lasso does not close off any part of the surface around the seed",
              "put the seed within it; a lasso that runs through a handle or along a border needs more points");
@@ -364,12 +359,12 @@ std::vector<std::vector<SurfacePoint>> ExpressionEvaluator::curves(const JsonVal
         fail(at + "/path", "a path through fewer than two different vertices", "pick two or more, farther apart");
     std::vector<SurfacePoint> places;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const auto leg = geodesic_curve(object_.mesh, vertex_point(points[i]), vertex_point(points[i + 1]));
+        const auto leg = geodesic_curve(mesh_, vertex_point(points[i]), vertex_point(points[i + 1]));
         if (!leg)
             fail(at + "/path", "no path along the surface joins two of its points",
                  "they lie on separate parts of the mesh: pick points on one part");
         for (const SurfacePoint& p : leg->points)
-            if (const SurfacePoint place = stored_point(object_.mesh, p); places.empty() || places.back() != place)
+            if (const SurfacePoint place = stored_point(mesh_, p); places.empty() || places.back() != place)
                 places.push_back(place);
     }
     result.push_back(std::move(places));

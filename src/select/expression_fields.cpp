@@ -23,13 +23,13 @@ std::string key_of(const char* name, double a, double b = 0) { return std::strin
 }  // namespace
 
 double ExpressionEvaluator::length(double value, PlaceFrame frame) const {
-    return frame.box ? value * box_diagonal(object_.mesh) : value;
+    return frame.box ? value * box_diagonal(mesh_) : value;
 }
 
 std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const {
     const std::vector<Index> vertices = picks(list, frame, at);
     for (std::size_t i = 0; i < vertices.size(); ++i)
-        if (object_.mesh.is_isolated(Vertex(vertices[i])))
+        if (mesh_.is_isolated(Vertex(vertices[i])))
             fail(at + '/' + to_string(i), "vertex " + to_string(vertices[i]) + " has no face", "pick another one");
     return vertices;
 }
@@ -37,13 +37,13 @@ std::vector<Index> ExpressionEvaluator::surface_picks(const JsonValue& list, Pla
 std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     const std::vector<Index> centres = surface_picks(value["points"], frame, at + "/points");
     if (!flag_in(value, "stroke") || centres.size() < 2) return centres;
-    return path_through(object_.mesh, centres, false, PathMetric::combined, where_ + ", at " + at);
+    return path_through(mesh_, centres, false, PathMetric::combined, where_ + ", at " + at);
 }
 
 ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
     if (whole_ != nullptr) {
         ScalarMap map = uncut_ = whole_->scalar(value, frame, at);
-        map.values = map.on_faces ? cut_->face_values(map.values) : cut_->vertex_values(whole_->object_.mesh, map.values);
+        map.values = map.on_faces ? cut_->face_values(map.values) : cut_->vertex_values(whole_->mesh_, map.values);
         return map;
     }
     std::string chosen;
@@ -55,17 +55,17 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
     if (chosen.empty()) fail(at, "a threshold on nothing", "name one of coordinate, curvature, thickness, distance, map");
     const std::string here = at + '/' + chosen;
     const JsonValue& of = value[chosen.c_str()];
-    if (object_.mesh.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
+    if (mesh_.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
     if (chosen == "coordinate") {
         const auto [x, y, z] = triple_of(of);
-        return coordinate_map(object_.mesh, Vector(x, y, z), frame.box, where_ + ", at " + here);
+        return coordinate_map(mesh_, Vector(x, y, z), frame.box, where_ + ", at " + here);
     }
     const double unit = length(1, frame);
     ScalarMap map;
     if (chosen == "distance") {
         const double limit = number_or(value, "below", std::numeric_limits<double>::infinity());
         const bool quantiles = flag_in(value, "quantiles");
-        map.values = distances_within(object_.mesh, surface_picks(of, frame, here),
+        map.values = distances_within(mesh_, surface_picks(of, frame, here),
                                       quantiles ? std::numeric_limits<double>::infinity() : unit * std::max(0.0, limit));
         for (double& x : map.values) x /= unit;
         return map;
@@ -75,14 +75,13 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
             file_inside(text_of(of), surroundings_.folder, where_, here, "the recipe's folder", "move the map beside the recipe");
         map.values = read_values(file);
         const JsonValue* on = find_member(value, "on");
-        const bool vertices = map.values.size() == object_.mesh.number_of_vertices(),
-                   faces = map.values.size() == object_.mesh.number_of_faces();
+        const bool vertices = map.values.size() == mesh_.number_of_vertices(),
+                   faces = map.values.size() == mesh_.number_of_faces();
         map.on_faces = on == nullptr ? !vertices : std::string(on->GetString()) == "face";
         if (!(map.on_faces ? faces : vertices))
             fail(here,
                  file.filename().string() + " holds " + to_string(map.values.size()) + " values for a mesh of " +
-                     to_string(object_.mesh.number_of_vertices()) + " vertices and " + to_string(object_.mesh.number_of_faces()) +
-                     " faces",
+                     to_string(mesh_.number_of_vertices()) + " vertices and " + to_string(mesh_.number_of_faces()) + " faces",
                  "give one value a vertex or a face of this mesh");
         return map;
     }
@@ -93,7 +92,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
         const std::string key = key_of("curvature", options.scale, mean ? 1 : 0);
         if (!maps_.contains(key)) {
             Curvature found;
-            in_place(here, [&] { found = curvature(object_.mesh, options); });
+            in_place(here, [&] { found = curvature(mesh_, options); });
             maps_[key].values = std::move(mean ? found.mean : found.gaussian);
         }
         map = maps_[key];
@@ -106,7 +105,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
 }
 
 const ScalarMap& ExpressionEvaluator::thickness_map() const {
-    if (!maps_.contains("thickness")) maps_["thickness"] = {thickness(object_.mesh), true};
+    if (!maps_.contains("thickness")) maps_["thickness"] = {thickness(mesh_), true};
     return maps_["thickness"];
 }
 
@@ -128,7 +127,7 @@ ScalarRange ExpressionEvaluator::interval(const JsonValue& value, const ScalarMa
         const double x = number_or(value, name, otherwise);
         if (find_member(value, name) == nullptr || !flag_in(value, "quantiles")) return x;
         if (x < 0 || x > 1) fail(at + '/' + name, "a quantile of " + to_string(x), "give a share of the area from 0 to 1");
-        return quantile_of(object_.mesh, map, x, where_ + ", at " + at);
+        return quantile_of(mesh_, map, x, where_ + ", at " + at);
     };
     result.above = bound("above", result.above);
     result.below = bound("below", result.below);
@@ -145,7 +144,7 @@ std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFra
         fail(at, seeds == nullptr ? "segments without seeds or numbers" : "segments by both seeds and numbers",
              "give one of the two");
     const std::string key = key_of("segments", options.clusters, options.smoothing);
-    if (!segments_.contains(key)) in_place(at, [&] { segments_[key] = segment(object_.mesh, thickness_map().values, options); });
+    if (!segments_.contains(key)) in_place(at, [&] { segments_[key] = segment(mesh_, thickness_map().values, options); });
     const std::vector<Index>& number_of = segments_[key];
     const Index count = *std::max_element(number_of.begin(), number_of.end()) + 1;
     std::vector<bool> wanted(count, false);
@@ -160,7 +159,7 @@ std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFra
                      "segments are numbered from 0, the largest");
             wanted[n] = true;
         }
-    std::vector<bool> faces(object_.mesh.number_of_faces());
+    std::vector<bool> faces(mesh_.number_of_faces());
     for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = wanted[number_of[f]];
     return faces;
 }
@@ -170,40 +169,38 @@ std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, c
     if (kind == "brush" && whole_ != nullptr) {
         const double radius = length(value["radius"].GetDouble(), frame);
         const ScalarMap distance{
-            cut_->vertex_values(whole_->object_.mesh,
-                                distances_within(whole_->object_.mesh, whole_->brush_centres(value, frame, at), radius)),
+            cut_->vertex_values(whole_->mesh_, distances_within(whole_->mesh_, whole_->brush_centres(value, frame, at), radius)),
             false};
-        return faces_between(object_.mesh, distance, {-std::numeric_limits<double>::infinity(), radius});
+        return faces_between(mesh_, distance, {-std::numeric_limits<double>::infinity(), radius});
     }
-    if (kind == "brush")
-        return brushed_faces(object_.mesh, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
+    if (kind == "brush") return brushed_faces(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
     if (kind == "threshold") {
         const ScalarMap map = scalar(value, frame, at);
-        return faces_between(object_.mesh, map, interval(value, map, at));
+        return faces_between(mesh_, map, interval(value, map, at));
     }
     if (kind == "segments") return segments(value, frame, at);
     const bool larger = kind == "grow";
     const std::vector<bool> part = faces(value["of"], frame, at + "/of");
     if (by_distance(value, at)) {
         const double distance = length(value["distance"].GetDouble(), frame);
-        return larger ? grow_by(object_.mesh, part, distance) : shrink_by(object_.mesh, part, distance);
+        return larger ? grow_by(mesh_, part, distance) : shrink_by(mesh_, part, distance);
     }
     const int rings = value["rings"].GetInt();
-    return larger ? grow(object_.mesh, part, rings) : shrink(object_.mesh, part, rings);
+    return larger ? grow(mesh_, part, rings) : shrink(mesh_, part, rings);
 }
 
 std::vector<Index> ExpressionEvaluator::reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                           const std::string& at) const {
     if (kind == "brush")
-        return brushed_vertices(object_.mesh, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
+        return brushed_vertices(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
     if (kind == "threshold") {
         const ScalarMap map = scalar(value, frame, at);
-        return vertices_between(object_.mesh, map, interval(value, map, at));
+        return vertices_between(mesh_, map, interval(value, map, at));
     }
     const std::vector<Index> part = vertices(value["of"], frame, at + "/of");
     if (by_distance(value, at)) fail(at + "/distance", "points grow by rings only", "give rings");
     const int rings = value["rings"].GetInt();
-    return kind == "grow" ? grow_vertices(object_.mesh, part, rings) : shrink_vertices(object_.mesh, part, rings);
+    return kind == "grow" ? grow_vertices(mesh_, part, rings) : shrink_vertices(mesh_, part, rings);
 }
 
 bool ExpressionEvaluator::by_distance(const JsonValue& value, const std::string& at) const {

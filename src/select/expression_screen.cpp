@@ -22,7 +22,7 @@ std::string size_of(const ScreenCamera& camera) { return digits(camera.width, 6)
 }  // namespace
 
 const SurfaceSearch& ExpressionEvaluator::search(const std::string& at) const {
-    if (!search_) in_place(at, [&] { search_.emplace(object_.mesh); });
+    if (!search_) in_place(at, [&] { search_.emplace(mesh_); });
     return *search_;
 }
 
@@ -31,7 +31,7 @@ ScreenCamera ExpressionEvaluator::camera(const JsonValue& owner, PlaceFrame fram
         const PlaceFrame own = frame_of(value, around);
         const auto place = [&](const JsonValue& list) { return point(list, own, here); };
         ScreenCamera result;
-        in_place(here, [&] { result = read_camera(value, object_.mesh, surroundings_.up, place, where_ + ", at " + here); });
+        in_place(here, [&] { result = read_camera(value, mesh_, surroundings_.up, place, where_ + ", at " + here); });
         return result;
     };
     const JsonValue& value = owner["camera"];
