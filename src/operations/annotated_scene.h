@@ -12,7 +12,7 @@ struct AnnotationStyle {
     bool measures = false;  ///< draw measures with their pins and values
 };
 
-/// Adds colours, lines, points, labels and the legend of the annotations of `mesh` to the scene, and the unit. If the scene
+/// Adds colours, lines, points, labels and the legend of the annotations to the scene, and the unit. If the scene
 /// shows values, regions are drawn as coloured outlines; otherwise their faces are painted, the smallest region on top, and
 /// outlines are drawn except where a smaller region covers them.
 void draw_annotations(Scene& scene, AnnotatedMeshView object, const AnnotationStyle& style = {});

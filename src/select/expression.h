@@ -51,7 +51,7 @@ struct SelectionLevel {
     bool above = true;  ///< true: values inside are at least the level; false: at most
 };
 
-/// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name the file and the JSON pointer.
+/// Evaluates expressions on one object, whose annotations are those made so far. All errors name the file and the JSON pointer.
 class ExpressionEvaluator {
 public:
     ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels, std::string where);

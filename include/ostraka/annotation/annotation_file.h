@@ -24,8 +24,8 @@ AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnn
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options = {});
 
-/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. Only the file name of `mesh_file` is
-/// stored, not its folder. Throws Error if a selection does not fit the mesh.
+/// Writes the annotations atomically; the same object, name and provenance give the same bytes. Only the file name of `mesh_file`
+/// is stored, not its folder. Throws Error if a selection does not fit the mesh.
 void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 

@@ -28,8 +28,8 @@ struct ExportedAnnotations {
     std::size_t annotations = 0;     ///< number of annotations in the file
 };
 
-/// Exports the set in the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an
-/// unknown format, Error (input) if the set does not fit the mesh.
+/// Exports the annotations in the format. The same object, name and provenance give the same bytes. Throws Error (usage) for an
+/// unknown format, Error (input) if the annotations do not fit the mesh.
 ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::string& format, const std::string& mesh_file,
                                        const Provenance& provenance, const ExportOptions& options = {});
 

@@ -143,8 +143,8 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options = {});
 
 /// The same from positions that stand already (of a fit, say) instead of an edit: `held` vertices count as handles that were
-/// moved there, the others tend to their positions. Constraints refer to `mesh` as the shape at rest. Throws Error (usage) unless
-/// there are as many positions and flags as vertices, and for cage space; (input) as deform.
+/// moved there, the others tend to their positions. Constraints refer to `object` as the shape at rest. Throws Error (usage)
+/// unless there are as many positions and flags as vertices, and for cage space; (input) as deform.
 DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
                                  const std::vector<bool>& held, const DeformOptions& options = {},
                                  const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
