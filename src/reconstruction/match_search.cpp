@@ -67,7 +67,7 @@ MatchSearch::MatchSearch(AnnotatedMeshView template_object, const std::vector<Pl
                 landmark_fragment_.push_back(static_cast<int>(k));
             }
         }
-        const std::vector<int> labels = face_labels({fragment.mesh, theirs});
+        const std::vector<int> labels = face_labels(fragment.mesh, theirs);
         for (const auto& [region, label] : theirs) {
             Counterpart counterpart{static_cast<int>(k), label, {}};
             counterpart.region.tag = region->tag;
@@ -84,7 +84,7 @@ MatchSearch::MatchSearch(AnnotatedMeshView template_object, const std::vector<Pl
         joints_.add(static_cast<int>(k), fragment.mesh, labels, fragment.facets, trees_.back()->end_vertices(), scale);
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
-    face_labels_ = face_labels({template_object.mesh, ours});
+    face_labels_ = face_labels(template_object.mesh, ours);
     if (guides == Guides::paths) add_path_correspondences(template_object.annotations);
 }
 

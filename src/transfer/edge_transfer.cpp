@@ -185,7 +185,7 @@ void EdgeTransfer::fill() {
     const bool overlapping = options_.cover == TransferOptions::Cover::overlapping;
     std::optional<OutlineRounding> rounding;
     if (!options_.refine && overlapping && options_.rounding != TransferOptions::Rounding::path)
-        rounding.emplace(source_.mesh, source_.annotations, target_, vertex_paths_, tracer_);
+        rounding.emplace(source_, target_, vertex_paths_, tracer_);
     regions_.set_outlines(traced_, mesh(), refined_ ? &refined_->face_origin : nullptr);
     std::vector<FilledRegion> filled(moved_.size());
     for_each_annotation([&](std::size_t i) {
