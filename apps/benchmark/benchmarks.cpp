@@ -59,12 +59,12 @@ TargetMeshing meshing_of(std::size_t vertices) {
     return meshing;
 }
 
-const Source& source() {
-    static const Source source_data = [] {
-        Source result;
+const AnnotatedMesh& source() {
+    static const AnnotatedMesh source_data = [] {
+        AnnotatedMesh result;
         SyntheticMesh teapot = make_teapot(50'000, 1);
-        result.regions = regions_from_labels(teapot.mesh, teapot.face_labels);
-        result.regions.annotations.resize(10);
+        result.annotations = regions_from_labels(teapot.mesh, teapot.face_labels);
+        result.annotations.annotations.resize(10);
         result.mesh = std::move(teapot.mesh);
         return result;
     }();

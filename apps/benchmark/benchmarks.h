@@ -1,7 +1,7 @@
 // The benchmarks, one file per subject, and their shared data.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/file.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -69,11 +69,7 @@ double memory_bandwidth(int thread_count);
 double seconds_of_cgal_tree(const Mesh& mesh);
 
 /// A teapot of 50,000 vertices with ten of its parts (body, base, spout, handle, knob, flowers ...) as regions.
-struct Source {
-    Mesh mesh;
-    AnnotationSet regions;
-};
-const Source& source();
+const AnnotatedMesh& source();
 
 /// Up to 500,000 vertices the target is the same teapot, meshed independently; above, a mesh with a quarter or a sixteenth of
 /// the vertices whose triangles are subdivided into four, which is faster to make. The number of vertices is met within 0.1 %.

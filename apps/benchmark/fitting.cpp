@@ -28,19 +28,14 @@ AnnotationSet landmarks_of(const Statuette& statuette) {
     return set;
 }
 
-struct Class {
-    Mesh mesh;
-    AnnotationSet set;
-};
-
-const Class& template_of_class() {
-    static const Class template_class = [] {
+const AnnotatedMesh& template_of_class() {
+    static const AnnotatedMesh template_class = [] {
         StatuetteParameters parameters;
         parameters.wall = 0;
         parameters.vertices = 25'000;
         Statuette statuette = generate_statuette(parameters);
         AnnotationSet set = landmarks_of(statuette);
-        return Class{std::move(statuette.mesh), std::move(set)};
+        return AnnotatedMesh{std::move(statuette.mesh), std::move(set)};
     }();
     return template_class;
 }
@@ -77,13 +72,13 @@ const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark 
 }
 
 void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
-    const Class& template_class = template_of_class();
+    const AnnotatedMesh& template_class = template_of_class();
     const Fragment& fragment = fragment_of(vertices);
     set_threads(thread_count);
     std::map<std::string, double> seconds;
     double laps = 0;
     for ([[maybe_unused]] const auto lap : state) {
-        const Reconstruction result = reconstruct(template_class.mesh, template_class.set, {}, {&fragment});
+        const Reconstruction result = reconstruct(template_class, {}, {&fragment});
         if (!result.placement.any()) state.SkipWithError("the fragment was not placed");
         for (const auto& [phase, time] : result.seconds) seconds[phase] += time;
         seconds["fit: matching"] += result.fit.seconds_matching;
@@ -100,14 +95,14 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
 /// Two fragments: both new, the second added to the first, only one, or one left after the second was removed; with or without
 /// landmarks; without them, poses are searched.
 void change(benchmark::State& state, const std::string& variant, bool without_landmarks) {
-    const Class& template_class = template_of_class();
+    const AnnotatedMesh& template_class = template_of_class();
     const std::array<const Fragment*, 2> fragments{&fragment_of(10'000, "head joint", 0.4),
                                                    &fragment_of(10'000, "base centre", 0.2)};
     ReconstructOptions options;
     options.search.search = without_landmarks ? SearchOptions::Search::always : SearchOptions::Search::never;
     set_threads(2);
     const RelationGraph no_graph;
-    Reconstructor reconstructor(template_class.mesh, template_class.set, no_graph, options);
+    Reconstructor reconstructor(template_class, no_graph, options);
     reconstructor.add(*fragments[0]);
     (void)reconstructor.run();
     std::map<std::string, double> seconds;
@@ -121,9 +116,9 @@ void change(benchmark::State& state, const std::string& variant, bool without_la
         state.ResumeTiming();
         Reconstruction result;
         if (variant == "two") {
-            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0], fragments[1]}, options);
+            result = reconstruct(template_class, {}, {fragments[0], fragments[1]}, options);
         } else if (variant == "one") {
-            result = reconstruct(template_class.mesh, template_class.set, {}, {fragments[0]}, options);
+            result = reconstruct(template_class, {}, {fragments[0]}, options);
         } else {
             if (variant == "added") reconstructor.add(*fragments[1]);
             else reconstructor.remove(1);

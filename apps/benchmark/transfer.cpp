@@ -78,7 +78,7 @@ std::string problem_of(const TransferResult& result, bool overlap) {
 }
 
 void transfer_regions(benchmark::State& state, std::size_t vertices, bool with_tree, bool overlap) {
-    const Source& source_data = source();
+    const AnnotatedMesh& source_data = source();
     const Mesh& mesh = target(vertices);
     const SurfaceSearch* const existing_search = with_tree ? nullptr : &target_search(vertices);
     TransferOptions options;
@@ -89,8 +89,7 @@ void transfer_regions(benchmark::State& state, std::size_t vertices, bool with_t
         timer.time([&] {
             std::unique_ptr<SurfaceSearch> search;
             if (with_tree) search = std::make_unique<SurfaceSearch>(mesh);
-            const TransferResult result =
-                transfer(source_data.mesh, source_data.regions, with_tree ? *search : *existing_search, options);
+            const TransferResult result = transfer(source_data, with_tree ? *search : *existing_search, options);
             times = result.times;
             if (const std::string problem = problem_of(result, overlap); !problem.empty()) state.SkipWithError(problem.c_str());
             return search;

@@ -75,7 +75,7 @@ void cage_reach(const CageReachOptions& options) {
             const std::string cage_name = name_of_file(cage_file);
             const Mesh cage = read_mesh(cage_file).mesh;
             const Coordinates coordinates = compute_coordinates("mean-value", cage, mesh);
-            const HandleSpace space{mesh, set, &cage, &coordinates};
+            const HandleSpace space{{mesh, set}, &cage, &coordinates};
             const std::vector<bool> touched = follow_edit(edit, space, edit_file).back().touched;
             const auto handles = std::count(touched.begin(), touched.end(), true);
             const std::string stem = edit_name + '-' + cage_name + '-';

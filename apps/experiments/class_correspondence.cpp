@@ -65,9 +65,9 @@ const std::string columns =
 /// Reports a fit with known truth: the distance of each vertex from its true position, and from the tangent plane there.
 void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& set, const WholeObject& to, bool guides,
                 Table& table) {
-    const WholeObject bare{to.name, to.mesh, {}};
+    const WholeObject bare{{to.mesh, {}}, to.name};
     const Stopwatch watch;
-    const MemberFit fit = fit_member(from, set, guides ? to : bare);
+    const MemberFit fit = fit_member({from, set}, guides ? to : bare);
     const double seconds = watch.seconds().processor;
     const char* guided = guides ? "yes" : "no";
     if (!fit.problem.empty()) {
@@ -153,7 +153,7 @@ void report_bodies(const ClassCorrespondenceOptions& options) {
                 continue;
             moved[place[v]] = moved[place[v]] + Vector(x, y, z);
         }
-        const WholeObject body{Path(file).stem().string(), with_points(skin.mesh, moved), landmarks_on(spread)};
+        const WholeObject body{{with_points(skin.mesh, moved), landmarks_on(spread)}, Path(file).stem().string()};
         for (const bool guides : {false, true})
             report_fit("base, " + body.name, skin.mesh, landmarks_on(spread), body, guides, table);
     }

@@ -128,7 +128,7 @@ void LeaveOneOut::fit(Source& source, bool second, Rows& csv, std::vector<double
         if (i == source.object || (second && !own && i % 3 != 0)) continue;
         if (!own && !object.asked && i - objects_of_class_.at(object.class_name).front() >= max_strangers) continue;
         const Stopwatch watch;
-        source.fits[i] = fit_member(source.mesh, {}, {object.member.name, object.member.mesh, {}}, how_.fit);
+        source.fits[i] = fit_member({source.mesh, {}}, {{object.member.mesh, {}}, object.member.name}, how_.fit);
         seconds.push_back(watch.seconds().processor);
         measure(source, i);
         for (std::size_t arm = 0; arm < 3; ++arm)
@@ -139,9 +139,9 @@ void LeaveOneOut::fit(Source& source, bool second, Rows& csv, std::vector<double
 
 void LeaveOneOut::measure(Source& source, std::size_t i) {
     const WholeObject& with = objects_[i].member;
-    const WholeObject bare{with.name, with.mesh, {}};
+    const WholeObject bare{{with.mesh, {}}, with.name};
     const MemberFit& fit = source.fits.at(i);
-    const ClassTemplate plain{source.mesh, none_, no_graph_}, known{source.mesh, source.parts, no_graph_};
+    const ClassTemplate plain{{source.mesh, none_}, no_graph_}, known{{source.mesh, source.parts}, no_graph_};
     source.measured[0][i] = measure_member(plain, bare, fit, how_, &objects_[i].whole);
     source.measured[1][i] = measure_member(known, bare, fit, how_, &objects_[i].whole);
     source.measured[2][i] = measure_member(known, with, fit, how_, &objects_[i].whole);
@@ -313,7 +313,7 @@ void LeaveOneOut::ask_made(const std::vector<ClassObject>& made, std::size_t arm
         std::vector<ClassAnswer> list;
         int members = 0, open = 0;
         for (std::size_t k = 0; k < classes.size(); ++k) {
-            const ClassTemplate known{asked[k]->mesh, arm == 0 ? none_ : asked[k]->parts, no_graph_};
+            const ClassTemplate known{{asked[k]->mesh, arm == 0 ? none_ : asked[k]->parts}, no_graph_};
             list.push_back(compare_with(classes[k], learn_member(known, object.member, how_, &object.whole)));
             members += list.back().verdict == Membership::member ? 1 : 0;
             open += list.back().verdict == Membership::undecided ? 1 : 0;

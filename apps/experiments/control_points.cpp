@@ -60,7 +60,7 @@ void control_points(const ControlPointOptions& options) {
     Table table(columns + " | auto-mesh of the part | auto-cage of the part");
     Rows rows("level,annotation,vertices,rule,threshold,control_points");
     std::map<std::size_t, std::vector<Owners>> levels;
-    for (const TreeEntry& entry : containment_tree(topology(mesh, set).order)) {
+    for (const TreeEntry& entry : containment_tree(topology({mesh, set}).order)) {
         const Annotation& annotation = set.annotations[entry.annotation];
         if (annotation.faces.empty()) continue;
         const std::vector<Index> vertices = vertices_of(mesh, annotation);

@@ -314,7 +314,7 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
         how.fit.outlines = false;
     }
     const Stopwatch watch;
-    const Reconstruction result = reconstruct(members.shape, scene.set, {}, {&scene.fragment}, how);
+    const Reconstruction result = reconstruct({members.shape, scene.set}, {}, {&scene.fragment}, how);
     Result row;
     row.placed = result.placement.any();
     if (!row.placed) return row;

@@ -179,7 +179,7 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     std::vector<bool> seen(mesh.number_of_vertices(), false);
     for (const Index v : piece.vertices) seen[v] = true;
     const Stopwatch watch;
-    const Reconstruction result = reconstruct(mesh, canon.set, canon.graph, {&broken.fragment}, how, {}, prior, cage);
+    const Reconstruction result = reconstruct({mesh, canon.set}, canon.graph, {&broken.fragment}, how, {}, prior, cage);
     Row row;
     row.seconds = watch.seconds().wall;
     row.placed = result.placement.any();
@@ -266,7 +266,7 @@ void verdicts(const VerdictOptions& options) {
         const Broken top = make_fragment(canon, first, "top", "head", options_top),
                      bottom = make_fragment(canon, second, "bottom", "base", options_bottom);
         const Reconstruction result =
-            reconstruct(canon.statuette.mesh, canon.set, canon.graph, {&top.fragment, &bottom.fragment});
+            reconstruct({canon.statuette.mesh, canon.set}, canon.graph, {&top.fragment, &bottom.fragment});
         const bool compatible = result.verdict == Compatibility::compatible;
         truth.push_back(planted == Planted::nothing);
         evidence.push_back(-result.strain);

@@ -312,7 +312,7 @@ private:
         TransferOptions how;
         how.force = true;
         const Stopwatch watch;
-        TransferResult moved = transfer(from.mesh, set, to.search, how);
+        TransferResult moved = transfer({from.mesh, set}, to.search, how);
         const double seconds = watch.seconds().wall;
         for (const Annotation& one : set.annotations) {
             const Annotation* there = moved.annotations.find(one.id);

@@ -96,8 +96,8 @@ void label_transfer(const LabelOptions& options) {
             const Mesh other =
                 remeshed(mesh, static_cast<std::uint64_t>(factor * static_cast<double>(mesh.number_of_vertices())));
             const SurfaceSearch search(other);
-            const Painted there = paint(other, transfer(mesh, set, search, transferring).annotations);
-            const Painted back = paint(mesh, transfer(other, regions_of(there.labels), home, transferring).annotations);
+            const Painted there = paint(other, transfer({mesh, set}, search, transferring).annotations);
+            const Painted back = paint(mesh, transfer({other, regions_of(there.labels)}, home, transferring).annotations);
             double kept = 0;
             for (const Face f : mesh.faces())
                 if (back.labels[f] == labels[f]) kept += face_area(mesh, f);

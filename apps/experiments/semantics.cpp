@@ -69,7 +69,7 @@ DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& ed
                             DeformOptions options, const std::string& name) {
     options.conflicts = 0;
     if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
-    return deform({subject.mesh, subject.set}, graph, moved_to(points_of(subject.mesh), edited), name, options);
+    return deform({{subject.mesh, subject.set}}, graph, moved_to(points_of(subject.mesh), edited), name, options);
 }
 
 void Trials::thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options) {
@@ -100,7 +100,7 @@ void Trials::write(const Path& folder, TextTable& table, const std::function<std
                    const std::function<std::vector<double>(const Outcome&)>& value_per_face) const {
     for (const Outcome& outcome : outcomes) {
         const Mesh mesh = with_points(subject_.mesh, outcome.points);
-        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation(mesh, subject_.set), {.comment = outcome.name});
+        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation({mesh, subject_.set}), {.comment = outcome.name});
         if (&outcome != &outcomes.front()) {
             const std::vector<double> values = value_per_face(outcome);
             write_npy(folder / (outcome.file + ".npy"), std::span(values), {values.size()});

@@ -90,7 +90,7 @@ void sherd_rotations(const SherdOptions& options) {
             one.mesh = moved(one.mesh, motions.back());
         }
         const Stopwatch watch;
-        const Reconstruction result = reconstruct(turned.mesh, turned.annotations, {}, pointers_to(away));
+        const Reconstruction result = reconstruct(turned, {}, pointers_to(away));
         const double seconds = watch.seconds().processor;
         std::vector<Vector3d> from, to;
         std::vector<Motion> back(given.size());

@@ -178,9 +178,9 @@ private:
                 TransferOptions options;
                 set_option(options, "rounding", rounding);
                 options.overlap = false;
-                const TransferResult there = transfer(source, set, search, options);
+                const TransferResult there = transfer({source, set}, search, options);
                 judge(truth, there.annotations, home + " -> " + name, rounding);
-                judge(home_truth, transfer(target, there.annotations, source_search, options).annotations,
+                judge(home_truth, transfer({target, there.annotations}, source_search, options).annotations,
                       home + " -> " + name + " -> " + home, rounding);
             }
         }
@@ -214,13 +214,13 @@ private:
                 const auto seconds = [](const TransferResult& result) {
                     return result.times.correspondence + result.times.paths + result.times.regions;
                 };
-                const TransferResult there = transfer(source, set, search, options);
+                const TransferResult there = transfer({source, set}, search, options);
                 add(ladder, home + " -> " + name, metric, there.scores, seconds(there), edge);
                 TransferOptions returning = options;
                 returning.refine = false;
                 returning.overlap = false;
                 const Mesh& on = there.refined ? there.refined->mesh : target;
-                TransferResult back = transfer(on, there.annotations, source_search, returning);
+                TransferResult back = transfer({on, there.annotations}, source_search, returning);
                 // The round trip is compared with the original region, face by face.
                 for (TransferScore& score : back.scores) {
                     const auto& origin = set.annotations.at(static_cast<std::size_t>(score.id));

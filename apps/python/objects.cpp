@@ -316,14 +316,14 @@ std::pair<py::dict, py::array> faces_of(const Held& held, const Held& held_mesh)
     auto [set, labels] = unlocked([held, file] {
         AnnotationSet annotations;
         if (const auto in_memory = held.object.as<AnnotationSet>()) {
-            check_annotations(*in_memory, file->mesh, held.object.name);
+            check_annotations({file->mesh, *in_memory}, held.object.name);
             annotations = *in_memory;
         } else {
             const InMemory place(Path(held.object.name).filename().string());
             write_object(held.object, place.file);
             annotations = read_annotations(place.file, file->mesh);
         }
-        auto face_labels = labels_of(file->mesh, annotations);
+        auto face_labels = labels_of({file->mesh, annotations});
         return std::pair(std::move(annotations), std::move(face_labels));
     });
     py::dict faces;

@@ -155,17 +155,17 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
 
 }  // namespace
 
-void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled) {
-    if (mesh.has_garbage()) fail_work(where, "the mesh has removed elements", "collect the mesh's garbage first");
-    if (set.up) {
-        const auto& [x, y, z] = *set.up;
+void places::check_set(AnnotatedMeshView object, const std::string& where, bool settled) {
+    if (object.mesh.has_garbage()) fail_work(where, "the mesh has removed elements", "collect the mesh's garbage first");
+    if (object.annotations.up) {
+        const auto& [x, y, z] = *object.annotations.up;
         if (unit_vector({x, y, z}) == CGAL::NULL_VECTOR)
             fail(where, "/up", "the direction has no length", "give a vector that is not zero, or leave it out");
     }
     std::set<int> ids;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+    for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i) {
         check_cancelled();
-        const Annotation& annotation = set.annotations[i];
+        const Annotation& annotation = object.annotations.annotations[i];
         const std::string at = "/annotations/" + to_string(i);
         if (!ids.insert(annotation.id).second)
             fail(where, at + "/id", "the id " + to_string(annotation.id) + " is taken", "give each annotation its own id");
@@ -173,14 +173,12 @@ void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::st
             if (part < 0 || part > 255)
                 fail(where, at + "/colour", "the colour part " + to_string(part) + " is not within 0 to 255",
                      "give red, green and blue from 0 to 255");
-        check_selection(annotation, mesh, where, at, settled);
-        check_attributes(annotation, mesh, where, at);
+        check_selection(annotation, object.mesh, where, at, settled);
+        check_attributes(annotation, object.mesh, where, at);
     }
 }
 
-void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
-    places::check_set(set, mesh, where, false);
-}
+void check_annotations(AnnotatedMeshView object, const std::string& where) { places::check_set(object, where, false); }
 
 namespace {
 
@@ -236,9 +234,9 @@ std::string defect_of_content(const Path& file, const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, const Path& folder) {
+std::vector<Finding> check_files(AnnotatedMeshView object, const Path& folder) {
     std::vector<Finding> findings;
-    for (const ReferredFile& referred : referred_files(set)) {
+    for (const ReferredFile& referred : referred_files(object.annotations)) {
         const Path given(referred.name), file = folder / given;
         const auto add = [&](bool defect, const std::string& what) {
             findings.push_back(
@@ -251,7 +249,7 @@ std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, con
         else if (sha256_of_file(file) != referred.sha256) add(true, "which has changed since (its checksum differs)");
         else if (referred.pointer.find("/attributes/") != std::string::npos) {
             try {
-                if (const std::string defect = defect_of_content(file, mesh); !defect.empty()) add(true, defect);
+                if (const std::string defect = defect_of_content(file, object.mesh); !defect.empty()) add(true, defect);
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::input) throw;
                 add(true, "which cannot be read: " + error.problem());

@@ -1,7 +1,7 @@
 // Checks shared by the readers and writers of annotations; each error has the file, the JSON pointer and the remedy.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const 
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer);
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
 /// As check_annotations; `settled`: the elements of free annotations have just been computed from their curves.
-void check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled);
+void check_set(AnnotatedMeshView object, const std::string& where, bool settled);
 }  // namespace places
 
 /// Converts a prototype document (types Area, Line, Point; key color; flat attributes) to the thesis's format; adds to `notes`

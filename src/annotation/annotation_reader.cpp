@@ -379,7 +379,7 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
             fail(where, at, "the regions together hold more than " + to_string(most_held) + " faces",
                  "give fewer at once, or a coarser mesh");
     }
-    places::check_set(set, mesh, where, true);
+    places::check_set({mesh, set}, where, true);
     return set;
 }
 

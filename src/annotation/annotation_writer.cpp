@@ -127,35 +127,35 @@ JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAl
 
 }  // namespace
 
-Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance) {
-    check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
+Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance) {
+    check_annotations(object, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     Json document = json_document("annotations");
     auto& allocator = document.GetAllocator();
-    if (any_free(set)) document["version"] = 2;
+    if (any_free(object.annotations)) document["version"] = 2;
     JsonValue made_for(rapidjson::kObjectType);
     add_nonempty_members(made_for, allocator, "file", Path(mesh_file).filename().string());
-    add_members(made_for, allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",
-                mesh_checksum(mesh));
+    add_members(made_for, allocator, "vertices", object.mesh.number_of_vertices(), "faces", object.mesh.number_of_faces(),
+                "sha256", mesh_checksum(object.mesh));
     add_members(document, allocator, "mesh", std::move(made_for));
-    add_nonempty_members(document, allocator, "unit", set.unit, "class", set.object_class);
-    if (set.up) add_member(document, "up", numbers_of(*set.up, allocator), allocator);
-    std::vector<RegionParts> parts(set.annotations.size());
+    add_nonempty_members(document, allocator, "unit", object.annotations.unit, "class", object.annotations.object_class);
+    if (object.annotations.up) add_member(document, "up", numbers_of(*object.annotations.up, allocator), allocator);
+    std::vector<RegionParts> parts(object.annotations.annotations.size());
     parallel_for(
         parts.size(),
         [&](std::size_t i) {
-            if (set.annotations[i].type == AnnotationType::region) parts[i] = parts_of(set.annotations[i], mesh);
+            if (object.annotations.annotations[i].type == AnnotationType::region)
+                parts[i] = parts_of(object.annotations.annotations[i], object.mesh);
         },
         1);
-    JsonValue list = json_list(set.annotations, allocator, [&](const Annotation& one) {
-        return json_of(one, parts[static_cast<std::size_t>(&one - set.annotations.data())], allocator);
+    JsonValue list = json_list(object.annotations.annotations, allocator, [&](const Annotation& one) {
+        return json_of(one, parts[static_cast<std::size_t>(&one - object.annotations.annotations.data())], allocator);
     });
     add_members(document, allocator, "annotations", std::move(list), "provenance", provenance.to_json(allocator));
     return document;
 }
 
-void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
-                       const Provenance& provenance) {
-    write_json(file, annotations_to_json(set, mesh, mesh_file, provenance));
+void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance) {
+    write_json(file, annotations_to_json(object, mesh_file, provenance));
 }
 
 }  // namespace ostraka

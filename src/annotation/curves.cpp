@@ -203,25 +203,25 @@ std::vector<Index> faces_on_cut(const Mesh& mesh, const Annotation& annotation, 
 
 }  // namespace
 
-CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::vector<SurfaceCurve>& more) {
+CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more) {
     std::vector<SurfaceCurve> curves;
     std::vector<std::size_t> first;  // index of the first curve of each annotation
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         first.push_back(curves.size());
-        for (SurfaceCurve& curve : curves_on(mesh, annotation)) curves.push_back(std::move(curve));
+        for (SurfaceCurve& curve : curves_on(object.mesh, annotation)) curves.push_back(std::move(curve));
     }
     first.push_back(curves.size());
     curves.insert(curves.end(), more.begin(), more.end());
-    InsertedCurves inserted = insert_curves(mesh, curves);
+    InsertedCurves inserted = insert_curves(object.mesh, curves);
     CutMesh cut;
     cut.mesh = std::move(inserted.mesh);
     cut.face_origin = std::move(inserted.face_origin);
     cut.points = std::move(inserted.new_points);
-    cut.old_vertices = mesh.number_of_vertices();
+    cut.old_vertices = object.mesh.number_of_vertices();
     cut.more_paths.assign(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first.back()), inserted.paths.end());
-    cut.annotations = set;
+    cut.annotations = object.annotations;
     const auto carry = [&](std::size_t i) {
-        const Annotation& from = set.annotations[i];
+        const Annotation& from = object.annotations.annotations[i];
         Annotation& to = cut.annotations.annotations[i];
         to.curves.clear();
         const std::vector<std::vector<Index>> paths(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first[i]),
@@ -237,12 +237,12 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
             } else {
                 const std::vector<SurfaceCurve> own(curves.begin() + static_cast<std::ptrdiff_t>(first[i]),
                                                     curves.begin() + static_cast<std::ptrdiff_t>(first[i + 1]));
-                to.faces = faces_on_cut(mesh, from, own, paths, cut);
+                to.faces = faces_on_cut(object.mesh, from, own, paths, cut);
             }
             return;
         }
         if (from.type == AnnotationType::region) {
-            const std::vector<bool> selected = face_flags(mesh, from.faces);
+            const std::vector<bool> selected = face_flags(object.mesh, from.faces);
             to.faces.clear();
             for (Index f = 0; f < cut.face_origin.size(); ++f)
                 if (selected[cut.face_origin[f]]) to.faces.push_back(f);
@@ -251,11 +251,11 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
             const std::vector<Index>& line = from.polylines[k];
             std::vector<Index> path{line.front()};
             for (std::size_t v = 1; v < line.size(); ++v) {
-                const Halfedge h = find_halfedge(mesh, Vertex(line[v - 1]), Vertex(line[v]));
+                const Halfedge h = find_halfedge(object.mesh, Vertex(line[v - 1]), Vertex(line[v]));
                 if (h.is_valid()) {
-                    if (const auto on = inserted.on_edge.find(mesh.edge(h)); on != inserted.on_edge.end()) {
+                    if (const auto on = inserted.on_edge.find(object.mesh.edge(h)); on != inserted.on_edge.end()) {
                         std::vector<Index> between = on->second;
-                        if (mesh.halfedge(mesh.edge(h), 0) != h) std::reverse(between.begin(), between.end());
+                        if (object.mesh.halfedge(object.mesh.edge(h), 0) != h) std::reverse(between.begin(), between.end());
                         path.insert(path.end(), between.begin(), between.end());
                     }
                 }
@@ -264,7 +264,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
             to.polylines[k] = std::move(path);
         }
     };
-    parallel_for(set.annotations.size(), carry, 1);
+    parallel_for(object.annotations.annotations.size(), carry, 1);
     return cut;
 }
 

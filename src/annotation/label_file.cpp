@@ -127,9 +127,9 @@ std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std:
 namespace {
 
 /// The id of the smallest region on each face.
-std::vector<std::int32_t> labels_on_top(const Mesh& mesh, const AnnotationSet& set) {
-    std::vector<std::int32_t> labels(mesh.number_of_faces(), no_label);
-    for (const Annotation* region : regions_largest_first(mesh, set))
+std::vector<std::int32_t> labels_on_top(AnnotatedMeshView object) {
+    std::vector<std::int32_t> labels(object.mesh.number_of_faces(), no_label);
+    for (const Annotation* region : regions_largest_first(object))
         if (!region->all)
             for (const Index face : region->faces) labels[face] = region->id;
     return labels;
@@ -137,22 +137,22 @@ std::vector<std::int32_t> labels_on_top(const Mesh& mesh, const AnnotationSet& s
 
 }  // namespace
 
-FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set) {
+FaceLabels face_labels(AnnotatedMeshView object) {
     FaceLabels result;
-    const AlongEdges along_edges(mesh, set);
-    result.of_face = labels_on_top(along_edges.mesh(), along_edges.annotations());
+    const AlongEdges along_edges(object);
+    result.of_face = labels_on_top(along_edges.object());
     if (!along_edges.cut()) return result;
     // A face cut by outlines gets the label of most of its area.
     const std::vector<std::int32_t> parts = std::move(result.of_face);
     const std::vector<Index>& origin = along_edges.cut()->face_origin;
-    result.of_face.assign(mesh.number_of_faces(), no_label);
+    result.of_face.assign(object.mesh.number_of_faces(), no_label);
     double lost = 0, area = 0;
     for (std::size_t f = 0; f < origin.size();) {
         std::map<std::int32_t, double> shares;
         const Index face = origin[f];
         double whole = 0;
         for (; f < origin.size() && origin[f] == face; ++f) {
-            const double part = face_area(along_edges.mesh(), Face(static_cast<Index>(f)));
+            const double part = face_area(along_edges.object().mesh, Face(static_cast<Index>(f)));
             shares[parts[f]] += part;
             whole += part;
         }
@@ -166,6 +166,6 @@ FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set) {
     return result;
 }
 
-std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set) { return face_labels(mesh, set).of_face; }
+std::vector<std::int32_t> labels_of(AnnotatedMeshView object) { return face_labels(object).of_face; }
 
 }  // namespace ostraka

@@ -44,33 +44,32 @@ void close_cuts(CutPart& part, const std::vector<Halfedge>& cuts) {
     cap.id = free_id(part.annotations);
     cap.tag = "cut";
     for (std::size_t f = before; f < after; ++f) cap.faces.push_back(static_cast<Index>(f));
-    cap.colour = fresh_colour(part.mesh, part.annotations, cap);
+    cap.colour = fresh_colour(part, cap);
     part.annotations.annotations.push_back(std::move(cap));
 }
 
 }  // namespace
 
-CutPart cut_out_part(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& regions,
-                     const std::vector<std::size_t>& left_out, bool close) {
+CutPart cut_out_part(AnnotatedMeshView object, const std::vector<std::size_t>& regions, const std::vector<std::size_t>& left_out,
+                     bool close) {
     CutPart part;
-    if (any_free(set)) part.whole.emplace(cut_along_curves(mesh, set));
-    const Mesh& whole = part.whole ? part.whole->mesh : mesh;
-    const AnnotationSet& on_whole = part.whole ? part.whole->annotations : set;
-    std::vector<bool> keep(whole.number_of_faces(), regions.empty());
-    mark(on_whole, regions, true, keep);
-    mark(on_whole, left_out, false, keep);
-    SubMesh piece = keep_faces(whole, keep);
+    if (any_free(object.annotations)) part.whole.emplace(cut_along_curves(object));
+    const AnnotatedMeshView whole = part.whole ? AnnotatedMeshView(*part.whole) : object;
+    std::vector<bool> keep(whole.mesh.number_of_faces(), regions.empty());
+    mark(whole.annotations, regions, true, keep);
+    mark(whole.annotations, left_out, false, keep);
+    SubMesh piece = keep_faces(whole.mesh, keep);
     if (piece.faces.empty())
         fail_input("annotations", "nothing is left of the part", left_out.empty() ? "name another one" : "leave fewer parts out");
     part.mesh = std::move(piece.mesh);
     part.vertices = std::move(piece.vertices);
     part.faces = std::move(piece.faces);
-    part.annotations = annotations_of_piece(whole, on_whole, part.mesh, part.vertices, part.faces);
+    part.annotations = annotations_of_piece(whole, part.mesh, part.vertices, part.faces);
     std::vector<Halfedge> cuts;
     for (const Halfedge hole : holes_of(part.mesh)) {
         bool cut = false;
         for (Halfedge h = hole;;) {
-            cut = cut || was_cut(whole, part, h);
+            cut = cut || was_cut(whole.mesh, part, h);
             h = part.mesh.next(h);
             if (cut || h == hole) break;
         }

@@ -55,12 +55,13 @@ std::vector<Index> read_index_map(const Path& file, const std::string& kind, std
     return map;
 }
 
-AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, const Mesh& after,
-                                const std::vector<Index>& vertex_map, const std::vector<Index>& face_map) {
-    if (vertex_map.size() != before.number_of_vertices() || (!face_map.empty() && face_map.size() != before.number_of_faces()))
+AnnotationSet remap_annotations(AnnotatedMeshView before, const Mesh& after, const std::vector<Index>& vertex_map,
+                                const std::vector<Index>& face_map) {
+    if (vertex_map.size() != before.mesh.number_of_vertices() ||
+        (!face_map.empty() && face_map.size() != before.mesh.number_of_faces()))
         fail_input("maps", "their lengths are not the counts of the old mesh", "give the maps made with these two meshes");
     AnnotationSet moved;
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : before.annotations.annotations) {
         Annotation& now = moved.annotations.emplace_back();
         now.id = annotation.id;
         now.type = annotation.type;
@@ -70,7 +71,7 @@ AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, co
             if (!face_map.empty()) {
                 place = face_map[face];
             } else {
-                const auto [a, b, c] = corners(before, Face(face));
+                const auto [a, b, c] = corners(before.mesh, Face(face));
                 place = face_with(after, vertex_map[a], vertex_map[b], vertex_map[c]);
             }
             if (place != no_index) now.faces.push_back(place);
@@ -83,23 +84,23 @@ AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, co
     Mesh mesh = after;
     AnnotationTable table = attach_annotations(mesh, moved);
     table.outlines.clear();
-    for (const Annotation& annotation : set.annotations)
+    for (const Annotation& annotation : before.annotations.annotations)
         if (annotation.type == AnnotationType::region && !annotation.all)
-            table.outlines[annotation.id] = extract_outlines(before, annotation.faces);
-    return collect_annotations(mesh, table, set, vertex_map);
+            table.outlines[annotation.id] = extract_outlines(before.mesh, annotation.faces);
+    return collect_annotations(mesh, table, before.annotations, vertex_map);
 }
 
-AnnotationSet annotations_of_piece(const Mesh& whole, const AnnotationSet& set, const Mesh& piece,
-                                   const std::vector<Index>& vertices, const std::vector<Index>& faces) {
+AnnotationSet annotations_of_piece(AnnotatedMeshView whole, const Mesh& piece, const std::vector<Index>& vertices,
+                                   const std::vector<Index>& faces) {
     const auto inverse = [](const std::vector<Index>& kept, std::size_t count) {
         std::vector<Index> map(count, no_index);
         for (std::size_t i = 0; i < kept.size(); ++i) map.at(kept[i]) = static_cast<Index>(i);
         return map;
     };
-    AnnotationSet rest = remap_annotations(whole, set, piece, inverse(vertices, whole.number_of_vertices()),
-                                           inverse(faces, whole.number_of_faces()));
+    AnnotationSet rest = remap_annotations(whole, piece, inverse(vertices, whole.mesh.number_of_vertices()),
+                                           inverse(faces, whole.mesh.number_of_faces()));
     std::erase_if(rest.annotations, [&](const Annotation& one) {
-        const Annotation* before = set.find(one.id);
+        const Annotation* before = whole.annotations.find(one.id);
         return before == nullptr || before->type != one.type ||
                (one.type == AnnotationType::point && one.points.size() != before->points.size());
     });

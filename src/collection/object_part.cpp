@@ -82,7 +82,7 @@ Mesh cut_band(const Mesh& mesh, const SliceFrame& frame, const Band& band, std::
         R"("select":{"intersection":[)" +
             sides + "]}}]}",
         "the part");
-    CutPart part = cut_out_part(mesh, apply_recipe(recipe, mesh, {}, "the part"), {0});
+    CutPart part = cut_out_part({mesh, apply_recipe(recipe, mesh, {}, "the part")}, {0});
     for (const Index f : part.faces) origin.push_back(part.whole ? part.whole->face_origin[f] : f);
     return std::move(part.mesh);
 }
@@ -95,7 +95,7 @@ CutPart largest_segment(const Mesh& mesh) {
     region.tag = "segment 0";
     for (Index f = 0; f < numbers.size(); ++f)
         if (numbers[f] == 0) region.faces.push_back(f);
-    return cut_out_part(mesh, set, {0});
+    return cut_out_part({mesh, set}, {0});
 }
 
 }  // namespace
@@ -160,7 +160,7 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
         if (regions.empty() && !options_.annotations.empty())
             fail_input(where, fmt::format("no annotation '{}' is a region", printable(options_.annotations.front(), 60)),
                        "annotate the surface of the part as a region");
-        CutPart cut = with_file_context(object.annotations, [&] { return cut_out_part(file.mesh, *set, regions, left_out); });
+        CutPart cut = with_file_context(object.annotations, [&] { return cut_out_part({file.mesh, *set}, regions, left_out); });
         for (const Index f : cut.faces) origin.push_back(cut.whole ? cut.whole->face_origin[f] : f);
         part.mesh = std::move(cut.mesh);
     } else if (options_.proposed == PartOptions::Proposal::segment) {

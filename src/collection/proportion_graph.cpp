@@ -41,12 +41,12 @@ const Attribute* find_measure(const Annotation& annotation, const std::string& n
     return nullptr;
 }
 
-Index pin_of(const Mesh& mesh, const AnnotationSet& set, const MeasurePlace& place) {
-    for (const Annotation& annotation : set.annotations) {
+Index pin_of(AnnotatedMeshView object, const MeasurePlace& place) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         if (annotation.tag != place.name) continue;
         if (place.extreme) {
-            if (place.extreme->up && !set.up) throw RejectedProposal{"the template has no upward direction"};
-            return extremes(mesh, annotation, place.extreme->up ? *set.up : place.extreme->coordinates)[1];
+            if (place.extreme->up && !object.annotations.up) throw RejectedProposal{"the template has no upward direction"};
+            return extremes(object.mesh, annotation, place.extreme->up ? *object.annotations.up : place.extreme->coordinates)[1];
         }
         if (annotation.type == AnnotationType::point && !annotation.points.empty()) return annotation.points.front();
     }
@@ -72,7 +72,7 @@ TemplateMeasure measure_on_template(const Mesh& mesh, AnnotationSet& set, const 
             const auto pins = extremes(mesh, annotation, *measure.direction);
             measure.points.assign(pins.begin(), pins.end());
         } else {
-            for (const MeasurePlace& place : definition.pins) measure.points.push_back(pin_of(mesh, set, place));
+            for (const MeasurePlace& place : definition.pins) measure.points.push_back(pin_of({mesh, set}, place));
         }
         measure.value = evaluate(mesh, annotation, measure);
         add_measure(annotation, name, std::move(measure));
@@ -94,18 +94,19 @@ std::string parameters(const TemplateMeasure& part, const TemplateMeasure& refer
 
 }  // namespace
 
-Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, RelationGraph existing,
-                              const MeasureDefinitions& definitions, const ProportionStudy& study,
-                              const ProposalOptions& options) {
+Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph existing, const MeasureDefinitions& definitions,
+                              const ProportionStudy& study, const ProposalOptions& options) {
     check_options(options, "proposals");
     Proposals result;
     result.graph = std::move(existing);
-    result.set = set;
+    result.set = template_object.annotations;
     for (const RatioRow& ratio : study.ratios) {
         if (ratio.fixedness != Fixedness::fixed && !(options.stable && ratio.fixedness == Fixedness::stable)) continue;
         try {
-            const TemplateMeasure part = measure_on_template(mesh, result.set, definitions.measures.at(ratio.denominator)),
-                                  reference = measure_on_template(mesh, result.set, definitions.measures.at(ratio.numerator));
+            const auto taken = [&](std::size_t measure) {
+                return measure_on_template(template_object.mesh, result.set, definitions.measures.at(measure));
+            };
+            const TemplateMeasure part = taken(ratio.denominator), reference = taken(ratio.numerator);
             if (part.annotation == reference.annotation)
                 throw RejectedProposal{
                     fmt::format("both measures belong to '{}', but a constraint relates two annotations", part.tag)};

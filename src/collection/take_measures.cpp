@@ -284,10 +284,9 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
     return result;
 }
 
-ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
-                             const TagMatcher* words) {
-    ObjectMeasures result = measure_object(&mesh, &set, nullptr, definitions, words);
-    result.unit = set.unit;
+ObjectMeasures take_measures(AnnotatedMeshView object, const MeasureDefinitions& definitions, const TagMatcher* words) {
+    ObjectMeasures result = measure_object(&object.mesh, &object.annotations, nullptr, definitions, words);
+    result.unit = object.annotations.unit;
     return result;
 }
 

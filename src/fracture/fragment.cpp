@@ -22,10 +22,10 @@ std::optional<Facet> named_facet(const Annotation& annotation) {
     return std::nullopt;
 }
 
-std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other) {
-    std::vector<Facet> facets(mesh.number_of_faces(), other);
+std::vector<Facet> facets_of(AnnotatedMeshView object, Facet other) {
+    std::vector<Facet> facets(object.mesh.number_of_faces(), other);
     std::vector<int> owner(facets.size(), -1);
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         const std::optional<Facet> facet = named_facet(annotation);
         if (!facet) continue;
         for (const Index face : annotation.faces) {

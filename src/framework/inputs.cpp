@@ -169,9 +169,7 @@ void Slot::take_shared() const {
 
 void AnnotationsInput::describe(OptionList& options) { describe_shared(options, options_of(reading)); }
 
-std::string checksum_of(const AnnotationSet& set, const Mesh& mesh) {
-    return sha256(to_text(annotations_to_json(set, mesh, "", {})));
-}
+std::string checksum_of(AnnotatedMeshView object) { return sha256(to_text(annotations_to_json(object, "", {}))); }
 
 const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const {
     take_shared();
@@ -180,8 +178,13 @@ const AnnotationSet& AnnotationsInput::on(const Mesh& mesh, std::size_t i) const
         context->keep_objects && !object ? mesh_checksum(mesh) + (reading.force_mesh ? " forced" : "") : address(&mesh);
     const auto& set = loaded<AnnotationSet>(
         *this, i, key, [&](const Path& path) { return read_annotations(path, mesh, reading); },
-        [&](const AnnotationSet& annotations) { return checksum_of(annotations, mesh); }, {},
-        [&](const AnnotationSet& annotations) { check_annotations(annotations, mesh, object.name); });
+        [&](const AnnotationSet& annotations) {
+            return checksum_of({mesh, annotations});
+        },
+        {},
+        [&](const AnnotationSet& annotations) {
+            check_annotations({mesh, annotations}, object.name);
+        });
     context->notes(size() > 1 ? sources[i].name() : std::string(), set.notes);
     return set;
 }
@@ -227,7 +230,7 @@ Path FileInput::path(std::size_t i) const {
 
 std::shared_ptr<const AnnotationSet> FileInput::annotations_on(const Mesh& mesh) const {
     auto set = sources.at(0).object.as<AnnotationSet>();
-    if (set) record_checksum(*this, 0, [&] { return checksum_of(*set, mesh); });
+    if (set) record_checksum(*this, 0, [&] { return checksum_of({mesh, *set}); });
     return set;
 }
 

@@ -110,12 +110,12 @@ void AnnotationsOutput::write(AnnotationSet set, const Mesh& mesh, const std::st
     const Provenance provenance = provenance_override ? *provenance_override : context->provenance();
     if (goes_to_file(*this)) {  // avoids a copy of the mesh
         context->check_output(sources.front().file);
-        write_annotations(sources.front().file, set, mesh, mesh_name, provenance);
+        write_annotations(sources.front().file, {mesh, set}, mesh_name, provenance);
         return;
     }
     set.provenance.CopyFrom(provenance.to_json(set.provenance.GetAllocator()), set.provenance.GetAllocator());  // as if read
     write_or_keep(*this, std::move(set), [mesh, mesh_name, provenance](const Path& path, const AnnotationSet& value) {
-        write_annotations(path, value, mesh, mesh_name, provenance);
+        write_annotations(path, {mesh, value}, mesh_name, provenance);
     });
 }
 
@@ -246,9 +246,8 @@ void FolderOutput::write(const std::string& file_in_folder, const Mesh& mesh, co
     options.comment = context->provenance().to_line();
     write_mesh(in(file_in_folder), mesh, extras, options);
 }
-void FolderOutput::write(const std::string& file_in_folder, const AnnotationSet& set, const Mesh& mesh,
-                         const std::string& mesh_name) const {
-    write_annotations(in(file_in_folder), set, mesh, mesh_name, context->provenance());
+void FolderOutput::write(const std::string& file_in_folder, AnnotatedMeshView object, const std::string& mesh_name) const {
+    write_annotations(in(file_in_folder), object, mesh_name, context->provenance());
 }
 void FolderOutput::write(const std::string& file_in_folder, const JsonValue& document) const {
     write_json(in(file_in_folder), signed_document(document, *context));

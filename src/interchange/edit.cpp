@@ -79,7 +79,7 @@ public:
             location_ = fmt::format("{}, edit {}", where_, i + 1);
             step(edits[i]);
         }
-        check_annotations(set_, mesh_, where_);
+        check_annotations({mesh_, set_}, where_);
         return std::move(notes_);
     }
 
@@ -230,7 +230,7 @@ private:
     void join_curves(Annotation& annotation, const Annotation& other) const {
         AnnotationSet pair;
         pair.annotations = {annotation, other};
-        const CutMesh cut = cut_along_curves(mesh_, pair);
+        const CutMesh cut = cut_along_curves({mesh_, pair});
         Annotation joined = cut.annotations.annotations[0];
         join_elements(joined, cut.annotations.annotations[1]);
         if (!joined.all) bring_back(mesh_, cut, joined);
@@ -270,7 +270,7 @@ private:
         if (is_free(original)) {
             AnnotationSet single_set;
             single_set.annotations.push_back(original);
-            const CutMesh cut = cut_along_curves(mesh_, single_set);
+            const CutMesh cut = cut_along_curves({mesh_, single_set});
             const Annotation& cut_annotation = cut.annotations.annotations.front();
             for (const Index point : cut_annotation.points) add().points = {point};
             for (const auto& polyline : cut_annotation.polylines) add().polylines = {polyline};

@@ -46,26 +46,25 @@ struct Corners {
 class FeatureWriter {
 public:
     /// `originals`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
-    FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
-                  const Json& originals, std::vector<std::string>& notes)
-        : mesh_(mesh),
-          set_(set),
+    FeatureWriter(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance, const Json& originals,
+                  std::vector<std::string>& notes)
+        : object_(object),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
-          native_(annotations_to_json(set, mesh, mesh_file, provenance)),
+          native_(annotations_to_json(object, mesh_file, provenance)),
           originals_(originals),
           notes_(notes) {}
 
     std::string write() {
-        if (mesh_.number_of_faces() == 0)
+        if (object_.mesh.number_of_faces() == 0)
             fail_work(where_, "glTF cannot store a mesh without triangles", "export another format");
-        if (set_.annotations.size() >= exact_in_float)
+        if (object_.annotations.annotations.size() >= exact_in_float)
             fail_work(where_, "has more annotations than distinct feature ids", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
         primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
         const Corners drawn = lines(), marked = points();
         if (!drawn.vertices.empty()) primitives.PushBack(primitive(drawn, glb::lines_mode), a());
         if (!marked.vertices.empty()) primitives.PushBack(primitive(marked, glb::points_mode), a());
-        if (!set_.annotations.empty()) add_table();
+        if (!object_.annotations.annotations.empty()) add_table();
 
         JsonValue extras(rapidjson::kObjectType);
         copy_members(extras, a(), native_, {"mesh", "class", "unit", "up", "provenance"});
@@ -83,11 +82,12 @@ public:
         Json& root = builder_.document();
         add_members(root, a(), "scene", 0, "scenes", in_list(json_object(a(), "nodes", std::array{turned ? 1 : 0})), "nodes",
                     std::move(nodes), "meshes", in_list(std::move(mesh)), "materials", in_list(std::move(material)));
-        if (!set_.annotations.empty())
+        if (!object_.annotations.annotations.empty())
             add_members(root, a(), "extensionsUsed", std::array{"EXT_mesh_features", "EXT_structural_metadata"});
-        const auto empty = std::count_if(set_.annotations.begin(), set_.annotations.end(), [](const Annotation& annotation) {
-            return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
-        });
+        const auto empty = std::count_if(
+            object_.annotations.annotations.begin(), object_.annotations.annotations.end(), [](const Annotation& annotation) {
+                return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
+            });
         if (empty > 0)
             notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
                              " without elements: present in the table, but not on the mesh");
@@ -98,25 +98,26 @@ public:
 private:
     JsonAllocator& a() { return builder_.allocator(); }
     JsonValue in_list(JsonValue value) { return json_list_of(std::move(value), a()); }
-    [[nodiscard]] Index none() const { return static_cast<Index>(set_.annotations.size()); }
+    [[nodiscard]] Index none() const { return static_cast<Index>(object_.annotations.annotations.size()); }
 
     /// Smallest regions first, each in the first set in which it overlaps no other.
     std::vector<std::vector<Index>> layers() {
         std::vector<std::pair<double, Index>> regions;
         for (Index i = 0; i < none(); ++i) {
-            const Annotation& annotation = set_.annotations[i];
+            const Annotation& annotation = object_.annotations.annotations[i];
             if (annotation.type != AnnotationType::region || annotation.faces.empty()) continue;
             check_cancelled();
-            regions.emplace_back(area_of(mesh_, annotation.faces), i);
+            regions.emplace_back(area_of(object_.mesh, annotation.faces), i);
         }
         std::sort(regions.begin(), regions.end());
         std::vector<std::vector<Index>> result;
         for (const auto& [area, i] : regions) {
-            const auto& faces = set_.annotations[i].faces;
+            const auto& faces = object_.annotations.annotations[i].faces;
             auto layer = std::find_if(result.begin(), result.end(), [&](const std::vector<Index>& features) {
                 return std::none_of(faces.begin(), faces.end(), [&](Index face) { return features[face] != none(); });
             });
-            if (layer == result.end()) layer = result.insert(result.end(), std::vector<Index>(mesh_.number_of_faces(), none()));
+            if (layer == result.end())
+                layer = result.insert(result.end(), std::vector<Index>(object_.mesh.number_of_faces(), none()));
             for (const Index face : faces) (*layer)[face] = i;
         }
         if (result.size() > 4)
@@ -131,13 +132,13 @@ private:
         result.features.resize(sets.size());
         // Faces with the same features share a vertex; others have copies of it.
         std::map<std::vector<Index>, Index> kinds;
-        std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(mesh_.number_of_vertices());
+        std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(object_.mesh.number_of_vertices());
         std::vector<Index> kind(sets.size());
-        for (const Face face : mesh_.faces()) {
+        for (const Face face : object_.mesh.faces()) {
             if (face.idx() % check_every == 0) check_cancelled();
             for (std::size_t s = 0; s < sets.size(); ++s) kind[s] = sets[s][face];
             const Index number = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
-            for (const Vertex v : corners(mesh_, face)) {
+            for (const Vertex v : corners(object_.mesh, face)) {
                 auto& vertex_copies = copies[v];
                 auto copy = std::find_if(vertex_copies.begin(), vertex_copies.end(),
                                          [&](const auto& entry) { return entry.first == number; });
@@ -148,7 +149,8 @@ private:
                     std::array<int, 3> colour{200, 200, 200};
                     for (std::size_t s = sets.size(); s-- > 0;) {
                         result.features[s].push_back(kind[s]);
-                        if (kind[s] != none() && !set_.annotations[kind[s]].all) colour = set_.annotations[kind[s]].colour;
+                        if (kind[s] != none() && !object_.annotations.annotations[kind[s]].all)
+                            colour = object_.annotations.annotations[kind[s]].colour;
                     }
                     result.colours.push_back(colour);
                 }
@@ -162,7 +164,7 @@ private:
         Corners result;
         result.features.resize(1);
         for (Index i = 0; i < none(); ++i)
-            for (const auto& polyline : set_.annotations[i].polylines)
+            for (const auto& polyline : object_.annotations.annotations[i].polylines)
                 for (std::size_t k = 0; k < polyline.size(); ++k) {
                     if (k > 0)
                         for (const std::size_t back : {1U, 0U})
@@ -175,9 +177,10 @@ private:
     /// In glTF, y points up and the unit is the metre: adds a parent node that transforms the mesh accordingly. Returns false
     /// if it already complies.
     bool add_display_node(JsonValue& nodes) {
-        const auto metres = converted(1, set_.unit, "m");
+        const auto metres = converted(1, object_.annotations.unit, "m");
         Vector3d up = Vector3d::UnitY();
-        if (set_.up) up = eigen(unit_vector({(*set_.up)[0], (*set_.up)[1], (*set_.up)[2]}));
+        if (object_.annotations.up)
+            up = eigen(unit_vector({(*object_.annotations.up)[0], (*object_.annotations.up)[1], (*object_.annotations.up)[2]}));
         const Eigen::Quaterniond rotation = rotation_between(up, Vector3d::UnitY());
         const bool rotates = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
         if (!rotates && !scales) return false;
@@ -194,13 +197,13 @@ private:
         Corners result;
         result.features.resize(1);
         for (Index i = 0; i < none(); ++i)
-            for (const Index point : set_.annotations[i].points) add(result, point, i);
+            for (const Index point : object_.annotations.annotations[i].points) add(result, point, i);
         return result;
     }
 
     void add(Corners& target, Index vertex, Index feature) {
         target.vertices.push_back(vertex);
-        target.colours.push_back(set_.annotations[feature].colour);
+        target.colours.push_back(object_.annotations.annotations[feature].colour);
         target.features.front().push_back(feature);
     }
 
@@ -213,7 +216,7 @@ private:
         high.fill(std::numeric_limits<float>::lowest());
         for (std::size_t i = 0; i < count; ++i) {
             if (i % check_every == 0) check_cancelled();
-            const Point& p = mesh_.point(Vertex(primitive_corners.vertices[i]));
+            const Point& p = object_.mesh.point(Vertex(primitive_corners.vertices[i]));
             for (int k = 0; k < 3; ++k) {
                 if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
                     fail_work(where_, "a coordinate does not fit the single precision of glTF", "rescale the mesh");
@@ -234,7 +237,7 @@ private:
         const int colour = builder_.add_accessor(colours, glb::array_buffer, 0, glb::short_word, count, "VEC4");
         builder_.mark_normalised(colour);
         attribute("COLOR_0", colour);
-        if (mesh_.number_of_vertices() <= exact_in_float)
+        if (object_.mesh.number_of_vertices() <= exact_in_float)
             attribute("_VERTEX", builder_.add_accessor(origins, glb::array_buffer, 0, glb::single, count, "SCALAR"));
         JsonValue ids(rapidjson::kArrayType);
         for (std::size_t s = 0; s < primitive_corners.features.size(); ++s) {
@@ -301,7 +304,7 @@ private:
         std::vector<std::string> tags, notes, attributes;
         const JsonValue& entries = native_["annotations"];
         for (rapidjson::SizeType i = 0; i < entries.Size(); ++i) {
-            const Annotation& annotation = set_.annotations[i];
+            const Annotation& annotation = object_.annotations.annotations[i];
             append(ids, static_cast<std::int32_t>(annotation.id));
             for (const int channel : annotation.colour) append(colours, static_cast<std::uint8_t>(channel));
             append(kinds, static_cast<std::uint8_t>(annotation.all ? 3 : static_cast<int>(annotation.type)));
@@ -339,7 +342,7 @@ private:
         std::map<std::string, std::vector<double>> numbers;
         std::map<std::string, std::vector<std::string>> texts;
         for (Index i = 0; i < none(); ++i)
-            for (const Attribute& attribute : set_.annotations[i].attributes) {
+            for (const Attribute& attribute : object_.annotations.annotations[i].attributes) {
                 if (attribute.type == AttributeType::semantic) {
                     auto& values = texts[attribute.name];
                     values.resize(none());
@@ -369,8 +372,7 @@ private:
         }
     }
 
-    const Mesh& mesh_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView object_;
     std::string where_;
     Json native_;
     const Json& originals_;
@@ -382,16 +384,16 @@ private:
 
 }  // namespace
 
-std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
+std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes) {
-    const AlongEdges along_edges(mesh, set);
+    const AlongEdges along_edges(object);
     if (along_edges.cut())
         notes.emplace_back("the mesh is cut along free outlines; the curves on the original mesh are stored as well");
-    const bool informed = std::any_of(set.annotations.begin(), set.annotations.end(),
+    const bool informed = std::any_of(object.annotations.annotations.begin(), object.annotations.annotations.end(),
                                       [](const Annotation& annotation) { return !annotation.information.empty(); });
     Json originals;
-    if (along_edges.cut() || informed) originals = annotations_to_json(set, mesh, mesh_file, provenance);
-    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, originals, notes).write();
+    if (along_edges.cut() || informed) originals = annotations_to_json(object, mesh_file, provenance);
+    return FeatureWriter(along_edges.object(), mesh_file, provenance, originals, notes).write();
 }
 
 }  // namespace ostraka

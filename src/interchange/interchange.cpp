@@ -89,18 +89,19 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes)
                "specify it with --format");
 }
 
-ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format_name,
-                                       const std::string& mesh_file, const Provenance& provenance, const ExportOptions& options) {
+ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::string& format_name, const std::string& mesh_file,
+                                       const Provenance& provenance, const ExportOptions& options) {
     check_options(options, "annotation export");
-    check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
+    check_annotations(object, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     ExportedAnnotations result;
     const auto count = [&](auto&& predicate) {
-        return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), predicate));
+        return static_cast<std::size_t>(
+            std::count_if(object.annotations.annotations.begin(), object.annotations.annotations.end(), predicate));
     };
-    result.annotations = set.annotations.size();
+    result.annotations = object.annotations.annotations.size();
     const Format format = format_named(format_name);
     if (const auto landmarks = landmark_format(format)) {
-        const LandmarkSet exported = landmarks_of(mesh, set, *landmarks);
+        const LandmarkSet exported = landmarks_of(object, *landmarks);
         result.notes = exported.notes;
         result.annotations = count([&](const Annotation& annotation) {
             return annotation.type == AnnotationType::point ||
@@ -108,16 +109,16 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
         });
         result.bytes = landmarks_to_text(exported, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
     } else if (format == Format::attributes_csv) {
-        result.bytes = attribute_table(set);
+        result.bytes = attribute_table(object.annotations);
     } else if (format == Format::web) {
-        result.bytes = web_annotations(mesh, set, mesh_file, provenance);
+        result.bytes = web_annotations(object, mesh_file, provenance);
     } else if (format == Format::glb) {
-        result.bytes = feature_glb(mesh, set, mesh_file, provenance, result.notes);
+        result.bytes = feature_glb(object, mesh_file, provenance, result.notes);
     } else if (format == Format::ant) {
-        result.bytes = prototype_annotations(mesh, set, result.notes);
+        result.bytes = prototype_annotations(object, result.notes);
     } else if (format == Format::fct) {
         result.annotations = count(has_facet);
-        result.bytes = prototype_facets(mesh, set, mesh_file, result.notes);
+        result.bytes = prototype_facets(object, mesh_file, result.notes);
     }
     return result;
 }
@@ -152,7 +153,7 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
         result.set = read_prototype_facets(bytes, mesh, where);
     }
     if (onto != nullptr && format != Format::attributes_csv) result = added_to(*onto, std::move(result));
-    check_annotations(result.set, mesh, where);
+    check_annotations({mesh, result.set}, where);
     return result;
 }
 

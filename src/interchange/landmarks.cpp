@@ -202,11 +202,11 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
     return interchange::write_landmark_table(set);
 }
 
-LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format) {
+LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format) {
     LandmarkSet result;
-    result.unit = set.unit;
+    result.unit = object.annotations.unit;
     std::size_t regions = 0, polylines = 0, attributes = 0;
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         if (annotation.type == AnnotationType::region) {
             ++regions;
             continue;
@@ -219,11 +219,11 @@ LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFor
         for (std::size_t i = 0; i < annotation.points.size(); ++i)
             result.landmarks.push_back(
                 {annotation.points.size() == 1 ? annotation.tag : fmt::format("{} {}", annotation.tag, i + 1),
-                 position_of(mesh, annotation.points[i]), annotation.id});
+                 position_of(object.mesh, annotation.points[i]), annotation.id});
         for (const auto& polyline : annotation.polylines) {
             LandmarkCurve curve{annotation.tag, polyline.size() > 3 && polyline.front() == polyline.back(), {}, annotation.id};
             for (std::size_t k = 0; k < polyline.size() - (curve.closed ? 1 : 0); ++k)
-                curve.points.push_back(position_of(mesh, polyline[k]));
+                curve.points.push_back(position_of(object.mesh, polyline[k]));
             result.curves.push_back(std::move(curve));
         }
     }

@@ -26,15 +26,15 @@ std::string value_text(const Descriptor& descriptor) {
 
 }  // namespace
 
-std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, std::vector<std::string>& notes) {
-    const Json native = annotations_to_json(set, mesh, "", {});
+std::string prototype_annotations(AnnotatedMeshView object, std::vector<std::string>& notes) {
+    const Json native = annotations_to_json(object, "", {});
     Json document(rapidjson::kObjectType);
     auto& a = document.GetAllocator();
     JsonValue entries(rapidjson::kArrayType);
     std::size_t descriptors = 0, unbounded = 0, renamed = 0, remarks = 0, unevaluated = 0;
-    FreeIds ids(set.annotations);
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& annotation = set.annotations[i];
+    FreeIds ids(object.annotations.annotations);
+    for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i) {
+        const Annotation& annotation = object.annotations.annotations[i];
         const JsonValue& source = native["annotations"][static_cast<rapidjson::SizeType>(i)];
         renamed += annotation.id < 0 ? 1 : 0;
         remarks += annotation.note.empty() ? 0 : 1;
@@ -63,7 +63,7 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
                 const Measure& measure = attribute.measure;
                 double value = measure.value.value_or(0);
                 try {
-                    if (!measure.value) value = evaluate(mesh, annotation, measure);
+                    if (!measure.value) value = evaluate(object.mesh, annotation, measure);
                 } catch (const Error&) {
                     ++unevaluated;
                 }
@@ -88,7 +88,7 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
     add_note(renamed, "id", " below zero replaced: the prototype does not support them");
     add_note(remarks, "note", " left out");
     add_note(unevaluated, "measure", " that could not be evaluated written as 0");
-    if (!set.unit.empty() || !set.object_class.empty() || set.up)
+    if (!object.annotations.unit.empty() || !object.annotations.object_class.empty() || object.annotations.up)
         notes.emplace_back("class, unit and upward direction left out: the format cannot store them");
     return json_text(document);
 }

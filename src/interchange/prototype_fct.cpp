@@ -163,11 +163,10 @@ bool has_facet(const Annotation& annotation) {
     return annotation.type == AnnotationType::region && !annotation.all && !annotation.faces.empty();
 }
 
-std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
-                             std::vector<std::string>& notes) {
+std::string prototype_facets(AnnotatedMeshView object, const std::string& mesh_file, std::vector<std::string>& notes) {
     std::string body;
     std::size_t count = 0, unsupported = 0, attributes = 0, changed = 0;
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         if (!has_facet(annotation)) {
             ++unsupported;
             continue;
@@ -176,13 +175,13 @@ std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const s
         attributes += annotation.attributes.size();
         changed += has_control(annotation.tag) ? 1 : 0;
         body += fmt::format("Facet ID: {}\nType: {}\nBorder:\n", one_line(annotation.tag), facet_type(annotation));
-        std::vector<bool> on_border(mesh.number_of_vertices(), false);
-        for (Outline outline : extract_outlines(mesh, annotation.faces)) {
+        std::vector<bool> on_border(object.mesh.number_of_vertices(), false);
+        for (Outline outline : extract_outlines(object.mesh, annotation.faces)) {
             for (const Index vertex : outline) on_border[vertex] = true;
             outline.push_back(outline.front());
             body += joined_numbers(outline) + "\n";
         }
-        std::vector<Index> inner = touched_vertices(mesh, annotation);
+        std::vector<Index> inner = touched_vertices(object.mesh, annotation);
         std::erase_if(inner, [&](Index vertex) { return on_border[vertex]; });
         body += fmt::format("Vertices:\n{}\n\n", joined_numbers(inner));
     }

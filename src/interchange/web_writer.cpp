@@ -30,8 +30,8 @@ std::string uuid_of(const std::string& content) {
 
 class WebWriter {
 public:
-    WebWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance)
-        : mesh_(mesh), set_(set), native_(annotations_to_json(set, mesh, mesh_file, provenance)), number_(components()) {
+    WebWriter(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance)
+        : object_(object), native_(annotations_to_json(object, mesh_file, provenance)), number_(components()) {
         document_.SetObject();
         checksum_ = text_in(native_["mesh"], "sha256");
         source_ = percent_encoded(Path(mesh_file).filename().string());  // a relative IRI
@@ -43,13 +43,13 @@ public:
         std::string content = checksum_;
         const JsonValue& entries = native_["annotations"];
         for (rapidjson::SizeType i = 0; i < entries.Size(); ++i) {
-            JsonValue item = annotation(entries[i], set_.annotations[i]);
+            JsonValue item = annotation(entries[i], object_.annotations.annotations[i]);
             content += text_in(item, "id");
             items.PushBack(item, a());
         }
         const std::string collection = uuid_of(content);
         add_members(document_, a(), "@context", context(), "id", collection, "type", "AnnotationCollection", "label",
-                    set_.object_class.empty() ? "annotations" : set_.object_class);
+                    object_.annotations.object_class.empty() ? "annotations" : object_.annotations.object_class);
         JsonValue generator = json_object(a(), "id", "urn:x-ostraka:tool", "type", "Software", "name", "ostraka " + version());
         add_members(document_, a(), "generator", std::move(generator), "total", items.Size());
         JsonValue about(rapidjson::kObjectType);
@@ -113,7 +113,7 @@ private:
     }
 
     JsonValue place(const Point& p) { return json_value(std::array{p.x(), p.y(), p.z()}, a()); }
-    JsonValue place(Index vertex) { return place(mesh_.point(Vertex(vertex))); }
+    JsonValue place(Index vertex) { return place(object_.mesh.point(Vertex(vertex))); }
 
     JsonValue vertex_list(const std::vector<Index>& vertices) {
         return json_list(vertices, a(), [&](Index vertex) { return place(vertex); });
@@ -121,12 +121,12 @@ private:
 
     /// The index of the connected component of each face.
     [[nodiscard]] std::vector<Index> components() const {
-        std::vector<Index> number(mesh_.number_of_faces());
+        std::vector<Index> number(object_.mesh.number_of_faces());
         std::vector<bool> visited(number.size(), false);
         Index count = 0;
-        for (const Face start : mesh_.faces()) {
+        for (const Face start : object_.mesh.faces()) {
             if (visited[start]) continue;
-            for (const Face face : flood_faces(mesh_, start, visited)) number[face] = count;
+            for (const Face face : flood_faces(object_.mesh, start, visited)) number[face] = count;
             ++count;
         }
         return number;
@@ -143,20 +143,20 @@ private:
         std::map<Index, Part> component_parts;
         for (const Index face : annotation.faces) {
             Part& part = component_parts[number_[face]];
-            const double area = face_area(mesh_, Face(face));
+            const double area = face_area(object_.mesh, Face(face));
             part.area += area;
             if (area > part.largest_area) {
                 part.largest_area = area;
                 part.largest = face;
             }
         }
-        for (Outline& outline : extract_outlines(mesh_, annotation.faces)) {
-            const Halfedge first = find_halfedge(mesh_, Vertex(outline[0]), Vertex(outline[1]));
-            component_parts[number_[mesh_.face(first)]].outlines.push_back(std::move(outline));
+        for (Outline& outline : extract_outlines(object_.mesh, annotation.faces)) {
+            const Halfedge first = find_halfedge(object_.mesh, Vertex(outline[0]), Vertex(outline[1]));
+            component_parts[number_[object_.mesh.face(first)]].outlines.push_back(std::move(outline));
         }
         return json_list(component_parts, a(), [&](const auto& entry) {
             const Part& part = entry.second;
-            return json_object(a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
+            return json_object(a(), "area", part.area, "inside", place(centroid(object_.mesh, Face(part.largest))), "outlines",
                                json_list(part.outlines, a(), [&](const Outline& outline) { return vertex_list(outline); }));
         });
     }
@@ -176,7 +176,7 @@ private:
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
-            const auto pin = [&](const SurfacePoint& location) { return place(position(mesh_, location)); };
+            const auto pin = [&](const SurfacePoint& location) { return place(position(object_.mesh, location)); };
             add_members(pins, a(), std::to_string(attribute.id),
                         measure.locations.empty() ? vertex_list(measure.points) : json_list(measure.locations, a(), pin));
             const auto picking = [&](const std::vector<Index>& picked) { return vertex_list(picked); };
@@ -186,8 +186,7 @@ private:
         return result;
     }
 
-    const Mesh& mesh_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView object_;
     Json native_;
     std::vector<Index> number_;
     std::string checksum_, source_;
@@ -196,9 +195,8 @@ private:
 
 }  // namespace
 
-std::string web_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
-                            const Provenance& provenance) {
-    return WebWriter(mesh, set, mesh_file, provenance).write();
+std::string web_annotations(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance) {
+    return WebWriter(object, mesh_file, provenance).write();
 }
 
 }  // namespace ostraka

@@ -101,7 +101,7 @@ struct DescriptorSearch::Cache {
         if (requested_annotation == nullptr || requested_annotation->curves != annotation.curves ||
             requested_annotation->faces != annotation.faces)
             requested_annotations.annotations = {annotation};
-        CutMesh object = cut_along_curves(mesh, requested_annotations);
+        CutMesh object = cut_along_curves({mesh, requested_annotations});
         cut_ = std::make_unique<Cut>(Cut{std::move(requested_annotations), std::move(object), nullptr});
         cut_->search = std::make_unique<DescriptorSearch>(cut_->object.mesh);
         return *cut_;

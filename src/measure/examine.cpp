@@ -171,14 +171,14 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
     return summary;
 }
 
-std::vector<Finding> examine(const Mesh& mesh, const AnnotationSet& set) {
-    Examiner examiner(mesh);
+std::vector<Finding> examine(AnnotatedMeshView object) {
+    Examiner examiner(object.mesh);
     AnnotationSet measured;
-    measured.annotations = set.annotations;
-    refresh_measures(mesh, measured);
+    measured.annotations = object.annotations.annotations;
+    refresh_measures(object.mesh, measured);
     std::map<std::string, std::size_t> tags;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& annotation = set.annotations[i];
+    for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i) {
+        const Annotation& annotation = object.annotations.annotations[i];
         const std::string pointer = "/annotations/" + to_string(i);
         examiner.selection(annotation, pointer);
         examiner.values(annotation, measured.annotations[i], pointer);

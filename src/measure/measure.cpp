@@ -288,9 +288,9 @@ bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& me
     return std::abs(evaluate(mesh, annotation, measure) - extent) <= 1e-9 * extent;
 }
 
-void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& after, AnnotationSet& to) {
+void move_extents(AnnotatedMeshView before, const Mesh& after, AnnotationSet& to) {
     for (Annotation& annotation : to.annotations) {
-        const Annotation* source = from.find(annotation.id);
+        const Annotation* source = before.annotations.find(annotation.id);
         if (source == nullptr || touched_vertices(after, annotation).empty()) continue;
         for (Attribute& attribute : annotation.attributes) {
             const auto is_same_attribute = [&](const Attribute& candidate) {
@@ -298,7 +298,7 @@ void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& aft
             };
             const auto original = std::find_if(source->attributes.begin(), source->attributes.end(), is_same_attribute);
             if (attribute.type != AttributeType::measure || original == source->attributes.end() ||
-                !is_extent(before, *source, original->measure))
+                !is_extent(before.mesh, *source, original->measure))
                 continue;
             Measure& measure = attribute.measure;
             const auto pins = extremes(after, annotation, *measure.direction);

@@ -34,12 +34,12 @@ LegendEntry annotation_legend(const Annotation& annotation, bool on_map) {
 
 class AnnotationDrawing {
 public:
-    AnnotationDrawing(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style)
+    AnnotationDrawing(Scene& scene, AnnotatedMeshView object, const AnnotationStyle& style)
         : scene_(scene),
-          mesh_(mesh),
+          mesh_(object.mesh),
           style_(style),
           on_map_(!style.painted || !scene.vertex_values.empty() || !scene.face_values.empty()) {
-        if (!on_map_) paint(set);
+        if (!on_map_) paint(object.annotations);
         if (!on_map_ && style.smooth) smooth();
     }
 
@@ -114,7 +114,7 @@ private:
     void paint(const AnnotationSet& set) {
         scene_.face_colours.assign(mesh_.number_of_faces(), clay);
         top_.assign(mesh_.number_of_faces(), nullptr);
-        for (const Annotation* region : regions_largest_first(mesh_, set))
+        for (const Annotation* region : regions_largest_first({mesh_, set}))
             for (const Index face : region->faces) {
                 scene_.face_colours[face] = annotation_colour(*region);
                 top_[face] = region;
@@ -221,27 +221,27 @@ private:
 
 }  // namespace
 
-void draw_annotations(Scene& scene, const Mesh& given_mesh, const AnnotationSet& given, const AnnotationStyle& given_style) {
+void draw_annotations(Scene& scene, AnnotatedMeshView given, const AnnotationStyle& given_style) {
     // Free outlines are drawn exactly, on the mesh cut along them.
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
+    const AlongEdges along_edges(given);
+    const auto& [mesh, set] = along_edges.object();
     AnnotationStyle style = given_style;
     if (const auto& cut = along_edges.cut()) {
         scene.mesh = to_soup(mesh);
-        if (!scene.vertex_values.empty()) scene.vertex_values = cut->vertex_values(given_mesh, scene.vertex_values);
+        if (!scene.vertex_values.empty()) scene.vertex_values = cut->vertex_values(given.mesh, scene.vertex_values);
         if (!scene.face_values.empty()) scene.face_values = cut->face_values(scene.face_values);
         style.smooth = false;
     }
-    AnnotationDrawing drawing(scene, mesh, set, style);
+    AnnotationDrawing drawing(scene, {mesh, set}, style);
     // Outlines come first, so that lines are drawn on top of them.
     for (const bool regions : {true, false})
         for (const Annotation& annotation : set.annotations)
             if ((annotation.type == AnnotationType::region) == regions) drawing.draw(annotation);
     for (const Annotation& annotation : set.annotations) drawing.add_to_legend(annotation);
     if (style.measures) {
-        PathSearch search(given_mesh);  // tapes follow edges of the original mesh
-        for (const Annotation& annotation : given.annotations) drawing.draw_measures(search, given_mesh, annotation, set.unit);
+        PathSearch search(given.mesh);  // tapes follow edges of the original mesh
+        for (const Annotation& annotation : given.annotations.annotations)
+            drawing.draw_measures(search, given.mesh, annotation, set.unit);
     }
     scene.unit = set.unit;
 }
@@ -257,7 +257,7 @@ Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string&
     options.size = size;
     options.no_scale_bar = options.no_legend = true;
     if (set != nullptr) {
-        draw_annotations(scene, mesh, *set);
+        draw_annotations(scene, {mesh, *set});
         options.up = up_words(*set);
     }
     return render({scene}, options).picture;

@@ -1,7 +1,7 @@
 // Annotations as drawable elements of a scene.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/render/render.h"
 
 namespace ostraka {
@@ -12,10 +12,10 @@ struct AnnotationStyle {
     bool measures = false;  ///< draw measures with their pins and values
 };
 
-/// Adds colours, lines, points, labels and the legend of the annotations of `mesh` to the scene, and the unit. If the scene
+/// Adds colours, lines, points, labels and the legend of the annotations to the scene, and the unit. If the scene
 /// shows values, regions are drawn as coloured outlines; otherwise their faces are painted, the smallest region on top, and
 /// outlines are drawn except where a smaller region covers them.
-void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style = {});
+void draw_annotations(Scene& scene, AnnotatedMeshView object, const AnnotationStyle& style = {});
 
 /// Their up direction in the text form that `render` accepts.
 std::string up_words(const AnnotationSet& set);

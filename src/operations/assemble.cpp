@@ -362,7 +362,7 @@ private:
             prior = prior_of(learnt.modes);
         }
         const RelationGraph& graph = class_template(*object_template).graph;
-        const Reconstruction completed = reconstruct(object_template->mesh->mesh, *object_template->annotations, graph,
+        const Reconstruction completed = reconstruct({object_template->mesh->mesh, *object_template->annotations}, graph,
                                                      {&joined_group}, {}, {}, prior ? &*prior : nullptr);
         for (const auto& notes : completed.notes) context.notes(name, notes);
         add_members(entry, allocator, "completion", to_string(completed.verdict), "observed", completed.observed_share);

@@ -94,8 +94,8 @@ struct Deform final : Operation {
         }
         if (graph) subject.relations = &graph.on(*subject.set);
         if (cage_out && subject.coordinates == nullptr) fail_without_cage();
-        const HandleSpace space{subject.object->mesh, *subject.set, subject.around ? &subject.around->mesh : nullptr,
-                                subject.coordinates};
+        const HandleSpace space{
+            {subject.object->mesh, *subject.set}, subject.around ? &subject.around->mesh : nullptr, subject.coordinates};
         RelationGraph relations;
         if (subject.relations != nullptr) relations.relationships = subject.relations->relationships;
         add_constraints(words, *subject.set, relations);
@@ -108,8 +108,8 @@ struct Deform final : Operation {
         const Mesh shaped = with_points(space.mesh, result.points);
         if (cage_out) cage_out.write(with_points(*space.cage, result.cage), subject.around->extras);
         if (annotations_out) {
-            AnnotationSet set = space.set;
-            move_extents(space.mesh, space.set, shaped, set);
+            AnnotationSet set = space.annotations;
+            move_extents(space, shaped, set);
             report.notes(refresh_measures(shaped, set).notes);
             annotations_out.write(std::move(set), shaped, output.file());
         }

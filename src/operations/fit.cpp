@@ -84,7 +84,7 @@ struct Fit final : Operation {
                 cage = generated_cage(mesh);
             }
         }
-        Reconstructor reconstructor(mesh, *object_template->annotations, graph, options, prior ? &*prior : nullptr,
+        Reconstructor reconstructor({mesh, *object_template->annotations}, graph, options, prior ? &*prior : nullptr,
                                     cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
         // Results must not overwrite fragments; checked before the work starts.
@@ -180,9 +180,9 @@ struct Fit final : Operation {
                 report.note(fmt::format("{}: {}; the template's triangles show what was observed of it",
                                         names.fragments[static_cast<std::size_t>(note.fragment)], note.text));
             AnnotationSet carried_annotations =
-                completed_annotations(object_template->mesh->mesh, *object_template->annotations, result);
+                completed_annotations({object_template->mesh->mesh, *object_template->annotations}, result);
             report.notes(refresh_measures(result.object.mesh, carried_annotations).notes);
-            output.write("completed.ant.json", carried_annotations, result.object.mesh, "completed.ply");
+            output.write("completed.ant.json", {result.object.mesh, carried_annotations}, "completed.ply");
         }
         for (std::size_t k = 0; placed && k < fragments.size(); ++k)
             if (const FragmentPlacement& placement = result.placement.fragments[k]; placement.problem.empty())

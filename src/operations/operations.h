@@ -1,6 +1,7 @@
 // Shared by the sources of operations: common slots, and text arguments such as lists of numbers, directions, annotation names.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/operations/table.h"
 
 #include "ostraka/core/message_text.h"
@@ -21,6 +22,7 @@ struct AnnotatedMeshOperation : Operation {
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
     }
     [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
+    [[nodiscard]] AnnotatedMeshView object() const { return {mesh->mesh, set()}; }
 
     MeshInput mesh;
     AnnotationsInput annotations;

@@ -387,20 +387,20 @@ std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& fa
     return means.values();
 }
 
-bool are_apart(const Mesh& mesh, const AnnotationSet& regions) {
+bool are_apart(AnnotatedMeshView object) {
     constexpr int no_region = -1;
-    std::vector<int> region_of_vertex(mesh.number_of_vertices(), no_region);
+    std::vector<int> region_of_vertex(object.mesh.number_of_vertices(), no_region);
     std::size_t covered = 0;
-    for (const Annotation& region : regions.annotations) {
+    for (const Annotation& region : object.annotations.annotations) {
         if (region.type != AnnotationType::region) return false;
         covered += region.faces.size();
         for (const Index face : region.faces)
-            for (const Vertex v : corners(mesh, Face(face))) {
+            for (const Vertex v : corners(object.mesh, Face(face))) {
                 if (region_of_vertex[v.idx()] != no_region && region_of_vertex[v.idx()] != region.id) return false;
                 region_of_vertex[v.idx()] = region.id;
             }
     }
-    return regions.annotations.size() > 1 && covered == mesh.number_of_faces();
+    return object.annotations.annotations.size() > 1 && covered == object.mesh.number_of_faces();
 }
 
 }  // namespace ostraka

@@ -85,27 +85,26 @@ struct Publish final : AnnotatedMeshOperation {
     }
 
     void run(Context& context, Report& report) override {
-        const Mesh& surface = mesh->mesh;
-        const AnnotationSet& annotation_set = set();
+        const AnnotatedMeshView subject = object();
         const std::string name = title.empty() ? Path(mesh.file_name()).stem().string() : title;
         folder.open();
         std::vector<std::string> notes;
-        const std::string model = feature_glb(surface, annotation_set, mesh.file(), context.provenance(), notes);
+        const std::string model = feature_glb(subject, mesh.file(), context.provenance(), notes);
         report.notes(notes);
         write_file(folder.in("model.glb"), model);
-        write_file(folder.in("annotations.jsonld"), web_annotations(surface, annotation_set, mesh.file(), context.provenance()));
-        write_png(folder.in("thumbnail.png"), thumbnail(surface, &annotation_set, "400x300"));
+        write_file(folder.in("annotations.jsonld"), web_annotations(subject, mesh.file(), context.provenance()));
+        write_png(folder.in("thumbnail.png"), thumbnail(subject.mesh, &subject.annotations, "400x300"));
         Page page(name);
         PageObject page_object;
         page_object.name = name;
-        const AlongEdges along_edges(surface, annotation_set);  // free outlines are shown on the mesh cut along them
-        page_object.mesh = &along_edges.mesh();
-        page_object.annotations = &along_edges.annotations();
+        const AlongEdges along_edges(subject);  // free outlines are shown on the mesh cut along them
+        page_object.mesh = &along_edges.object().mesh;
+        page_object.annotations = &along_edges.object().annotations;
         page.add(page_object);
-        if (!annotation_set.annotations.empty()) page.add(annotation_table(surface, annotation_set, 0, name));
+        if (!subject.annotations.annotations.empty()) page.add(annotation_table(subject, 0, name));
         write_file(folder.in("index.html"), page.html(context.provenance().to_line()));
         std::size_t placed = 0;
-        const Json document = manifest(surface, annotation_set, name, ViewerTransform(model), placed);
+        const Json document = manifest(subject, name, ViewerTransform(model), placed);
         write_json(folder.in("manifest.json"), document);
         report("manifest", url("manifest.json"))("annotations", placed);
     }
@@ -115,8 +114,8 @@ struct Publish final : AnnotatedMeshOperation {
     }
 
     /// IIIF Presentation API 4: one Scene with the GLB painted into it, and one comment at a position of each annotation.
-    Json manifest(const Mesh& surface, const AnnotationSet& annotation_set, const std::string& name,
-                  const ViewerTransform& to_viewer, std::size_t& placed) const {
+    Json manifest(AnnotatedMeshView object, const std::string& name, const ViewerTransform& to_viewer,
+                  std::size_t& placed) const {
         Json document;
         document.SetObject();
         auto& a = document.GetAllocator();
@@ -127,8 +126,8 @@ struct Publish final : AnnotatedMeshOperation {
         const std::string scene = url("scene");
         const auto scene_reference = [&] { return json_object(a, "id", scene, "type", "Scene"); };
         JsonValue comments(rapidjson::kArrayType);
-        for (const Annotation& annotation : annotation_set.annotations) {
-            const auto position = label_position(surface, annotation);
+        for (const Annotation& annotation : object.annotations.annotations) {
+            const auto position = label_position(object.mesh, annotation);
             if (!position) continue;
             const Eigen::Vector3d p = to_viewer(*position);
             std::string text = annotation.tag.empty() ? "annotation " + std::to_string(annotation.id) : annotation.tag;

@@ -155,7 +155,7 @@ struct Render final : Operation {
             style.measures = measures;
             style.painted = render_options.drawing == RenderOptions::Drawing::surface ||
                             render_options.drawing == RenderOptions::Drawing::points;
-            draw_annotations(scene, mesh, set, style);
+            draw_annotations(scene, {mesh, set}, style);
             if (render_options.up == "auto" && set.up) render_options.up = up_words(set);
         } else if (!maps.has(k) && render_options.drawing != RenderOptions::Drawing::lines &&
                    render_options.drawing != RenderOptions::Drawing::wire) {

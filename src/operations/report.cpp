@@ -408,11 +408,11 @@ struct MakeReport final : Operation {
         shown.constraints = std::move(object.constraints);
         shown.conflicts = std::move(object.conflicts);
         shown.conformance = std::move(object.conformance);
-        if (object.graph && object.set) shown.checks = judge_relationships(object.file.mesh, *object.set, *object.graph);
+        if (object.graph && object.set) shown.checks = judge_relationships({object.file.mesh, *object.set}, *object.graph);
         PageTable table;
         if (object.set && !object.set->annotations.empty()) {
-            table = annotation_table(object.file.mesh, *object.set, static_cast<int>(place), object.name);
-            if (are_apart(object.file.mesh, *object.set))
+            table = annotation_table({object.file.mesh, *object.set}, static_cast<int>(place), object.name);
+            if (are_apart({object.file.mesh, *object.set}))
                 for (std::size_t i = 0; i < object.set->annotations.size(); ++i) shown.parts.push_back(i);
         }
         std::optional<BoundMesh> simplified_mesh;
@@ -426,15 +426,15 @@ struct MakeReport final : Operation {
             if (object.set) shown.annotations = &*object.set;
         }
         std::optional<AlongEdges> along_edges;  // free outlines are shown on the mesh cut along them
-        if (shown.annotations != nullptr) along_edges.emplace(*shown.mesh, *shown.annotations);
+        if (shown.annotations != nullptr) along_edges.emplace(AnnotatedMeshView(*shown.mesh, *shown.annotations));
         if (along_edges && along_edges->cut()) {
             for (PageMap& map : shown.maps) {
                 map.values = along_edges->cut()->vertex_values(*shown.mesh, map.values);
                 if (!map.categories.empty())
                     for (double& value : map.values) value = std::round(value);
             }
-            shown.mesh = &along_edges->mesh();
-            shown.annotations = &along_edges->annotations();
+            shown.mesh = &along_edges->object().mesh;
+            shown.annotations = &along_edges->object().annotations;
         }
         target_page.add(shown);
         if (!table.rows.empty()) target_page.add(std::move(table));

@@ -174,7 +174,7 @@ struct SliceObject final : Operation {
     }
 
     /// The mesh, cut along the outlines of the sliced part if these are free.
-    [[nodiscard]] const Mesh& sliced_mesh() const { return along_edges ? along_edges->mesh() : mesh->mesh; }
+    [[nodiscard]] const Mesh& sliced_mesh() const { return along_edges ? along_edges->object().mesh : mesh->mesh; }
 
     /// Sets unit, up direction and faces from the options, or else from the annotations.
     void read_part() {
@@ -184,10 +184,10 @@ struct SliceObject final : Operation {
             const AnnotationSet& set = annotations.on(mesh->mesh);
             if (unit.empty()) unit_of_lengths = set.unit;
             if (set.up) upward = *set.up, up_known = true;
-            if (!names.empty()) along_edges.emplace(mesh->mesh, set);
+            if (!names.empty()) along_edges.emplace(AnnotatedMeshView(mesh->mesh, set));
             for (const auto& name : names) {
                 const Annotation& annotation =
-                    *along_edges->annotations().find(find_annotation(set, name, annotations.file()).id);
+                    *along_edges->object().annotations.find(find_annotation(set, name, annotations.file()).id);
                 if (annotation.type != AnnotationType::region)
                     fail_usage(fmt::format("annotation '{}' is not a region", name), "only regions can be sliced");
                 faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());

@@ -101,7 +101,7 @@ std::string Page::script(const std::string& file, const std::string& made_how) c
 
 Page::Content Page::content(const std::string& made_how) const { return {data(made_how), bytes_}; }
 
-PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int object, const std::string& name) {
+PageTable annotation_table(AnnotatedMeshView annotated, int object, const std::string& name) {
     PageTable table;
     table.title = name;
     table.columns = {"annotation", "id", "type", "elements", "area or length", "unit"};
@@ -110,12 +110,12 @@ PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int objec
         static_cast<JsonValue&>(json) = json_value(value, json.GetAllocator());
         return json;
     };
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& annotation = set.annotations[i];
+    for (std::size_t i = 0; i < annotated.annotations.annotations.size(); ++i) {
+        const Annotation& annotation = annotated.annotations.annotations[i];
         PageTable::Row& row = table.rows.emplace_back();
         const bool region = annotation.type == AnnotationType::region, line = annotation.type == AnnotationType::line;
-        const auto size = region ? evaluate(mesh, annotation, "area")
-                          : line ? evaluate(mesh, annotation, "length")
+        const auto size = region ? evaluate(annotated.mesh, annotation, "area")
+                          : line ? evaluate(annotated.mesh, annotation, "length")
                                  : std::nullopt;
         std::size_t elements = region ? annotation.faces.size() : annotation.points.size();
         for (const auto& polyline : annotation.polylines) elements += polyline.size();
@@ -124,7 +124,7 @@ PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int objec
         row.cells.push_back(cell(to_string(annotation.type)));
         row.cells.push_back(cell(elements));
         row.cells.push_back(cell(size));
-        row.cells.push_back(cell(size ? descriptor_unit(region ? "area" : "length", set.unit) : std::string()));
+        row.cells.push_back(cell(size ? descriptor_unit(region ? "area" : "length", annotated.annotations.unit) : std::string()));
         row.object = object;
         row.annotation = static_cast<int>(i);
     }

@@ -139,21 +139,21 @@ std::vector<Point> lifted_points(const Mesh& mesh, const SurfaceCurve& curve) {
     return places;
 }
 
-JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const ContainmentOrder& order, const Relative& relative,
-                           const Keep& keep, JsonAllocator& allocator) {
+JsonValue annotations_json(AnnotatedMeshView object, const ContainmentOrder& order, const Relative& relative, const Keep& keep,
+                           JsonAllocator& allocator) {
     const auto& parents = order.parent;
-    PathSearch paths(mesh);
+    PathSearch paths(object.mesh);
     JsonValue annotations(rapidjson::kArrayType);
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& annotation = set.annotations[i];
+    for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i) {
+        const Annotation& annotation = object.annotations.annotations[i];
         JsonValue measures(rapidjson::kArrayType), attributes(rapidjson::kArrayType);
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type == AttributeType::measure) {
                 const Measure& measure = attribute.measure;
                 JsonValue entry = json_object(
                     allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
-                    json_list(pins_of(mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
-                const auto measured_path = json_list(path_of_measure(paths, mesh, measure), allocator,
+                    json_list(pins_of(object.mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
+                const auto measured_path = json_list(path_of_measure(paths, object.mesh, measure), allocator,
                                                      [&](const Point& at) { return relative(triple(at)); });
                 add_nonempty_members(entry, allocator, "way", measured_path);
                 if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
@@ -176,10 +176,11 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
         else if (annotation.type == AnnotationType::line) add_members(entry, allocator, "lines", annotation.polylines);
         else add_members(entry, allocator, "points", annotation.points);
         if (is_free(annotation))
-            add_members(
-                entry, allocator, "curves", json_list(curves_on(mesh, annotation), allocator, [&](const SurfaceCurve& curve) {
-                    return json_list(lifted_points(mesh, curve), allocator, [&](const Point& p) { return relative(triple(p)); });
-                }));
+            add_members(entry, allocator, "curves",
+                        json_list(curves_on(object.mesh, annotation), allocator, [&](const SurfaceCurve& curve) {
+                            return json_list(lifted_points(object.mesh, curve), allocator,
+                                             [&](const Point& p) { return relative(triple(p)); });
+                        }));
         annotations.PushBack(entry, allocator);
     }
     return annotations;
@@ -313,8 +314,8 @@ std::size_t Page::add(const PageObject& object) {
     const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
     const AnnotationSet no_annotations;
     const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : no_annotations;
-    const ContainmentOrder order = topology(mesh, set).order;
-    JsonValue annotations = annotations_json(mesh, set, order, relative, keep, allocator);
+    const ContainmentOrder order = topology({mesh, set}).order;
+    JsonValue annotations = annotations_json({mesh, set}, order, relative, keep, allocator);
     JsonValue maps(rapidjson::kArrayType);
     for (const PageMap& map : object.maps) {
         if (map.values.size() != soup.points.size())

@@ -29,14 +29,14 @@ struct MatchFeatures {
     double extent = 0;  ///< area of a region, length of a line
 };
 
-std::vector<MatchFeatures> matching_features(const Mesh& mesh, const AnnotationSet& set, const Motion& pose) {
-    const ContainmentOrder order = topology(mesh, set).order;
+std::vector<MatchFeatures> matching_features(AnnotatedMeshView object, const Motion& pose) {
+    const ContainmentOrder order = topology(object).order;
     std::vector<MatchFeatures> result;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& annotation = set.annotations[i];
+    for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i) {
+        const Annotation& annotation = object.annotations.annotations[i];
         MatchFeatures features{&annotation, {}};
         for (const std::size_t c : order.containers[i])
-            if (!set.annotations[c].all) features.containers.insert(set.annotations[c].tag);
+            if (!object.annotations.annotations[c].all) features.containers.insert(object.annotations.annotations[c].tag);
         Eigen::AlignedBox3d box;
         double weight = 0;
         const auto add = [&](const Vector3d& place, double w) {
@@ -44,20 +44,21 @@ std::vector<MatchFeatures> matching_features(const Mesh& mesh, const AnnotationS
             weight += w;
         };
         if (annotation.type == AnnotationType::region) {
-            for (const auto& [face, share] : face_shares(mesh, annotation)) {
-                const double area = share * face_area(mesh, Face(face)) * pose.scale * pose.scale;
+            for (const auto& [face, share] : face_shares(object.mesh, annotation)) {
+                const double area = share * face_area(object.mesh, Face(face)) * pose.scale * pose.scale;
                 features.extent += area;
-                add(pose(eigen(centroid(mesh, Face(face)))), area);
+                add(pose(eigen(centroid(object.mesh, Face(face)))), area);
             }
         }
         for (const auto& line : annotation.polylines)
             for (std::size_t k = 1; k < line.size(); ++k) {
-                const Vector3d a = pose(eigen(mesh.point(Vertex(line[k - 1])))), b = pose(eigen(mesh.point(Vertex(line[k]))));
+                const Vector3d a = pose(eigen(object.mesh.point(Vertex(line[k - 1])))),
+                               b = pose(eigen(object.mesh.point(Vertex(line[k]))));
                 features.extent += (b - a).norm();
                 add((a + b) / 2, (b - a).norm());
             }
-        for (const Index v : touched_vertices(mesh, annotation)) {
-            const Vector3d place = pose(eigen(mesh.point(Vertex(v))));
+        for (const Index v : touched_vertices(object.mesh, annotation)) {
+            const Vector3d place = pose(eigen(object.mesh.point(Vertex(v))));
             box.extend(place);
             if (annotation.type == AnnotationType::point) add(place, 1);
         }
@@ -103,13 +104,11 @@ AnnotationMatch compare(const MatchFeatures& theirs, const MatchFeatures& ours, 
 
 }  // namespace
 
-std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const AnnotationSet& of_template, const Mesh& fragment,
-                                               const AnnotationSet& of_fragment, const Motion& pose,
+std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, AnnotatedMeshView fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated, const AnnotationMatchOptions& options) {
     check_options(options, "annotation matches");
-    const std::vector<MatchFeatures> ours = matching_features(scaled, of_template, {}),
-                                     theirs = matching_features(fragment, of_fragment, pose);
-    const double diagonal = box_diagonal(scaled);
+    const std::vector<MatchFeatures> ours = matching_features(scaled, {}), theirs = matching_features(fragment, pose);
+    const double diagonal = box_diagonal(scaled.mesh);
     const auto position_of = [](const std::vector<MatchFeatures>& annotations, int id, const char* whose) {
         for (std::size_t i = 0; i < annotations.size(); ++i)
             if (annotations[i].annotation->id == id) return i;

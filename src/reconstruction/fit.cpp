@@ -43,13 +43,12 @@ constexpr std::size_t coarse_vertices = 4000;  // vertices that show every shape
 
 }  // namespace
 
-struct TemplateFitter::State {
-    State(const Mesh& template_mesh, const AnnotationSet& annotations, const TemplateCage* template_cage)
-        : mesh(template_mesh),
-          set(annotations),
+struct TemplateFitter::State : AnnotatedMeshView {
+    State(AnnotatedMeshView template_object, const TemplateCage* template_cage)
+        : AnnotatedMeshView(template_object),
           cage(template_cage),
-          diagonal(box_diagonal(template_mesh)),
-          fine(template_mesh) {}
+          diagonal(box_diagonal(template_object.mesh)),
+          fine(template_object.mesh) {}
 
     /// Simplifies the template if it is large enough.
     void prepare() {
@@ -135,8 +134,6 @@ struct TemplateFitter::State {
         return level;
     }
 
-    const Mesh& mesh;
-    const AnnotationSet& set;
     const TemplateCage* cage;
     double diagonal;
     LevelSystem fine;
@@ -147,17 +144,17 @@ struct TemplateFitter::State {
     std::vector<SurfaceHit> nearest;      ///< per vertex, nearest point on it
 };
 
-TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
-    if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "check that it is the right file");
+TemplateFitter::TemplateFitter(AnnotatedMeshView template_object, const TemplateCage* cage) {
+    if (template_object.mesh.number_of_faces() == 0) fail_input("template", "has no faces", "check that it is the right file");
     if (cage != nullptr) {
         if (cage->coordinates.has_normals())
             fail_usage(cage->coordinates.kind + " coordinates have a normal term, which a fit cannot use",
                        "use mean-value coordinates");
-        if (static_cast<std::size_t>(cage->coordinates.vertex.rows()) != mesh.number_of_vertices() ||
+        if (static_cast<std::size_t>(cage->coordinates.vertex.rows()) != template_object.mesh.number_of_vertices() ||
             static_cast<std::size_t>(cage->coordinates.vertex.cols()) != cage->cage.number_of_vertices())
             fail_usage("the coordinates of the cage do not belong to the template's vertices", "compute them again");
     }
-    state_ = std::make_unique<State>(mesh, set, cage);
+    state_ = std::make_unique<State>(template_object, cage);
 }
 TemplateFitter::~TemplateFitter() = default;
 TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
@@ -171,8 +168,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     State& s = *state_;
     NonRigidFit fit;
     const bool slides = options.counterparts == NonRigidOptions::Counterparts::sliding;
-    MatchSearch search(s.mesh, s.set, fragments, scale,
-                       options.outlines ? MatchSearch::Guides::paths : MatchSearch::Guides::landmarks);
+    MatchSearch search(s, fragments, scale, options.outlines ? MatchSearch::Guides::paths : MatchSearch::Guides::landmarks);
     if (slides) search.recognise_shared_faces();
     {
         const AddedSeconds watch(fit.seconds_coarsening);
@@ -197,9 +193,8 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     return fit;
 }
 
-NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
-                         const NonRigidOptions& options) {
-    return TemplateFitter(scaled, set).fit(1, fragments, options);
+NonRigidFit fit_template(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
+    return TemplateFitter(scaled).fit(1, fragments, options);
 }
 
 void NonRigidOptions::describe(OptionList& visit) {

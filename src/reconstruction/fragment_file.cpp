@@ -79,7 +79,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     }
     if (annotated) {
         const auto from_file = [&](Facet other) {
-            return with_file_name(annotation_file, [&] { return facets_of(fragment.mesh, fragment.annotations, other); });
+            return with_file_name(annotation_file, [&] { return facets_of(fragment, other); });
         };
         std::vector<Facet> stated = from_file(Facet::outer);
         if (by_shape) {

@@ -42,9 +42,9 @@ std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const
 
 MatchSearch::~MatchSearch() = default;
 
-MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale,
+MatchSearch::MatchSearch(AnnotatedMeshView template_object, const std::vector<PlacedFragment>& fragments, double scale,
                          Guides guides)
-    : scale_(scale), template_(mesh), fragments_(fragments) {
+    : scale_(scale), template_(template_object.mesh), fragments_(fragments) {
     Motion unit;
     unit.scale = 1 / scale;
     // Regions present on any fragment.
@@ -53,7 +53,8 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         const PlacedFragment& fragment = fragments[k];
         std::vector<std::pair<const Annotation*, int>> theirs;
         for (const AnnotationMatch& match : fragment.matches) {
-            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            const Annotation *a = template_object.annotations.find(match.of_template),
+                             *b = fragment.annotations->find(match.of_fragment);
             if (a == nullptr || b == nullptr || a->type != b->type) continue;
             if (a->type == AnnotationType::region && !a->all && !b->all) {
                 theirs.emplace_back(b, a->id);
@@ -83,8 +84,8 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         joints_.add(static_cast<int>(k), fragment.mesh, labels, fragment.facets, trees_.back()->end_vertices(), scale);
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
-    face_labels_ = face_labels(mesh, ours);
-    if (guides == Guides::paths) add_path_correspondences(set);
+    face_labels_ = face_labels(template_object.mesh, ours);
+    if (guides == Guides::paths) add_path_correspondences(template_object.annotations);
 }
 
 void MatchSearch::add_path_correspondences(const AnnotationSet& set) {

@@ -4,6 +4,7 @@
 #include "reconstruction/fragment_trees.h"
 #include "reconstruction/joint_curves.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/vertex_assignment.h"
 #include "ostraka/solver/constraint.h"
@@ -39,11 +40,11 @@ struct Slide {
 /// faces in none.
 class MatchSearch {
 public:
-    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is queried and returned is in
+    /// The unit of the template is `scale` times that of the placed fragments: all that is queried and returned is in
     /// the template's. Trees are those of the fragments, in their own coordinates, where they bring them along. What
     /// correspondences there are: of landmarks alone, or of places along matched lines and outlines, too.
     enum class Guides { landmarks, paths };
-    MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
+    MatchSearch(AnnotatedMeshView template_object, const std::vector<PlacedFragment>& fragments, double scale = 1,
                 Guides guides = Guides::landmarks);
     ~MatchSearch();
     MatchSearch(const MatchSearch&) = delete;

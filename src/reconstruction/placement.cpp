@@ -19,8 +19,8 @@ namespace ostraka {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const AnnotationSet& of_template, const Mesh& fragment,
-                                           const AnnotationSet& of_fragment, std::vector<std::string>* notes) {
+std::vector<LandmarkPair> common_landmarks(AnnotatedMeshView template_object, AnnotatedMeshView fragment,
+                                           std::vector<std::string>* notes) {
     using Tags = std::map<std::string, std::vector<const Annotation*>>;
     const auto collect = [](const AnnotationSet& set) {
         Tags tags;
@@ -29,7 +29,7 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
                 tags[annotation.tag].push_back(&annotation);
         return tags;
     };
-    const Tags ours = collect(of_template), theirs = collect(of_fragment);
+    const Tags ours = collect(template_object.annotations), theirs = collect(fragment.annotations);
     const auto note = [&](const std::string& tag, const std::string& text) {
         if (notes != nullptr) notes->push_back(fmt::format("landmark '{}' {}", tag, text));
     };
@@ -53,8 +53,8 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
         } else if (several(annotations) || several(entry->second)) {
             note(tag, "has several points and is not used: give it one point");
         } else {
-            pairs.push_back({tag, eigen(template_mesh.point(Vertex(entry->second.front()->points.front()))),
-                             eigen(fragment.point(Vertex(annotations.front()->points.front()))),
+            pairs.push_back({tag, eigen(template_object.mesh.point(Vertex(entry->second.front()->points.front()))),
+                             eigen(fragment.mesh.point(Vertex(annotations.front()->points.front()))),
                              entry->second.front()->points.front()});
         }
     }

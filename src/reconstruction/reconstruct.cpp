@@ -30,15 +30,15 @@ bool inside_out(const Mesh& mesh) {
 }
 
 /// The share of an annotation's vertices that were observed.
-double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const std::vector<bool>& observed) {
-    const Annotation* annotation = set.find(id);
+double observed_share(AnnotatedMeshView template_object, int id, const std::vector<bool>& observed) {
+    const Annotation* annotation = template_object.annotations.find(id);
     std::vector<Index> vertices;
     if (annotation != nullptr && annotation->all)
-        for (const Vertex v : mesh.vertices()) vertices.push_back(v);
+        for (const Vertex v : template_object.mesh.vertices()) vertices.push_back(v);
     if (annotation != nullptr && !annotation->all) {
         vertices = annotation->points;
         for (const Index f : annotation->faces)
-            for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v);
+            for (const Vertex v : corners(template_object.mesh, Face(f))) vertices.push_back(v);
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -47,11 +47,11 @@ double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const 
 }
 
 /// Swaps the parts of proportions whose first part was observed better than the second.
-RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& stated,
+RelationGraph with_observed_as_reference(AnnotatedMeshView template_object, const RelationGraph& stated,
                                          const std::vector<bool>& observed_vertices) {
     RelationGraph graph;
     graph.relationships = stated.relationships;
-    const auto observed = [&](int id) { return observed_share(mesh, set, id, observed_vertices); };
+    const auto observed = [&](int id) { return observed_share(template_object, id, observed_vertices); };
     for (Relationship& relationship : graph.relationships) {
         const RelationType* type = find_relation_type(relationship.type);
         if (!relationship.is_constraint || type == nullptr || type->name != "proportion" || relationship.annotations.size() != 2)
@@ -101,19 +101,16 @@ struct FragmentState {
 };
 
 /// The template and its fragments, with the data kept between reconstructions.
-struct ReconstructionState {
-    ReconstructionState(const Mesh& template_mesh, const AnnotationSet& annotations, const RelationGraph& relations,
+struct ReconstructionState : AnnotatedMeshView {
+    ReconstructionState(AnnotatedMeshView template_object, const RelationGraph& relations,
                         const ReconstructOptions& reconstruct_options, const ShapePrior* class_prior, const TemplateCage* cage)
-        : mesh(template_mesh),
-          set(annotations),
+        : AnnotatedMeshView(template_object),
           graph(relations),
           options(reconstruct_options),
           prior(class_prior),
-          searches(template_mesh, reconstruct_options.search.poses),
-          fitter(template_mesh, annotations, cage) {}
+          searches(template_object.mesh, reconstruct_options.search.poses),
+          fitter(template_object, cage) {}
 
-    const Mesh& mesh;
-    const AnnotationSet& set;
     const RelationGraph& graph;
     const ReconstructOptions options;
     const ShapePrior* prior;
@@ -203,7 +200,7 @@ private:
         timed("fit", [&] {
             // The shape of the class changes with each reconstruction.
             result_.fit = prepared_.prior != nullptr
-                              ? fit_template(scaled_, prepared_.set, placed_, prepared_.options.fit)
+                              ? fit_template({scaled_, prepared_.annotations}, placed_, prepared_.options.fit)
                               : prepared_.fitter.fit(result_.placement.scale, placed_, prepared_.options.fit);
         });
         result_.points = result_.fit.points;
@@ -255,7 +252,7 @@ private:
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
             check_cancelled();
-            result_.prior = fit_prior(scaled_, prepared_.set, placed_, *prepared_.prior, prepared_.options.prior);
+            result_.prior = fit_prior({scaled_, prepared_.annotations}, placed_, *prepared_.prior, prepared_.options.prior);
             scaled_ = result_.prior->mesh;
             shaped_ = true;
             if (!prepared_.options.refine || round + 1 == rounds) continue;
@@ -274,9 +271,8 @@ private:
             const Fragment& fragment = *fragments_[k];
             std::optional<FragmentState::Matched>& cached = prepared_.fragments[k].matched;
             if (!cached || shaped_ || cached->scale != result_.placement.scale || cached->pose != placement.pose) {
-                result_.annotations[k] =
-                    match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
-                                      prepared_.fragments[k].stated, prepared_.options.annotations);
+                result_.annotations[k] = match_annotations({scaled_, prepared_.annotations}, fragment, placement.pose,
+                                                           prepared_.fragments[k].stated, prepared_.options.annotations);
                 if (!shaped_) cached = {result_.placement.scale, placement.pose, result_.annotations[k]};
             } else {
                 result_.annotations[k] = cached->matches;
@@ -289,7 +285,7 @@ private:
                                   prepared_.fragments[k].trees};
             // A landmark found to be wrong constrains nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& match) {
-                const Annotation* a = prepared_.set.find(match.of_template);
+                const Annotation* a = prepared_.annotations.find(match.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
                        std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
                                    [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
@@ -350,9 +346,9 @@ private:
         if (!has_constraints || !prepared_.options.restore) return;
         DeformOptions options;
         options.handles = 1e5;  // constraints must not move the observed part
-        DeformResult restored = restore_constraints(
-            scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, observed_),
-            result_.points, observed_, options, {}, "the template's graph");
+        DeformResult restored = restore_constraints({scaled_, prepared_.annotations},
+                                                    with_observed_as_reference(prepared_, prepared_.graph, observed_),
+                                                    result_.points, observed_, options, {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);
         result_.conflicts = std::move(restored.conflicts);
@@ -372,17 +368,17 @@ private:
 
 }  // namespace
 
-Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                             const ReconstructOptions& options, const ShapePrior* prior, const TemplateCage* cage) {
+Reconstructor::Reconstructor(AnnotatedMeshView template_object, const RelationGraph& graph, const ReconstructOptions& options,
+                             const ShapePrior* prior, const TemplateCage* cage) {
     check_options(options, "fit");
     if (options.fit.space != NonRigidOptions::Space::mesh && cage == nullptr)
         fail_usage("the fit uses a cage, but the template has none", "give the cage of the template");
     if (options.fit.space != NonRigidOptions::Space::mesh && prior != nullptr)
         fail_usage("a class changes the shape of the template, which its cage does not follow",
                    "fit in mesh space, or without the class");
-    if (prior != nullptr) prior->check(mesh.number_of_vertices());
-    if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
-    known_ = std::make_unique<ReconstructionState>(mesh, set, graph, options, prior, cage);
+    if (prior != nullptr) prior->check(template_object.mesh.number_of_vertices());
+    if (inside_out(template_object.mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
+    known_ = std::make_unique<ReconstructionState>(template_object, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
@@ -393,7 +389,7 @@ void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> state
     FragmentState added;
     added.fragment = &fragment;
     added.stated = std::move(stated);
-    added.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &added.notes);
+    added.pairs = common_landmarks(*known_, fragment, &added.notes);
     added.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
     known_->fragments.push_back(std::move(added));
 }
@@ -413,11 +409,11 @@ Reconstruction Reconstructor::run() {
     return ReconstructionRun(*known_).run();
 }
 
-Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+Reconstruction reconstruct(AnnotatedMeshView template_object, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
                            const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior,
                            const TemplateCage* cage) {
-    Reconstructor reconstructor(mesh, set, graph, options, prior, cage);
+    Reconstructor reconstructor(template_object, graph, options, prior, cage);
     for (std::size_t k = 0; k < fragments.size(); ++k)
         reconstructor.add(*fragments[k], k < stated.size() ? stated[k] : std::vector<StatedMatch>());
     return reconstructor.run();

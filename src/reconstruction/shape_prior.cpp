@@ -91,25 +91,25 @@ double independent_samples(std::vector<Residual> residuals, std::size_t unknowns
 
 class PriorFitter {
 public:
-    PriorFitter(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
-                const ShapePrior& prior, const PriorOptions& options)
-        : scaled_(scaled), prior_(prior), options_(options), diagonal_(box_diagonal(scaled)) {
+    PriorFitter(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments, const ShapePrior& prior,
+                const PriorOptions& options)
+        : scaled_(scaled.mesh), prior_(prior), options_(options), diagonal_(box_diagonal(scaled.mesh)) {
         std::vector<Vector3d> positions;
-        for (const Vertex v : scaled.vertices()) positions.push_back(eigen(scaled.point(v)));
+        for (const Vertex v : scaled.mesh.vertices()) positions.push_back(eigen(scaled.mesh.point(v)));
         FitOptions fit_options;
         fit_options.scale = true;
         registration_ = fit_motion(prior.mean, positions, {}, fit_options);
         coefficients_ = VectorXd::Zero(prior.modes.cols());
-        const MatchSearch search(scaled, set, fragments);
+        const MatchSearch search(scaled, fragments);
         correspondences_ = search.correspondences();
         constexpr int maximum = 3000;
         samples_ = search.samples(maximum);
-        const MatchSearch::Labels labels = search.labels(scaled, {});
+        const MatchSearch::Labels labels = search.labels(scaled.mesh, {});
         for (const FragmentSample& sample : samples_) parts_.try_emplace(sample.label);
         for (auto& [label, part] : parts_) {
             std::vector<bool> keep(labels.of_face.size());
             for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = labels.of_face[f] == label;
-            part = keep_faces(scaled, keep);
+            part = keep_faces(scaled.mesh, keep);
         }
     }
 
@@ -312,11 +312,11 @@ private:
 
 }  // namespace
 
-PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
-                   const ShapePrior& prior, const PriorOptions& options) {
+PriorFit fit_prior(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments, const ShapePrior& prior,
+                   const PriorOptions& options) {
     check_options(options, "fit");
-    prior.check(scaled.number_of_vertices());
-    return PriorFitter(scaled, set, fragments, prior, options).run();
+    prior.check(scaled.mesh.number_of_vertices());
+    return PriorFitter(scaled, fragments, prior, options).run();
 }
 
 void PriorOptions::describe(OptionList& visit) {

@@ -92,35 +92,35 @@ void check_adjacency(const SharedLengths& adjacent, const std::string& unit, con
 
 }  // namespace
 
-std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const AnnotationSet& given, const RelationGraph& graph,
-                                           const RelationOptions& options) {
-    check_graph(graph, given, "graph");
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
+std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const RelationGraph& graph, const RelationOptions& options) {
+    check_graph(graph, given.annotations, "graph");
+    const AlongEdges along_edges(given);
+    const AnnotatedMeshView object = along_edges.object();
     const bool cut = along_edges.cut().has_value();
     SharedLengths stated, adjacent;  // only the pairs that occur in the graph
     for (const auto& relationship : graph.relationships)
         if (relationship.annotations.size() == 2)
             stated[std::minmax(relationship.annotations[0], relationship.annotations[1])] = 0;
-    const Topology found = topology(given_mesh, given);
+    const Topology found = topology(given);
     for (const auto& pair : found.adjacent) {
-        const std::pair<int, int> ids = std::minmax(set.annotations[pair.a].id, set.annotations[pair.b].id);
+        const std::pair<int, int> ids =
+            std::minmax(object.annotations.annotations[pair.a].id, object.annotations.annotations[pair.b].id);
         if (stated.contains(ids)) adjacent[ids] = pair.length;
     }
-    RelationMeter meter(mesh, set, options);
+    RelationMeter meter(object, options);
     std::vector<RelationCheck> checks;
     for (const auto& relationship : graph.relationships) {
         RelationCheck& check = checks.emplace_back();
         check.parameters = relationship.parameters;
         std::vector<const Annotation*> members;
-        for (const int id : relationship.annotations) members.push_back(set.find(id));
+        for (const int id : relationship.annotations) members.push_back(object.annotations.find(id));
         const RelationType* type = find_relation_type(relationship.type);
         if (relationship.is_constraint) check.text = "a constraint, which is judged apart";
         else if (type == nullptr) check.text = "a type of its own: experts tell";
-        else if (type->geometric == GeometricRelation::containment) check_containment(mesh, cut, members, check);
-        else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(mesh, cut, members, check);
-        else if (type->geometric == GeometricRelation::adjacency) check_adjacency(adjacent, set.unit, members, check);
+        else if (type->geometric == GeometricRelation::containment) check_containment(object.mesh, cut, members, check);
+        else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(object.mesh, cut, members, check);
+        else if (type->geometric == GeometricRelation::adjacency)
+            check_adjacency(adjacent, object.annotations.unit, members, check);
         else check = meter.measure(relationship);
     }
     return checks;

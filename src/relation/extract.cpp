@@ -64,10 +64,10 @@ std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> value
 }
 
 /// Pairs of regions (indices in the list) with a common face.
-BitTable overlapping_regions(const Mesh& mesh, const AnnotationSet& set, const std::vector<int>& regions) {
-    std::vector<std::vector<std::uint32_t>> at(mesh.number_of_faces());
+BitTable overlapping_regions(AnnotatedMeshView object, const std::vector<int>& regions) {
+    std::vector<std::vector<std::uint32_t>> at(object.mesh.number_of_faces());
     std::unordered_map<int, const Annotation*> known;
-    for (const auto& annotation : set.annotations) known.emplace(annotation.id, &annotation);
+    for (const auto& annotation : object.annotations.annotations) known.emplace(annotation.id, &annotation);
     for (std::uint32_t r = 0; r < regions.size(); ++r)
         for (const Index f : known.at(regions[r])->faces) at[f].push_back(r);
     std::sort(at.begin(), at.end());
@@ -93,7 +93,7 @@ bool is_wanted(GeometricRelation kind, const std::vector<std::string>& types) {
 class RelationCandidates {
 public:
     RelationCandidates(RelationMeter& meter, const std::vector<std::string>& types, int first_id)
-        : meter_(meter), state_(*meter.state_), set_(state_.set), types_(types), first_id_(first_id) {
+        : meter_(meter), state_(*meter.state_), set_(state_.annotations), types_(types), first_id_(first_id) {
         for (const auto& annotation : set_.annotations) {
             if (annotation.all) continue;
             if (annotation.type == AnnotationType::region) {
@@ -106,7 +106,7 @@ public:
                 if (list.empty() || list.back() != &annotation) list.push_back(&annotation);
             }
         }
-        overlapping_ = overlapping_regions(state_.mesh, set_, regions_);
+        overlapping_ = overlapping_regions(state_, regions_);
     }
 
     std::vector<Relationship> that_hold(std::vector<std::string>& notes) {
@@ -341,8 +341,8 @@ void note_left_out(const Topology& found, const std::function<bool(const std::st
 }
 }  // namespace
 
-ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& old,
-                                     const std::vector<std::string>& names, const RelationOptions& options) {
+ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGraph& old, const std::vector<std::string>& names,
+                                     const RelationOptions& options) {
     const std::vector<std::string> types = geometric_types(names);
     const auto wanted = [&](const std::string& type) {
         return types.empty() || std::find(types.begin(), types.end(), type) != types.end();
@@ -360,17 +360,16 @@ ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set,
         relationship.id = ids.next();
         result.graph.relationships.push_back(std::move(relationship));
     };
-    Topology found = topology(mesh, set);
-    for (Relationship& relationship : relationships_of(found, set, 0, most_of_type))
+    Topology found = topology(object);
+    for (Relationship& relationship : relationships_of(found, object.annotations, 0, most_of_type))
         if (wanted(relationship.type)) add(std::move(relationship));
     note_left_out(found, wanted, result.notes);
     result.order = std::move(found.order);
     using enum GeometricRelation;
     for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
-        if (!set.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
-    const AlongEdges along_edges(mesh, set);
-    for (Relationship& relationship :
-         RelationMeter(along_edges.mesh(), along_edges.annotations(), options).extract(types, 0, &result.notes))
+        if (!object.annotations.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
+    const AlongEdges along_edges(object);
+    for (Relationship& relationship : RelationMeter(along_edges.object(), options).extract(types, 0, &result.notes))
         add(std::move(relationship));
     return result;
 }

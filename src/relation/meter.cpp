@@ -168,7 +168,7 @@ void detail::Findings::add(const std::string& quantity, double value, double tol
 Part& RelationMeter::State::part(int id) {
     const auto entry = parts.find(id);
     if (entry != parts.end()) return entry->second;
-    const Annotation* annotation = set.find(id);
+    const Annotation* annotation = annotations.find(id);
     if (annotation == nullptr)
         fail_input("relationship", "names annotation " + std::to_string(id) + ", which does not exist",
                    "name an annotation of this file");
@@ -211,20 +211,20 @@ std::vector<AdjacentPair> longest_borders(std::vector<AdjacentPair> pairs) {
 
 /// Collects the midpoints of the edges between two regions. A region on both sides of an edge overlaps the others there and
 /// does not count.
-void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
-    std::vector<std::vector<int>> regions(mesh.number_of_faces());
-    for (const auto& annotation : set.annotations)
+void add_contacts(AnnotatedMeshView object, Contacts& found) {
+    std::vector<std::vector<int>> regions(object.mesh.number_of_faces());
+    for (const auto& annotation : object.annotations.annotations)
         for (const Index f : annotation.faces) regions[f].push_back(annotation.id);
     for (auto& list : regions) std::sort(list.begin(), list.end());
     std::vector<int> of_f, of_g;
-    for (const Edge e : mesh.edges()) {
-        const Halfedge h = mesh.halfedge(e);
-        const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
+    for (const Edge e : object.mesh.edges()) {
+        const Halfedge h = object.mesh.halfedge(e);
+        const Face f = object.mesh.face(h), g = object.mesh.face(object.mesh.opposite(h));
         if (f == Mesh::null_face() || g == Mesh::null_face() || regions[f] == regions[g]) continue;
         of_f.clear(), of_g.clear();
         std::set_difference(regions[f].begin(), regions[f].end(), regions[g].begin(), regions[g].end(), std::back_inserter(of_f));
         std::set_difference(regions[g].begin(), regions[g].end(), regions[f].begin(), regions[f].end(), std::back_inserter(of_g));
-        const Vector3d p = eigen(mesh.point(mesh.source(h))), q = eigen(mesh.point(mesh.target(h)));
+        const Vector3d p = eigen(object.mesh.point(object.mesh.source(h))), q = eigen(object.mesh.point(object.mesh.target(h)));
         const auto add = [&](Cloud& cloud) {
             cloud.points.emplace_back((p + q) / 2);
             cloud.weights.push_back((q - p).norm());
@@ -249,12 +249,12 @@ void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
 
 const Contacts& RelationMeter::State::all_contacts() {
     if (contacts) return *contacts;
-    const std::vector<AdjacentPair> adjacent = topology(mesh, set).adjacent;
+    const std::vector<AdjacentPair> adjacent = topology(*this).adjacent;
     const std::vector<AdjacentPair> kept = longest_borders(adjacent);
     contacts_left_out = kept.size() < adjacent.size();
     Contacts found;
-    for (const auto& pair : kept) found[std::minmax(set.annotations[pair.a].id, set.annotations[pair.b].id)];
-    add_contacts(mesh, set, found);
+    for (const auto& pair : kept) found[std::minmax(annotations.annotations[pair.a].id, annotations.annotations[pair.b].id)];
+    add_contacts(*this, found);
     return contacts.emplace(std::move(found));
 }
 
@@ -264,7 +264,7 @@ const Cloud* RelationMeter::State::contact(int a, int b) {
     if (!contacts_left_out) return nullptr;
     Contacts one;  // possibly a pair that was left out
     one[std::minmax(a, b)];
-    add_contacts(mesh, set, one);
+    add_contacts(*this, one);
     const auto& cloud = one.begin()->second;
     return cloud.points.empty() ? nullptr : &contacts->insert_or_assign(std::minmax(a, b), cloud).first->second;
 }
@@ -293,15 +293,15 @@ std::vector<double> RelationMeter::State::values(const Relationship& stated) con
     const std::string& name = stated.parameters.attribute;
     std::vector<double> list;
     for (const int id : stated.annotations) {
-        const auto value = attribute(*set.find(id), name);
+        const auto value = attribute(*annotations.find(id), name);
         if (!value) throw Unknown{"annotation " + std::to_string(id) + " has no number '" + name + "'"};
         list.push_back(*value);
     }
     return list;
 }
 
-RelationMeter::RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options)
-    : state_(new State{mesh, set, options, box_diagonal(mesh), {}, {}, false, {}, {}, 0}) {
+RelationMeter::RelationMeter(AnnotatedMeshView object, const RelationOptions& options)
+    : state_(new State{object, options, box_diagonal(object.mesh), {}, {}, false, {}, {}, 0}) {
     check_options(options, "relation");
 }
 RelationMeter::~RelationMeter() = default;
@@ -322,13 +322,13 @@ void RelationMeter::State::measure(GeometricRelation kind, Findings& findings) {
         case co_planarity:
             return measure_flatness(members, kind == co_linearity, findings);
         case same_level:
-            return measure_level(members, up_of(set, stated), findings);
+            return measure_level(members, up_of(annotations, stated), findings);
         case part_similarity:
             return measure_similarity(members, findings);
         case equal_attributes:
             return findings.add_ratio("difference", spread_percent(values(stated)));
         default: {
-            const Vector3d up = up_of(set, stated);
+            const Vector3d up = up_of(annotations, stated);
             measure_contact(contact(stated.annotations[0], stated.annotations[1]), members, kind == horizontal_support, up,
                             findings);
         }
@@ -343,7 +343,7 @@ RelationCheck RelationMeter::measure(const Relationship& relationship) {
         check.text = "cannot be measured";
         return check;
     }
-    Findings findings(relationship, state_->options, state_->diagonal, state_->set.unit, check.parameters);
+    Findings findings(relationship, state_->options, state_->diagonal, state_->annotations.unit, check.parameters);
     try {
         state_->measure(*type->geometric, findings);
     } catch (const Unknown& unknown) {

@@ -3,6 +3,7 @@
 
 #include "relation/parts.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/geometric.h"
 
 #include <list>
@@ -47,9 +48,7 @@ private:
 
 }  // namespace detail
 
-struct RelationMeter::State {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct RelationMeter::State : AnnotatedMeshView {
     RelationOptions options;
     double diagonal = 0;
     std::map<int, detail::Part> parts;

@@ -39,15 +39,15 @@ std::vector<PartInVocabulary> parts_in_vocabulary(const ContainmentOrder& order,
     return parts;
 }
 
-std::vector<Finding> check_parts(const Mesh& mesh, const AnnotationSet& set, const Vocabulary& vocabulary) {
+std::vector<Finding> check_parts(AnnotatedMeshView object, const Vocabulary& vocabulary) {
     std::vector<Finding> findings;
-    for (const PartInVocabulary& one : parts_in_vocabulary(topology(mesh, set).order, set, vocabulary)) {
+    for (const PartInVocabulary& one : parts_in_vocabulary(topology(object).order, object.annotations, vocabulary)) {
         if (one.contained) continue;
         std::vector<std::string> names;
-        for (const std::size_t whole : one.wholes) names.push_back(name_of(set.annotations[whole]));
-        findings.push_back(
-            {true, "/annotations/" + std::to_string(one.part),
-             name_of(set.annotations[one.part]) + " is a part by the vocabulary, but lies in no whole: not in " + joined(names)});
+        for (const std::size_t whole : one.wholes) names.push_back(name_of(object.annotations.annotations[whole]));
+        findings.push_back({true, "/annotations/" + std::to_string(one.part),
+                            name_of(object.annotations.annotations[one.part]) +
+                                " is a part by the vocabulary, but lies in no whole: not in " + joined(names)});
     }
     return findings;
 }

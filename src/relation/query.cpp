@@ -94,9 +94,9 @@ void gather(const AnnotationQuery::Node& node, std::vector<std::string>& words, 
 class QueryEvaluator {
 public:
     QueryEvaluator(const QueriedObject& object, const std::vector<std::string>& words, const std::vector<std::string>& variables)
-        : object_(object), names_(object.vocabulary), descriptors_(*object.mesh) {
+        : object_(object), names_(object.vocabulary), descriptors_(object.mesh) {
         const TagMatcher tags(object.vocabulary);
-        for (const std::string& word : words) means_[word] = tags.find(*object.set, word);
+        for (const std::string& word : words) means_[word] = tags.find(object.annotations, word);
         for (const std::string& word : variables) {
             const auto& list = means_.at(word);
             choices_ *= static_cast<double>(std::max<std::size_t>(1, list.size()));
@@ -112,7 +112,7 @@ public:
         choose(root, 0);
         QueryAnswer answer;
         answer.holds = holds_;
-        for (const std::size_t i : supporting_) answer.annotations.push_back(object_.set->annotations[i].id);
+        for (const std::size_t i : supporting_) answer.annotations.push_back(object_.annotations.annotations[i].id);
         std::sort(answer.annotations.begin(), answer.annotations.end());
         answer.problems.assign(problems_.begin(), problems_.end());
         return answer;
@@ -178,7 +178,7 @@ private:
         if (node.of[1]->kind == QueryKind::word) {
             const auto at = chosen(node.of[0]->words.front());
             if (!at) return false;
-            const Annotation& annotation = object_.set->annotations[*at];
+            const Annotation& annotation = object_.annotations.annotations[*at];
             const Attribute* attribute = names_.find(annotation, node.of[0]->text);
             if (attribute == nullptr) return false;
             const AllowedAttribute* allowed = names_.allowed(annotation, attribute->name);
@@ -248,7 +248,7 @@ private:
     std::optional<QueryAmount> quantity(std::size_t at, const std::string& name) {
         const auto [known, fresh] = quantities_.try_emplace({at, name});
         if (!fresh) return known->second;
-        const Annotation& annotation = object_.set->annotations[at];
+        const Annotation& annotation = object_.annotations.annotations[at];
         if (const Attribute* attribute = names_.find(annotation, name); attribute != nullptr && !figures_of(*attribute).stale) {
             const Figures figures = figures_of(*attribute);
             if (figures.values.size() == 1) known->second = query_amount(figures.values.front(), figures.unit);
@@ -259,7 +259,7 @@ private:
                     known->second = QueryAmount{value};
             }
         } else if (const auto computed = descriptors_.find(annotation, name); computed && computed->values.size() == 1) {
-            known->second = query_amount(computed->values.front(), unit_of(*computed, object_.set->unit));
+            known->second = query_amount(computed->values.front(), unit_of(*computed, object_.annotations.unit));
         }
         return known->second;
     }
@@ -268,19 +268,19 @@ private:
         if (object_.graph == nullptr) return false;
         const auto a = chosen(node.words[0]), b = node.words.size() > 1 ? chosen(node.words[1]) : std::nullopt;
         if (!a || (node.words.size() > 1 && (!b || a == b))) return false;
-        const int first = object_.set->annotations[*a].id;
+        const int first = object_.annotations.annotations[*a].id;
         for (const Relationship& one : object_.graph->relationships) {
             if (folded(one.type) != folded(node.text)) continue;
             const auto place = [&](int id) { return std::find(one.annotations.begin(), one.annotations.end(), id); };
             if (place(first) == one.annotations.end()) continue;
             if (b) {
-                const int second = object_.set->annotations[*b].id;
+                const int second = object_.annotations.annotations[*b].id;
                 if (place(second) == one.annotations.end() || (one.directed && place(first) != one.annotations.begin())) continue;
                 support.insert({*a, *b});
                 return true;
             }
-            for (std::size_t i = 0; i < object_.set->annotations.size(); ++i)
-                if (place(object_.set->annotations[i].id) != one.annotations.end()) support.insert(i);
+            for (std::size_t i = 0; i < object_.annotations.annotations.size(); ++i)
+                if (place(object_.annotations.annotations[i].id) != one.annotations.end()) support.insert(i);
             return true;
         }
         return false;
@@ -290,8 +290,8 @@ private:
         if (!object_.values_elsewhere) return false;
         const std::vector<std::string> wanted = object_.values_elsewhere({node.text, node.words.front()});
         bool found = false;
-        for (std::size_t i = 0; i < object_.set->annotations.size(); ++i) {
-            const Annotation& annotation = object_.set->annotations[i];
+        for (std::size_t i = 0; i < object_.annotations.annotations.size(); ++i) {
+            const Annotation& annotation = object_.annotations.annotations[i];
             const Attribute* attribute = names_.find(annotation, node.text);
             if (attribute == nullptr) continue;
             const std::string value = value_text(*attribute, names_.allowed(annotation, attribute->name));
@@ -340,7 +340,7 @@ QueryAnswer AnnotationQuery::ask(const QueriedObject& object) const {
 std::vector<std::string> values_of(const QueriedObject& object, const std::string& attribute) {
     const AttributeNames names(object.vocabulary);
     std::set<std::string> values;
-    for (const Annotation& annotation : object.set->annotations)
+    for (const Annotation& annotation : object.annotations.annotations)
         if (const Attribute* one = names.find(annotation, attribute))
             values.insert(value_text(*one, names.allowed(annotation, one->name)));
     return {values.begin(), values.end()};

@@ -28,10 +28,10 @@ struct FaceClasses {
     std::vector<std::uint32_t> of_face;
     std::vector<std::uint32_t> parent{0}, region{0};
 
-    FaceClasses(const Mesh& mesh, const AnnotationSet& set) : of_face(mesh.number_of_faces(), 0) {
+    explicit FaceClasses(AnnotatedMeshView object) : of_face(object.mesh.number_of_faces(), 0) {
         std::vector<std::uint32_t> split_by{0}, split_to{0};  // index of the last region that split a group + 1; the new group
-        for (std::uint32_t r = 0; r < set.annotations.size(); ++r)
-            for (const Index face : set.annotations[r].faces) {
+        for (std::uint32_t r = 0; r < object.annotations.annotations.size(); ++r)
+            for (const Index face : object.annotations.annotations[r].faces) {
                 std::uint32_t& of = of_face[face];
                 if (split_by[of] != r + 1) {
                     split_by[of] = r + 1;
@@ -46,10 +46,10 @@ struct FaceClasses {
     }
     /// Removes slivers between free outlines that coincide up to rounding: groups with less than a millionth of the area of
     /// each region in them. The faces are assigned to the group of their neighbour across the longest edge.
-    void drop_slivers(const Mesh& mesh, const AnnotationSet& set) {
-        std::vector<double> area(parent.size(), 0), of_region(set.annotations.size(), 0);
-        for (const Face f : mesh.faces()) {
-            const double part = face_area(mesh, f);
+    void drop_slivers(AnnotatedMeshView object) {
+        std::vector<double> area(parent.size(), 0), of_region(object.annotations.annotations.size(), 0);
+        for (const Face f : object.mesh.faces()) {
+            const double part = face_area(object.mesh, f);
             area[of_face[f]] += part;
             for (std::uint32_t c = of_face[f]; c != 0; c = parent[c]) of_region[region[c]] += part;
         }
@@ -61,13 +61,14 @@ struct FaceClasses {
             sliver[c] = area[c] < 1e-6 * least;
         }
         for (int round = 0; round < 3; ++round)  // slivers can lie in rows
-            for (const Face f : mesh.faces()) {
+            for (const Face f : object.mesh.faces()) {
                 if (!sliver[of_face[f]]) continue;
                 double longest = -1;
-                for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(f))) {
-                    const Face g = mesh.face(mesh.opposite(h));
+                for (const Halfedge h : object.mesh.halfedges_around_face(object.mesh.halfedge(f))) {
+                    const Face g = object.mesh.face(object.mesh.opposite(h));
                     if (g == Mesh::null_face() || sliver[of_face[g]]) continue;
-                    const double length = CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
+                    const double length = CGAL::squared_distance(object.mesh.point(object.mesh.source(h)),
+                                                                 object.mesh.point(object.mesh.target(h)));
                     if (length > longest) longest = length, of_face[f] = of_face[g];
                 }
             }
@@ -115,8 +116,8 @@ struct Containments {
     std::vector<bool> empty;
 };
 
-Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClasses& classes) {
-    const std::size_t n = set.annotations.size();
+Containments contain(AnnotatedMeshView object, const FaceClasses& classes) {
+    const std::size_t n = object.annotations.annotations.size();
     Containments result{BitTable(n, n), BitTable(n, n), std::vector<bool>(n, false)};
     BitTable& contains = result.contains;
     const std::size_t words = contains.words();
@@ -145,32 +146,33 @@ Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClass
                  1);
 
     // Points and lines in others: the intersection over their vertices; for lines in lines over their edges.
-    const CurveIndex curves(set);
+    const CurveIndex curves(object.annotations);
     Bits not_lines(words, 0);
     for (std::size_t a = 0; a < n; ++a)
-        if (set.annotations[a].type != AnnotationType::line) mark(not_lines, a);
+        if (object.annotations.annotations[a].type != AnnotationType::line) mark(not_lines, a);
     const auto regions_at = [&](Index v) {
         Bits bits(words, 0);
-        const Halfedge first = mesh.halfedge(Vertex(v));
+        const Halfedge first = object.mesh.halfedge(Vertex(v));
         if (first == Mesh::null_halfedge()) return bits;
-        for (const Halfedge h : mesh.halfedges_around_target(first)) {
-            const Face face = mesh.face(h);
+        for (const Halfedge h : object.mesh.halfedges_around_target(first)) {
+            const Face face = object.mesh.face(h);
             if (face == Mesh::null_face()) continue;
             for (std::uint32_t c = classes.of_face[face]; c != 0; c = classes.parent[c]) mark(bits, classes.region[c]);
         }
         return bits;
     };
     for (std::size_t a = 0; a < n; ++a) {
-        const Annotation& annotation = set.annotations[a];
+        const Annotation& annotation = object.annotations.annotations[a];
         const std::vector<Index> vertices =
-            annotation.type == AnnotationType::region ? std::vector<Index>() : touched_vertices(mesh, annotation);
+            annotation.type == AnnotationType::region ? std::vector<Index>() : touched_vertices(object.mesh, annotation);
         result.empty[a] = annotation.type == AnnotationType::region ? annotation.faces.empty() : vertices.empty();
         if (result.empty[a]) contains.zero(a);
         if (annotation.type == AnnotationType::region) continue;
         for (const Index v : vertices) {
             Bits bits = regions_at(v);
             for (const std::size_t holder : curves.at_vertex.at(v))
-                if (annotation.type == AnnotationType::point || set.annotations[holder].type == AnnotationType::line)
+                if (annotation.type == AnnotationType::point ||
+                    object.annotations.annotations[holder].type == AnnotationType::line)
                     mark(bits, holder);
             contains.keep(a, bits);
         }
@@ -183,15 +185,15 @@ Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClass
     return result;
 }
 
-ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containments containments) {
-    const std::size_t n = set.annotations.size();
+ContainmentOrder order_of(AnnotatedMeshView object, Containments containments) {
+    const std::size_t n = object.annotations.annotations.size();
     BitTable& contains = containments.contains;
     ContainmentOrder order;
     order.containers.resize(n), order.direct.resize(n), order.parent.resize(n);
 
     // Equal selections contain each other; ordering them by rank makes the order strict.
     const auto outranks = [&](std::size_t a, std::size_t b) {
-        const Annotation &x = set.annotations[a], &y = set.annotations[b];
+        const Annotation &x = object.annotations.annotations[a], &y = object.annotations.annotations[b];
         return x.all != y.all ? x.all : x.id != y.id ? x.id < y.id : a < b;
     };
     std::vector<bool> grouped(n, false);
@@ -212,7 +214,7 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     std::vector<double> area(n, 0);
     for (std::size_t a = 0; a < n; ++a) {
         if (!containments.empty[a]) contains.clear(a, a);
-        area[a] = area_of(mesh, set.annotations[a].faces);
+        area[a] = area_of(object.mesh, object.annotations.annotations[a].faces);
     }
 
     BitTable farther(n, n);
@@ -224,8 +226,9 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
         for (const std::size_t b : order.containers[a])
             if (!farther.test(a, b)) order.direct[a].push_back(b);
         for (const std::size_t b : order.direct[a])
-            if (!order.parent[a] || std::make_pair(area[b], set.annotations[b].id) <
-                                        std::make_pair(area[*order.parent[a]], set.annotations[*order.parent[a]].id))
+            if (!order.parent[a] ||
+                std::make_pair(area[b], object.annotations.annotations[b].id) <
+                    std::make_pair(area[*order.parent[a]], object.annotations.annotations[*order.parent[a]].id))
                 order.parent[a] = b;
     }
     return order;
@@ -306,18 +309,17 @@ void require_few(const AnnotationSet& set) {
 
 }  // namespace
 
-Topology topology(const Mesh& given_mesh, const AnnotationSet& given) {
-    require_few(given);
-    check_annotations(given, given_mesh, "annotations");
-    const AlongEdges along_edges(given_mesh, given);
-    const Mesh& mesh = along_edges.mesh();
-    const AnnotationSet& set = along_edges.annotations();
-    FaceClasses classes(mesh, set);
-    if (along_edges.cut()) classes.drop_slivers(mesh, set);
-    Containments containments = contain(mesh, set, classes);
+Topology topology(AnnotatedMeshView given) {
+    require_few(given.annotations);
+    check_annotations(given, "annotations");
+    const AlongEdges along_edges(given);
+    const AnnotatedMeshView object = along_edges.object();
+    FaceClasses classes(object);
+    if (along_edges.cut()) classes.drop_slivers(object);
+    Containments containments = contain(object, classes);
     Topology result;
-    result.adjacent = adjacent_pairs(mesh, classes, containments.overlaps);
-    result.order = order_of(mesh, set, std::move(containments));
+    result.adjacent = adjacent_pairs(object.mesh, classes, containments.overlaps);
+    result.order = order_of(object, std::move(containments));
     return result;
 }
 

@@ -44,9 +44,13 @@ std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression) {
     return {"", nullptr};
 }
 
-ExpressionEvaluator::ExpressionEvaluator(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, const AnnotationSet& set,
+ExpressionEvaluator::ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels,
                                          std::string where)
-    : mesh_(mesh), face_labels_(face_labels), set_(set), where_(std::move(where)), bounds_(bounding_box(mesh)) {}
+    : mesh_(object.mesh),
+      face_labels_(face_labels),
+      set_(object.annotations),
+      where_(std::move(where)),
+      bounds_(bounding_box(object.mesh)) {}
 
 void ExpressionEvaluator::fail(const std::string& at, const std::string& what, const std::string& remedy) const {
     fail_input(where_, "at " + at + ": " + what, remedy);

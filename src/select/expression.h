@@ -51,11 +51,10 @@ struct SelectionLevel {
     bool above = true;  ///< true: values inside are at least the level; false: at most
 };
 
-/// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name the file and the JSON pointer.
+/// Evaluates expressions on one object, whose annotations are those made so far. All errors name the file and the JSON pointer.
 class ExpressionEvaluator {
 public:
-    ExpressionEvaluator(const Mesh& mesh, const std::vector<std::int32_t>& face_labels, const AnnotationSet& set,
-                        std::string where);
+    ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels, std::string where);
     /// Sets the cameras and frames; `surroundings.cameras` must outlive the evaluator.
     void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
 

@@ -255,10 +255,10 @@ bool ExpressionEvaluator::keeps_to_edges(const JsonValue& lasso) const {
 CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const {
     SelectionBorders borders;
     add_borders(expression, frame, at, borders);
-    CutSelection result{cut_along_curves(mesh_, set_, borders.curves), {}};
+    CutSelection result{cut_along_curves({mesh_, set_}, borders.curves), {}};
     const std::vector<std::int32_t> labels =
         face_labels_.empty() ? std::vector<std::int32_t>() : result.cut.face_values(face_labels_);
-    ExpressionEvaluator there(result.cut.mesh, labels, result.cut.annotations, where_);
+    ExpressionEvaluator there(result.cut, labels, where_);
     there.look_from(surroundings_);
     there.stand_on(*this, result.cut, borders);
     result.faces = there.faces(expression, frame, at);

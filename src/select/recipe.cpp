@@ -27,7 +27,7 @@ public:
           face_labels_(std::move(start.face_labels)),
           set_(std::move(start.annotations)),
           folder_(std::move(start.folder)),
-          evaluator_(mesh, face_labels_, set_, where_) {
+          evaluator_({mesh, set_}, face_labels_, where_) {
         for (const Annotation& one : set_.annotations) before_.insert(one.id);
     }
 
@@ -46,7 +46,7 @@ public:
             else edit(step);
         }
         if (!set_.object_class.empty()) ensure_root(set_, mesh_);
-        check_annotations(set_, mesh_, where_);
+        check_annotations({mesh_, set_}, where_);
         measure();
         return std::move(set_);
     }
@@ -167,7 +167,7 @@ private:
                              free_id(set_)));
         Annotation annotation = selected(*step.type, step, step.outline);
         annotation.id = step.id;
-        annotation.colour = fresh_colour(mesh_, set_, annotation);
+        annotation.colour = fresh_colour({mesh_, set_}, annotation);
         set_looks(annotation, step);
         note_edges(annotation);
         if (step.attributes != nullptr) add_attributes(annotation, step);

@@ -228,7 +228,7 @@ void doubt_stations(const ConstraintMembers& members, const State& deformed, con
         const double angle = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
         const double distance = direction.cross(middle - point).norm();  // single ones are drawn aside by joints
         if (angle <= *measured.deviations[0].tolerance && distance <= *measured.deviations[1].tolerance) continue;
-        const std::string& unit = members.shape().set.unit;
+        const std::string& unit = members.shape().annotations.unit;
         measured.verdict = Verdict::unknown;
         measured.text += (measured.text.empty() ? "" : "; ") + std::string("plane sections of '") +
                          printable(members.member(0).tag, 60) + (end < 0.9 ? "', in the half next to the reference," : "'") +
@@ -307,7 +307,7 @@ Statement structural_continuity(const MembersPtr& members, const spec::Structura
             start.col(v) = to + rotation * (shape.col(v) - from);
         }
     };
-    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().set.unit};
+    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().annotations.unit};
     statement.measure = [=](const State& deformed) -> Measured {
         const Axis reference = steadiest(deformed.mesh, members->member(1));
         if (!reference.found) return {Verdict::unknown, {}, "the reference has no axis any more: " + reference.reason};

@@ -75,7 +75,7 @@ double diagonal_of(const Constraint& constraint, const Points& points) {
 /// The member that contains all points of the constraint, if any.
 std::optional<int> owner_of(const Constraint& constraint, const HandleSpace& space, const Relationship& relationship) {
     for (const int id : relationship.annotations) {
-        const std::vector<Index> vertices = vertices_of(space.mesh, *space.set.find(id));
+        const std::vector<Index> vertices = vertices_of(space.mesh, *space.annotations.find(id));
         if (std::all_of(constraint.ids().begin(), constraint.ids().end(),
                         [&](int v) { return std::binary_search(vertices.begin(), vertices.end(), static_cast<Index>(v)); }))
             return id;
@@ -158,9 +158,9 @@ std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const Relation
     return list;
 }
 
-CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const CageOptions& options, const std::optional<MirrorPlane>& mirror,
-                                 const RelationOptions& tolerances, const std::string& graph_name) {
+CageForConstraints make_cage_for(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
+                                 const std::optional<MirrorPlane>& mirror, const RelationOptions& tolerances,
+                                 const std::string& graph_name) {
     struct Try {
         double density, vertices, offset;  ///< factors of the options
     };
@@ -169,7 +169,8 @@ CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, con
     for (const Relationship& relationship : graph.relationships)
         if (relationship.is_constraint && relationship.weight > 0)
             for (const int id : relationship.annotations)
-                if (const Annotation* part = set.find(id); part != nullptr && !is_whole(mesh, *part)) parts.insert(id);
+                if (const Annotation* part = object.annotations.find(id); part != nullptr && !is_whole(object.mesh, *part))
+                    parts.insert(id);
     const auto distance = [](const std::vector<ConstraintReach>& list) {
         std::pair<std::size_t, double> off{0, 0};
         for (const ConstraintReach& one : list) {
@@ -186,10 +187,10 @@ CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, con
         how.offset *= offset;
         how.vertices = static_cast<std::uint64_t>(vertices * static_cast<double>(options.vertices));
         CageForConstraints one{
-            make_cage(mesh, how, factors.empty() ? CageDensity() : annotation_density(mesh, set, factors), mirror), {}};
-        const Coordinates coordinates = compute_coordinates("mean-value", one.made.cage, mesh);
+            make_cage(object.mesh, how, factors.empty() ? CageDensity() : annotation_density(object, factors), mirror), {}};
+        const Coordinates coordinates = compute_coordinates("mean-value", one.made.cage, object.mesh);
         one.reach =
-            cage_reach({mesh, set, &one.made.cage, &coordinates}, graph, nullptr, "a stretch by a tenth", tolerances, graph_name);
+            cage_reach({object, &one.made.cage, &coordinates}, graph, nullptr, "a stretch by a tenth", tolerances, graph_name);
         const auto off = distance(one.reach);
         if (!best || off < distance(best->reach)) best = std::move(one);
         if (off.first == 0) break;

@@ -32,7 +32,7 @@ Points columns_at(const Points& points, const std::vector<Index>& vertices) {
 void ConstraintMembers::fail(const std::string& what, const std::string& remedy) const { fail_input(place_, what, remedy); }
 
 const Annotation& ConstraintMembers::member(std::size_t i) const {
-    const Annotation* annotation = shape_.set.find(relationship_.annotations.at(i));
+    const Annotation* annotation = shape_.annotations.find(relationship_.annotations.at(i));
     if (annotation == nullptr)
         fail(fmt::format("there is no annotation {}", relationship_.annotations[i]), "see 'annotation list'");
     return *annotation;
@@ -67,8 +67,8 @@ void ConstraintMembers::need_region(std::size_t i) const {
 
 Vector3d ConstraintMembers::up(const std::optional<Vector3d>& stated) const {
     if (stated) return *stated;
-    if (!shape_.set.up) fail("no direction is up", "give direction in the constraint, or up in the annotations");
-    return Vector3d((*shape_.set.up)[0], (*shape_.set.up)[1], (*shape_.set.up)[2]).normalized();
+    if (!shape_.annotations.up) fail("no direction is up", "give direction in the constraint, or up in the annotations");
+    return Vector3d((*shape_.annotations.up)[0], (*shape_.annotations.up)[1], (*shape_.annotations.up)[2]).normalized();
 }
 
 const Measure& ConstraintMembers::measure(const MeasureName& name, std::size_t i) const {

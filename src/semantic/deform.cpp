@@ -111,26 +111,26 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
     return options.space == Space::automatic ? deform_automatically(space, graph, options, solve) : solve(graph, options);
 }
 
-DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const std::vector<Point>& points, const std::vector<bool>& held, const DeformOptions& options,
-                                 const RelationOptions& tolerances, const std::string& graph_name) {
+DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
+                                 const std::vector<bool>& held, const DeformOptions& options, const RelationOptions& tolerances,
+                                 const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");
     if (options.space != DeformOptions::Space::mesh)
         fail_usage("there is no cage here", "solve over the mesh's points: space mesh");
-    if (points.size() != mesh.number_of_vertices() || held.size() != points.size())
+    if (points.size() != object.mesh.number_of_vertices() || held.size() != points.size())
         fail_usage("positions are given for " + std::to_string(points.size()) + " vertices and flags for " +
-                       std::to_string(held.size()) + ", and the mesh has " + std::to_string(mesh.number_of_vertices()),
+                       std::to_string(held.size()) + ", and the mesh has " + std::to_string(object.mesh.number_of_vertices()),
                    "give one of each for every vertex");
-    const HandleSpace space{mesh, set};
+    const HandleSpace space{object};
     return Deformer(space, graph, options, tolerances, "the fitted shape", graph_name).restore(points, held);
 }
 
-void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where) {
-    const Points rest = columns_of(mesh);
-    const Mesh same = mesh;
+void check_constraint(AnnotatedMeshView object, const Relationship& relationship, const std::string& where) {
+    const Points rest = columns_of(object.mesh);
+    const Mesh same = object.mesh;
     const semantic::State state(same);
-    const auto statement = semantic::understand({mesh, set, rest}, relationship, {}, where);
+    const auto statement = semantic::understand({object, rest}, relationship, {}, where);
     if (statement.unknown.empty()) static_cast<void>(statement.lower(state, state));
 }
 

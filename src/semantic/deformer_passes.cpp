@@ -56,7 +56,7 @@ std::vector<std::size_t> Deformer::follow_steps(const Edit& edit) {
 }
 
 void Deformer::understand(DeformResult& result) {
-    const semantic::Shape shape{space_.mesh, space_.set, rest_};
+    const semantic::Shape shape{space_, rest_};
     std::map<Index, int> reattached;  // vertex -> feature
     for (const Relationship& relationship : graph_.relationships) {
         if (!relationship.is_constraint) continue;

@@ -45,7 +45,7 @@ void Deformer::begin_sizes(const std::vector<bool>& active) {
             for (const semantic::Sized& part : statements_[i].sized) parts.push_back(&part);
     semantic::State edited(edited_mesh_);
     edited.asked = asked_;
-    sizes_.emplace(std::move(parts), semantic::Shape{space_.mesh, space_.set, rest_}, edited);
+    sizes_.emplace(std::move(parts), semantic::Shape{space_, rest_}, edited);
 }
 
 bool Deformer::lower(const std::vector<bool>& active, Outcome& outcome) {
@@ -129,7 +129,7 @@ void Deformer::solve_mesh(Outcome& outcome) {
     for (const Relationship& relationship : graph_.relationships)
         if (relationship.is_constraint)
             for (const int id : relationship.annotations)
-                for (const Index v : vertices_of(space_.mesh, *space_.set.find(id))) members[v] = true;
+                for (const Index v : vertices_of(space_.mesh, *space_.annotations.find(id))) members[v] = true;
     const std::vector<bool> handles = handles_on_mesh();
     std::vector<int> free, beside, held, yielding;
     for (const Vertex v : space_.mesh.vertices()) {

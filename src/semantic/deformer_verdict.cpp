@@ -48,7 +48,7 @@ void Deformer::add_surface(DeformResult& result) const {
         for (const std::string& reason : reasons_against_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
             result.objections.push_back("the cage is not fit for deformation: " + reason);
     if (!result.solved) return;
-    result.distorted = semantic::distorted_parts(space_.mesh, space_.set, expected(result), edited_mesh_, now, options_);
+    result.distorted = semantic::distorted_parts(space_, expected(result), edited_mesh_, now, options_);
     const double diagonal = box_diagonal(space_.mesh);
     for (const DistortedPart& part : result.distorted) {
         const std::string who = "'" + part.tag + "', which was not to change, ";
@@ -71,7 +71,7 @@ semantic::Expected Deformer::expected(const DeformResult& result) const {
         const bool enforced = statements_[i].hard && !statements_[i].sized.empty();
         if (!report.used || (report.before == Verdict::holds && !enforced)) continue;
         for (const int id : report.annotations)
-            for (const Index v : vertices_of(space_.mesh, *space_.set.find(id))) {
+            for (const Index v : vertices_of(space_.mesh, *space_.annotations.find(id))) {
                 flags.change[v] = true;
                 if (statements_[i].resizes) flags.size[v] = true;
             }
@@ -133,7 +133,7 @@ void Deformer::report(DeformResult& result, const Outcome& outcome) const {
         if (!report.hard) report.cost = outcome.residuals[i].cost, report.cost_before = outcome.residuals[i].cost_before;
         if (report.hard && options_.space == DeformOptions::Space::cage && report.verdict != Verdict::holds)
             report.text += (report.text.empty() ? "" : "; ") + std::string("off by ") + std::to_string(report.distance) +
-                           (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
+                           (space_.annotations.unit.empty() ? "" : " ") + space_.annotations.unit +
                            " at its worst point, with these weights in this cage";
         report.low_level = list.size();
         report.minimum = list.front();

@@ -51,20 +51,20 @@ std::vector<bool> around(const Mesh& mesh, const std::vector<bool>& flagged, dou
 
 }  // namespace
 
-std::vector<DistortedPart> distorted_parts(const Mesh& rest, const AnnotationSet& set, const Expected& expected,
-                                           const Mesh& edited, const Mesh& now, const DeformOptions& options) {
+std::vector<DistortedPart> distorted_parts(AnnotatedMeshView rest, const Expected& expected, const Mesh& edited, const Mesh& now,
+                                           const DeformOptions& options) {
     const Points from = columns_of(edited), to = columns_of(now);
     constexpr double most_thin = 0.05;  // at the outline of a part rays may end in another part
-    const double diagonal = box_diagonal(rest), limit = options.distortion * diagonal;
-    const std::vector<bool> giving = around(rest, expected.change, options.spread * diagonal);
+    const double diagonal = box_diagonal(rest.mesh), limit = options.distortion * diagonal;
+    const std::vector<bool> giving = around(rest.mesh, expected.change, options.spread * diagonal);
     const auto moved = [&](const std::vector<Index>& vertices) {
         return std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return (to.col(v) - from.col(v)).norm() > limit; });
     };
     std::vector<bool> thin;
     std::vector<DistortedPart> parts;
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : rest.annotations.annotations) {
         if (annotation.faces.empty()) continue;
-        const std::vector<Index> all = vertices_of(rest, annotation);
+        const std::vector<Index> all = vertices_of(rest.mesh, annotation);
         if (!moved(all)) continue;
         std::vector<Index> own;
         std::size_t changed = 0, resized = 0;
@@ -80,7 +80,7 @@ std::vector<DistortedPart> distorted_parts(const Mesh& rest, const AnnotationSet
             part.largest = off.maxCoeff();
         }
         if (2 * resized <= all.size()) {
-            if (thin.empty()) thin = thin_faces(rest, edited, now);
+            if (thin.empty()) thin = thin_faces(rest.mesh, edited, now);
             double area = 0, of_thin = 0;
             for (const Index f : annotation.faces) {
                 area += face_area(now, Face(f));

@@ -1,6 +1,7 @@
 // Detects parts that should have kept their shape and were distorted by solving.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/semantic/deform.h"
 #include "ostraka/solver/constraint.h"
 
@@ -17,7 +18,7 @@ struct Expected {
 /// and without vertices within `options.spread` of those expected to change, where the surface has to give way. Regions not
 /// expected to change in size are distorted if they have become thin. `now`: result of solving from `edited`. Sorted from worst
 /// to best.
-std::vector<DistortedPart> distorted_parts(const Mesh& rest, const AnnotationSet& set, const Expected& expected,
-                                           const Mesh& edited, const Mesh& now, const DeformOptions& options);
+std::vector<DistortedPart> distorted_parts(AnnotatedMeshView rest, const Expected& expected, const Mesh& edited, const Mesh& now,
+                                           const DeformOptions& options);
 
 }  // namespace ostraka::semantic

@@ -172,7 +172,7 @@ private:
         const int* id = std::get_if<int>(&name);
         const std::string* tag = std::get_if<std::string>(&name);
         const Annotation* match = nullptr;
-        for (const Annotation& annotation : space_.set.annotations) {
+        for (const Annotation& annotation : space_.annotations.annotations) {
             if (id != nullptr ? annotation.id != *id : annotation.tag != *tag) continue;
             if (match != nullptr) fail(fmt::format("several annotations are tagged '{}'", annotation.tag), "use the id");
             match = &annotation;

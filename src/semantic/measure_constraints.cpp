@@ -59,34 +59,33 @@ void check_rest(const Mesh& mesh, const Mesh& rest) {
 
 }  // namespace
 
-std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+std::vector<ConstraintReport> measure_constraints(AnnotatedMeshView object, const RelationGraph& graph,
                                                   const std::vector<Point>& points, const RelationOptions& tolerances,
                                                   const std::string& graph_name) {
     check_options(tolerances, "constraints");
-    const Mesh there = with_points(mesh, points);
+    const Mesh there = with_points(object.mesh, points);
     const State state(there);
-    const Points rest = columns_of(mesh);
+    const Points rest = columns_of(object.mesh);
     std::vector<ConstraintReport> reports;
     for (const Relationship& relationship : graph.relationships)
-        if (relationship.is_constraint)
-            reports.push_back(measured({mesh, set, rest}, state, relationship, tolerances, graph_name));
+        if (relationship.is_constraint) reports.push_back(measured({object, rest}, state, relationship, tolerances, graph_name));
     return reports;
 }
 
-std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                                const Mesh* rest, const RelationOptions& tolerances,
-                                                const std::string& graph_name) {
+std::vector<ConstraintReport> judge_constraints(AnnotatedMeshView object, const RelationGraph& graph, const Mesh* rest,
+                                                const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(tolerances, "constraints");
-    if (rest != nullptr) check_rest(mesh, *rest);
+    if (rest != nullptr) check_rest(object.mesh, *rest);
     // Only the points of the shape at rest are used; the faces are those of the mesh.
-    const Mesh then = rest == nullptr ? mesh : with_points(mesh, points_of(*rest));
-    const State state(mesh);
+    const Mesh then = rest == nullptr ? object.mesh : with_points(object.mesh, points_of(*rest));
+    const State state(object.mesh);
     const Points points = columns_of(then);
     std::vector<ConstraintReport> reports;
     for (const Relationship& relationship : graph.relationships) {
         if (!relationship.is_constraint) continue;
         try {
-            reports.push_back(measured({then, set, points, rest == nullptr}, state, relationship, tolerances, graph_name));
+            reports.push_back(
+                measured({{then, object.annotations}, points, rest == nullptr}, state, relationship, tolerances, graph_name));
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled) throw;
             ConstraintReport& report = reports.emplace_back(semantic::report_of(relationship, {}));
@@ -96,10 +95,9 @@ std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const Annotati
     return reports;
 }
 
-std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                               const Mesh* rest, const RelationOptions& tolerances,
-                                               const std::string& graph_name) {
-    const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
+std::vector<RelationCheck> judge_relationships(AnnotatedMeshView object, const RelationGraph& graph, const Mesh* rest,
+                                               const RelationOptions& tolerances, const std::string& graph_name) {
+    const std::vector<ConstraintReport> constraints = judge_constraints(object, graph, rest, tolerances, graph_name);
     // A constraint that was ignored may still be measured as a relation.
     RelationGraph relations;
     relations.relationships = graph.relationships;
@@ -109,7 +107,7 @@ std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const Annotatio
         one.is_constraint = false;
         one.constraint.clear();
     }
-    std::vector<RelationCheck> checks = check_relations(mesh, set, relations, tolerances);
+    std::vector<RelationCheck> checks = check_relations(object, relations, tolerances);
     std::size_t next = 0;
     for (std::size_t i = 0; i < checks.size(); ++i) {
         if (!graph.relationships[i].is_constraint) continue;

@@ -132,7 +132,7 @@ public:
     [[nodiscard]] std::string where(const State& now, double factor) const {
         const std::vector<int> way = gauge_.way(now);
         const double length = gauge_.value(now), off = length * (factor - 1);
-        const std::string& unit = members_->shape().set.unit;
+        const std::string& unit = members_->shape().annotations.unit;
         return "vertices " + std::to_string(way.front()) + " and " + std::to_string(way.back()) + " are " + digits(length, 6) +
                " apart, " + digits(std::abs(off), 3) + (unit.empty() ? "" : " ") + unit + (off > 0 ? " too near" : " too far");
     }

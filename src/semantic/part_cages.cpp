@@ -8,8 +8,8 @@
 
 namespace ostraka {
 
-std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                          std::vector<int> annotations, const std::string& graph_name) {
+std::optional<MirrorPlane> symmetry_plane(AnnotatedMeshView object, const RelationGraph& graph, std::vector<int> annotations,
+                                          const std::string& graph_name) {
     std::sort(annotations.begin(), annotations.end());
     for (const Relationship& relationship : graph.relationships) {
         const RelationType* type = find_relation_type(relationship.type);
@@ -19,7 +19,7 @@ std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet&
         if (members != annotations) continue;
         std::optional<PointAndDirection> plane = relationship.parameters.plane;
         if (!plane) {
-            const RelationCheck check = RelationMeter(mesh, set).measure(relationship);
+            const RelationCheck check = RelationMeter(object).measure(relationship);
             plane = check.parameters.plane;
             if (!plane)
                 fail_input(graph_name + ", relationship " + std::to_string(relationship.id),
@@ -32,17 +32,17 @@ std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet&
     return std::nullopt;
 }
 
-std::vector<PartCage> make_part_cages(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& parts,
-                                      const CageOptions& options, const RelationGraph& graph, const std::string& graph_name) {
+std::vector<PartCage> make_part_cages(AnnotatedMeshView object, const std::vector<std::size_t>& parts, const CageOptions& options,
+                                      const RelationGraph& graph, const std::string& graph_name) {
     std::vector<PartCage> cages(parts.size());
     std::vector<Mesh> part;
-    for (const std::size_t place : parts) part.push_back(cut_out_part(mesh, set, {place}, {}, true).mesh);
+    for (const std::size_t place : parts) part.push_back(cut_out_part(object, {place}, {}, true).mesh);
     std::vector<bool> done(parts.size(), false);
-    const auto id_of = [&](std::size_t i) { return set.annotations[parts[i]].id; };
+    const auto id_of = [&](std::size_t i) { return object.annotations.annotations[parts[i]].id; };
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (done[i]) continue;
         for (std::size_t j = i + 1; j < parts.size() && !done[i]; ++j) {
-            const auto plane = done[j] ? std::nullopt : symmetry_plane(mesh, set, graph, {id_of(i), id_of(j)}, graph_name);
+            const auto plane = done[j] ? std::nullopt : symmetry_plane(object, graph, {id_of(i), id_of(j)}, graph_name);
             if (!plane) continue;
             const Mesh other = mirror_image(part[j], *plane);
             cages[i].made = make_cage(together({&part[i], &other}), options);
@@ -50,7 +50,7 @@ std::vector<PartCage> make_part_cages(const Mesh& mesh, const AnnotationSet& set
             cages[j].made.cage = mirror_image(cages[i].made.cage, *plane);
             done[i] = done[j] = true;
         }
-        if (!done[i]) cages[i].made = make_cage(part[i], options, {}, symmetry_plane(mesh, set, graph, {id_of(i)}, graph_name));
+        if (!done[i]) cages[i].made = make_cage(part[i], options, {}, symmetry_plane(object, graph, {id_of(i)}, graph_name));
         done[i] = true;
     }
     for (std::size_t i = 0; i < parts.size(); ++i) cages[i].check = check_cage(cages[i].made.cage, part[i]);

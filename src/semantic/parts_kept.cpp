@@ -19,7 +19,7 @@ Statement nothing_to_solve(const MembersPtr& members, const RelationOptions& tol
     graph.relationships.back().is_constraint = false;
     graph.relationships.back().constraint.clear();
     graph.relationships.back().directed = members->relationship().type == "containment";
-    const RelationCheck check = check_relations(members->shape().mesh, members->shape().set, graph, tolerances).at(0);
+    const RelationCheck check = check_relations(members->shape(), graph, tolerances).at(0);
     statement.measure = [check](const State&) -> Measured {
         return {check.verdict, check.parameters.deviations,
                 check.text.empty() ? "selections do not change with the shape" : check.text};
@@ -50,7 +50,8 @@ Statement outline_at_angle(const MembersPtr& members, const spec::Upward& spec, 
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
         Vector3d normal = normal_of(members->shape().rest, shared);
-        if (const auto plane = RelationMeter(now.mesh, members->shape().set, tolerances).measure(stated).parameters.plane)
+        if (const auto plane =
+                RelationMeter({now.mesh, members->shape().annotations}, tolerances).measure(stated).parameters.plane)
             normal = motion_back(*members, shared, now).rotation *
                      Vector3d(plane->direction[0], plane->direction[1], plane->direction[2]);
         return only(
@@ -230,7 +231,7 @@ Statement keep_position(const MembersPtr& members, const spec::KeepPosition& spe
         const Vector3d way = place - mean_of(vertices, edited.points);
         return only(members->make(kinds::Closeness{columns_at(edited.points, vertices).colwise() + way}, ids_of(vertices)));
     };
-    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().set.unit};
+    const Deviation distance{"distance", 0.0, length_tolerance(*members, tolerances), members->shape().annotations.unit};
     statement.measure = [=](const State& deformed) {
         Deviation off = distance;
         off.value = (mean_of(vertices, deformed.points) - place).norm();

@@ -22,7 +22,7 @@ Statement all_on(const ConstraintKind& kind, const MembersPtr& members, const Re
     statement.lower = [members, kind](const State&, const State&) { return only(members->make(kind, members->all_vertices())); };
     const std::shared_ptr<const Constraint> together = members->make(kind, members->all_vertices());
     const Deviation distance{"rms distance", 0.0, members->tolerance("distance", length_tolerance(*members, tolerances)),
-                             members->shape().set.unit};
+                             members->shape().annotations.unit};
     statement.measure = [together, distance](const State& deformed) {
         Deviation rms = distance;
         rms.value = std::sqrt(together->squared_distance(deformed.points) / static_cast<double>(together->ids().size()));
@@ -119,7 +119,8 @@ Statement mirrored_alone(const MembersPtr& members, const RelationOptions& toler
         for (const Vector3d& gap : partners.gaps) sum += gap.squaredNorm(), ++count;
     }
     const Deviation rms{"distance", std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, count))),
-                        members->tolerance("distance", length_tolerance(*members, tolerances)), members->shape().set.unit};
+                        members->tolerance("distance", length_tolerance(*members, tolerances)),
+                        members->shape().annotations.unit};
     statement.measure = [rms](const State&) { return verdict_of({rms}); };
     return statement;
 }
@@ -135,7 +136,7 @@ Statement adjacent_alone(const MembersPtr& members, double tolerance) {
         gap = std::min(gap, std::sqrt(tree.nearest(members->shape().mesh.point(Vertex(v))).squared));
     }
     Statement statement;
-    statement.measure = [measured = verdict_of({{"gap", gap, tolerance, members->shape().set.unit}})](const State&) {
+    statement.measure = [measured = verdict_of({{"gap", gap, tolerance, members->shape().annotations.unit}})](const State&) {
         return measured;
     };
     return statement;
@@ -159,7 +160,7 @@ Statement mirror_symmetry(const MembersPtr& members, const spec::MirrorSymmetry&
     if (!given) {
         Relationship stated = members->relationship();
         stated.is_constraint = false;
-        const RelationCheck check = RelationMeter(members->shape().mesh, members->shape().set, tolerances).measure(stated);
+        const RelationCheck check = RelationMeter(members->shape(), tolerances).measure(stated);
         if (!check.parameters.plane) members->fail("has no plane of symmetry: " + check.text, "give direction and point");
         const auto& plane = *check.parameters.plane;
         given = kinds::MirrorPlane{{plane.direction[0], plane.direction[1], plane.direction[2]},
@@ -182,7 +183,7 @@ Statement mirror_symmetry(const MembersPtr& members, const spec::MirrorSymmetry&
             list.push_back(members->as_edited(*leader, edited));
         return list;
     };
-    const Deviation distance{"distance", 0.0, tolerance, members->shape().set.unit};
+    const Deviation distance{"distance", 0.0, tolerance, members->shape().annotations.unit};
     statement.measure = [=](const State& deformed) {
         Deviation rms = distance;
         double sum = 0;
@@ -225,7 +226,7 @@ Statement adjacency(const MembersPtr& members, const spec::None&, const Relation
             list.push_back(members->make(kinds::EdgeStrain{}, {pair[0], pair[1]}, 1.0 / static_cast<double>(pairs.size())));
         return list;
     };
-    const Deviation opened{"change of the gap", 0.0, length_tolerance(*members, tolerances), members->shape().set.unit};
+    const Deviation opened{"change of the gap", 0.0, length_tolerance(*members, tolerances), members->shape().annotations.unit};
     const Points rest = members->shape().rest;
     statement.measure = [=](const State& deformed) {
         Deviation worst = opened;

@@ -82,7 +82,7 @@ Seating seat_ornaments(const HandleSpace& space, const RelationGraph& graph) {
         result.graph.relationships.push_back(relationship);
         if (!(relationship.weight > 0)) continue;
         for (const int id : relationship.annotations)
-            if (const Annotation* part = space.set.find(id); part != nullptr && !is_whole(space.mesh, *part))
+            if (const Annotation* part = space.annotations.find(id); part != nullptr && !is_whole(space.mesh, *part))
                 for (const Index v : vertices_of(space.mesh, *part)) ++constraints_at[v];
     }
     for (Relationship& relationship : result.graph.relationships) {
@@ -90,7 +90,7 @@ Seating seat_ornaments(const HandleSpace& space, const RelationGraph& graph) {
         const auto parameters = seated_parameters(relationship);
         if (!parameters) continue;
         const auto fits = [&](int id) {
-            const Annotation* part = space.set.find(id);
+            const Annotation* part = space.annotations.find(id);
             if (part == nullptr || !is_ornament(space.mesh, *part)) return false;
             const auto vertices = vertices_of(space.mesh, *part);
             return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return constraints_at[v] == 1; });

@@ -186,7 +186,7 @@ Statement keep_shape(const MembersPtr& members, const spec::KeepShape& spec, con
     // Tolerances are relative to the size of each part, since parts are small compared to the object.
     std::vector<double> tolerance;
     for (const auto& part : *parts) tolerance.push_back(tolerances.distance * members->size_at_rest(*part));
-    statement.measure = [=, unit = members->shape().set.unit](const State& deformed) {
+    statement.measure = [=, unit = members->shape().annotations.unit](const State& deformed) {
         Deviation worst{"rms distance from its shape", 0.0, tolerance.front(), unit};
         for (std::size_t i = 0; i < parts->size(); ++i) {
             const Constraint& part = *(*parts)[i];
@@ -243,7 +243,7 @@ Statement same_level(const MembersPtr& members, const spec::SameLevel& spec, con
         };
     }
     const Deviation height{as_at_rest ? "change of the heights against each other" : "height", 0.0, tolerance,
-                           members->shape().set.unit};
+                           members->shape().annotations.unit};
     statement.measure = [=](const State& deformed) {
         Deviation worst = height;
         worst.value = apart(*references, up, deformed, places);

@@ -88,7 +88,7 @@ std::function<Measured(const State&)> as_related(const MembersPtr& members, Rela
         RelationOptions at_rest = given;
         if (const double now = box_diagonal(deformed.mesh); now > 0)
             at_rest.distance = std::min(1.0, given.distance * diagonal / now);
-        const RelationCheck check = RelationMeter(deformed.mesh, members->shape().set, at_rest).measure(stated);
+        const RelationCheck check = RelationMeter({deformed.mesh, members->shape().annotations}, at_rest).measure(stated);
         return {check.verdict, check.parameters.deviations, check.text};
     };
 }

@@ -4,6 +4,7 @@
 
 #include "semantic/reattachment.h"
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/relation/check.h"
 #include "ostraka/semantic/deform.h"
@@ -15,9 +16,7 @@
 namespace ostraka::semantic {
 
 /// The shape on which constraints are stated. `rest`: the mesh's points before the edit, one per column.
-struct Shape {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct Shape : AnnotatedMeshView {
     const Points& rest;
     /// There is no rest state: the mesh is judged by the explicit parameters of the constraint only.
     bool alone = false;

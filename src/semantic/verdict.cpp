@@ -35,7 +35,7 @@ EditFollowed followed_edit(const HandleSpace& space, const EditState& last, cons
     if (result.vertices > 0) result.mean /= static_cast<double>(result.vertices);
     if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
     const double diagonal = box_diagonal(space.mesh);
-    for (const Annotation& annotation : space.set.annotations) {
+    for (const Annotation& annotation : space.annotations.annotations) {
         double sum = 0, largest = 0;
         std::size_t all = 0, others = 0;
         for (const Index v : vertices_of(space.mesh, annotation)) {

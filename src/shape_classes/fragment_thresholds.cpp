@@ -83,7 +83,7 @@ std::optional<std::array<double, 2>> worst_piece(const Landmarks& template_landm
 std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
                                                const std::vector<ClassQuantity>& quantities) {
     std::vector<Point> template_points, member_points;
-    for (const Annotation& annotation : class_template.set.annotations)
+    for (const Annotation& annotation : class_template.annotations.annotations)
         if (annotation.type == AnnotationType::point && annotation.points.size() == 1) {
             template_points.push_back(class_template.mesh.point(Vertex(annotation.points.front())));
             member_points.push_back(points[annotation.points.front()]);

@@ -35,7 +35,7 @@ WholeObject read_member(const Path& file) {
 ClassTemplate class_template(const Template& package) {
     static const AnnotationSet no_annotations;
     static const RelationGraph no_relations;
-    return {package.mesh->mesh, package.annotations ? *package.annotations : no_annotations,
+    return {{package.mesh->mesh, package.annotations ? *package.annotations : no_annotations},
             package.graph ? *package.graph : no_relations};
 }
 

@@ -270,14 +270,14 @@ std::set<std::string> forget_numbers(AnnotationSet& a, AnnotationSet& b) {
 
 }  // namespace
 
-MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
+MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const MemberFitOptions& options) {
     check_options(options, "fit");
-    if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "check that it is the right file");
+    if (!(surface_area(object.mesh) > 0)) fail_input("template", "has no area", "check that it is the right file");
     if (!(surface_area(member.mesh) > 0)) fail_input(member.name, "has no area", "check that it is the right file");
     MemberFit best;
     std::vector<Place> places;
     if (!options.ignore_landmarks) {
-        const auto pairs = common_landmarks(mesh, set, member.mesh, member.annotations, &best.notes);
+        const auto pairs = common_landmarks(object, member, &best.notes);
         if (pairs.size() >= 3) {
             const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
             const FragmentPlacement& fragment_placement = placement.fragments.front();
@@ -294,12 +294,12 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         }
     }
     if (places.empty()) {
-        places = places_by_surface(mesh, member, options);
+        places = places_by_surface(object.mesh, member, options);
         best.placed_by = "surface";
     }
     AnnotationSet template_annotations, member_annotations;  // with common tags instead of numbered ones
-    if (!set.annotations.empty() && !member.annotations.annotations.empty()) {
-        template_annotations = set;
+    if (!object.annotations.annotations.empty() && !member.annotations.annotations.empty()) {
+        template_annotations = object.annotations;
         member_annotations = member.annotations;
         for (const std::string& tag : forget_numbers(template_annotations, member_annotations))
             best.notes.push_back(
@@ -307,24 +307,24 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
     }
     double minimum = std::numeric_limits<double>::infinity();
     for (const Place& place : places) {
-        const Mesh scaled = scaled_by(mesh, place.scale);
+        const Mesh scaled = scaled_by(object.mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
-        placed.matches =
-            match_annotations(scaled, template_annotations, member.mesh, member_annotations, place.pose, {}, options.annotations);
+        placed.matches = match_annotations({scaled, template_annotations}, {member.mesh, member_annotations}, place.pose, {},
+                                           options.annotations);
         std::vector<PlacedFragment> placed_fragments;
         placed_fragments.push_back(std::move(placed));
-        const NonRigidFit fit = fit_template(scaled, set, placed_fragments, options.fit);
-        const Mesh fitted = with_points(mesh, fit.points);
-        const auto outer =
-            without_inner_walls(fitted, placed_fragments.front().mesh, options.observed * place.scale * box_diagonal(mesh));
-        const Residuals residuals =
-            residuals_of(mesh, fitted, outer ? outer->first : placed_fragments.front().mesh, place.scale, options.observed);
+        const NonRigidFit fit = fit_template({scaled, object.annotations}, placed_fragments, options.fit);
+        const Mesh fitted = with_points(object.mesh, fit.points);
+        const auto outer = without_inner_walls(fitted, placed_fragments.front().mesh,
+                                               options.observed * place.scale * box_diagonal(object.mesh));
+        const Residuals residuals = residuals_of(object.mesh, fitted, outer ? outer->first : placed_fragments.front().mesh,
+                                                 place.scale, options.observed);
         const double cost = std::hypot(residuals.numbers.distance, residuals.numbers.back);
         if (!(cost < minimum)) continue;
         minimum = cost;
         best.scale = place.scale;
         best.residuals = residuals.numbers;
-        best.contact_distance = options.observed * place.scale * box_diagonal(mesh);
+        best.contact_distance = options.observed * place.scale * box_diagonal(object.mesh);
         best.points.clear();
         best.cavity = outer ? outer->second : 0;
         best.outer = outer ? std::make_shared<const Mesh>(outer->first) : nullptr;

@@ -57,10 +57,10 @@ FaceMoments part_moments(const Mesh& mesh, const Annotation& part, const Vector3
     return moments;
 }
 
-AnnotationSet parts_of(const Mesh& mesh, const AnnotationSet& set) {
+AnnotationSet parts_of(AnnotatedMeshView object) {
     AnnotationSet parts;
-    for (const Annotation& annotation : set.annotations)
-        if (is_part(mesh, annotation)) parts.annotations.push_back(annotation);
+    for (const Annotation& annotation : object.annotations.annotations)
+        if (is_part(object.mesh, annotation)) parts.annotations.push_back(annotation);
     return parts;
 }
 
@@ -70,7 +70,8 @@ using Overlap = std::map<std::pair<std::int32_t, std::int32_t>, double>;
 Overlap overlap_of(const ClassTemplate& class_template, const Mesh& fitted, const AnnotationSet& parts, const WholeObject& member,
                    const AnnotationSet& member_parts) {
     Overlap overlap;
-    const auto transferred_labels = labels_of(class_template.mesh, parts), member_labels = labels_of(member.mesh, member_parts);
+    const auto transferred_labels = labels_of({class_template.mesh, parts}),
+               member_labels = labels_of({member.mesh, member_parts});
     const SurfaceSearch search(fitted);
     for (const Face face : member.mesh.faces()) {
         const std::int32_t label = transferred_labels[search.closest(centroid(member.mesh, face)).face];
@@ -104,14 +105,14 @@ bool is_part(const Mesh& mesh, const Annotation& annotation) {
 
 std::vector<ClassQuantity> part_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
                                            const WholeObject* member) {
-    const AnnotationSet parts = parts_of(class_template.mesh, class_template.set);
+    const AnnotationSet parts = parts_of(class_template);
     std::vector<ClassQuantity> quantities;
     if (parts.annotations.empty()) return quantities;
     const Mesh fitted = with_points(class_template.mesh, points);
     std::map<std::int32_t, std::int32_t> counterpart_labels;
     AnnotationSet own_parts;
     if (member != nullptr) {
-        own_parts = parts_of(member->mesh, member->annotations);
+        own_parts = parts_of(*member);
         if (!own_parts.annotations.empty())
             counterpart_labels = counterparts(overlap_of(class_template, fitted, parts, *member, own_parts));
     }
@@ -140,7 +141,7 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& class_template, 
         if (value && std::isfinite(*value)) quantity.value = value;
     };
     std::set<std::pair<std::int32_t, std::int32_t>> neighbours;
-    const auto labels = labels_of(class_template.mesh, parts);
+    const auto labels = labels_of({class_template.mesh, parts});
     for (const Edge edge : class_template.mesh.edges()) {
         if (class_template.mesh.is_border(edge)) continue;
         const std::int32_t a = labels[class_template.mesh.face(class_template.mesh.halfedge(edge, 0))],
@@ -172,8 +173,7 @@ bool is_size_of_part(const ClassQuantity& quantity) { return !quantity.name.star
 
 std::optional<double> own_disagreement(const ClassTemplate& class_template, const std::vector<Point>& points,
                                        const WholeObject& member) {
-    const AnnotationSet parts = parts_of(class_template.mesh, class_template.set),
-                        own = parts_of(member.mesh, member.annotations);
+    const AnnotationSet parts = parts_of(class_template), own = parts_of(member);
     if (parts.annotations.empty() || own.annotations.empty()) return {};
     const Overlap overlap = overlap_of(class_template, with_points(class_template.mesh, points), parts, member, own);
     // The index for areas, as the limit of a division into many equal grains; the number of grains cancels.

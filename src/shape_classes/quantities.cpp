@@ -85,32 +85,33 @@ const Attribute* named(const JsonValue& parameters, const char* member, const An
 }
 
 /// The ratio of the two measures of a proportion.
-std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& set, const Relationship& relationship) {
+std::optional<ClassQuantity> ratio_of(AnnotatedMeshView shape, const Relationship& relationship) {
     if (relationship.annotations.size() != 2) return {};
-    const Annotation *a = set.find(relationship.annotations[0]), *b = set.find(relationship.annotations[1]);
+    const Annotation *a = shape.annotations.find(relationship.annotations[0]),
+                     *b = shape.annotations.find(relationship.annotations[1]);
     if (a == nullptr || b == nullptr) return {};
     const Json parameters = parse_json(relationship.constraint.empty() ? "{}" : relationship.constraint, "constraint");
     const Attribute *first = named(parameters, "measure1", *a), *second = named(parameters, "measure2", *b);
     if (first == nullptr || second == nullptr) return {};
     ClassQuantity quantity{QuantityKind::proportion, relationship.id,
                            fmt::format("{} of {} / {} of {}", first->name, a->tag, second->name, b->tag), relationship.type};
-    const double below = evaluate(shape, *b, second->measure);
-    if (below > 0) quantity.value = evaluate(shape, *a, first->measure) / below;
+    const double below = evaluate(shape.mesh, *b, second->measure);
+    if (below > 0) quantity.value = evaluate(shape.mesh, *a, first->measure) / below;
     return quantity;
 }
 
-void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& quantities) {
-    for (const Annotation& annotation : set.annotations)
+void add_attributes(AnnotatedMeshView shape, std::vector<ClassQuantity>& quantities) {
+    for (const Annotation& annotation : shape.annotations.annotations)
         for (const Attribute& attribute : annotation.attributes) {
             ClassQuantity quantity{QuantityKind::attribute, annotation.id, attribute.name, annotation.tag};
             if (attribute.type == AttributeType::measure) {
-                quantity.value = evaluate(shape, annotation, attribute.measure);
-                quantity.unit = set.unit;
+                quantity.value = evaluate(shape.mesh, annotation, attribute.measure);
+                quantity.unit = shape.annotations.unit;
             } else if (attribute.type == AttributeType::descriptor && !attribute.descriptor.is_list &&
                        attribute.descriptor.file.empty() && attribute.descriptor.values.size() == 1) {
-                quantity.value = evaluate(shape, annotation, attribute.name);
+                quantity.value = evaluate(shape.mesh, annotation, attribute.name);
                 if (!quantity.value) continue;  // of a kind that cannot be computed
-                quantity.unit = descriptor_unit(attribute.name, set.unit);
+                quantity.unit = descriptor_unit(attribute.name, shape.annotations.unit);
             } else {
                 continue;
             }
@@ -128,11 +129,11 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_templat
     const Mesh framed = with_points(class_template.mesh, normal),
                shape = with_points(class_template.mesh, in_template_frame(class_template.mesh, points, true));
     std::map<int, ConstraintReport> constraints;
-    for (ConstraintReport& report : measure_constraints(class_template.mesh, class_template.set, class_template.graph, normal)) {
+    for (ConstraintReport& report : measure_constraints(class_template, class_template.graph, normal)) {
         const int id = report.id;
         constraints.emplace(id, std::move(report));
     }
-    const auto relations = check_relations(framed, class_template.set, class_template.graph);
+    const auto relations = check_relations({framed, class_template.annotations}, class_template.graph);
     for (std::size_t i = 0; i < class_template.graph.relationships.size(); ++i) {
         const Relationship& relationship = class_template.graph.relationships[i];
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
@@ -148,11 +149,12 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_templat
             add(QuantityKind::relation, relations[i].parameters.deviations);
         } else if (constraint != constraints.end() && constraint->second.used) {
             if (find_relation_type(relationship.type) != nullptr && relationship.type == "proportion")
-                if (auto ratio = ratio_of(framed, class_template.set, relationship)) quantities.push_back(std::move(*ratio));
+                if (auto ratio = ratio_of({framed, class_template.annotations}, relationship))
+                    quantities.push_back(std::move(*ratio));
             add(QuantityKind::constraint, constraint->second.deviations);
         }
     }
-    add_attributes(shape, class_template.set, quantities);
+    add_attributes({shape, class_template.annotations}, quantities);
     return quantities;
 }
 

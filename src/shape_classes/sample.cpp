@@ -61,7 +61,7 @@ public:
         frame_ = landmarks_of({class_template.mesh.points().begin(), class_template.mesh.points().end()});
         for (const Relationship& relationship : class_template.graph.relationships)
             constrained_ = constrained_ || relationship.is_constraint;
-        for (const Annotation& annotation : class_template.set.annotations)
+        for (const Annotation& annotation : class_template.annotations.annotations)
             if (is_part(class_template.mesh, annotation)) parts_.push_back(&annotation);
         if (options.by == SampleOptions::Way::modes && learnt.modes.variances.empty())
             fail_input("class", "has no modes of variation", "learn it from at least two different members, or use --by edits");
@@ -151,8 +151,8 @@ private:
             const std::vector<Point> start = points_of(to_frame.apply(factor * shape));
             DeformOptions deform_options;
             deform_options.conflicts = 0;
-            const DeformResult restored = restore_constraints(class_template_.mesh, class_template_.set, class_template_.graph,
-                                                              start, std::vector<bool>(start.size(), false), deform_options);
+            const DeformResult restored = restore_constraints(class_template_, class_template_.graph, start,
+                                                              std::vector<bool>(start.size(), false), deform_options);
             for (std::size_t i = 0; i < start.size(); ++i)
                 sample.moved = std::max(sample.moved, (eigen(restored.points[i]) - eigen(start[i])).norm() / diagonal_);
             for (const ConstraintReport& report : restored.constraints)

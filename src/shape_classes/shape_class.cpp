@@ -27,7 +27,7 @@ MemberFit fit_by_method(const ClassTemplate& class_template, const WholeObject& 
     if (correspondence == CorrespondenceChoice::given ||
         (correspondence == CorrespondenceChoice::automatic && in_correspondence(class_template.mesh, member.mesh)))
         return member_in_correspondence(class_template.mesh, member);
-    return fit_member(class_template.mesh, class_template.set, member, options);
+    return fit_member(class_template, member, options);
 }
 
 LearntMember learn_member(const ClassTemplate& class_template, const WholeObject& member, const LearnOptions& options,
@@ -42,7 +42,7 @@ namespace {
 /// Names of the template's regions that contain a face, the smallest first.
 std::string parts_at(const ClassTemplate& class_template, Index face) {
     std::vector<const Annotation*> list;
-    for (const Annotation& annotation : class_template.set.annotations)
+    for (const Annotation& annotation : class_template.annotations.annotations)
         if (is_part(class_template.mesh, annotation) &&
             std::find(annotation.faces.begin(), annotation.faces.end(), face) != annotation.faces.end())
             list.push_back(&annotation);

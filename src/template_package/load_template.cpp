@@ -273,7 +273,7 @@ private:
         const RelationGraph* graph = result_.graph ? &*result_.graph : nullptr;
         try {
             for (const RuleViolation& violation :
-                 broken_rules(result_.mesh->mesh, *result_.annotations, *result_.rules, vocabulary, graph, part.name))
+                 broken_rules({result_.mesh->mesh, *result_.annotations}, *result_.rules, vocabulary, graph, part.name))
                 defect(result_.file.of("annotations").front()->name,
                        fmt::format("rule '{}': {}", violation.rule, violation.text));
         } catch (const Error& error) {

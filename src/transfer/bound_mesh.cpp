@@ -112,7 +112,7 @@ RefineResult BoundMesh::refine(const RefineOptions& options) {
 }
 
 void BoundMesh::keep_curved() {
-    if (annotations && any_free(*annotations)) curved_ = std::make_shared<const Curved>(Curved{mesh, *annotations});
+    if (annotations && any_free(*annotations)) curved_ = std::make_shared<const AnnotatedMesh>(AnnotatedMesh{mesh, *annotations});
 }
 
 AnnotationTable BoundMesh::attach() {
@@ -148,8 +148,7 @@ void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& v
     annotations = collect_annotations(mesh, table, AnnotationSet(*annotations), vertex_map);
     detach_annotations(mesh);
     if (curved_) {
-        for (auto& note : project_free_annotations(curved_->mesh, curved_->annotations, mesh, *annotations))
-            notes.push_back(std::move(note));
+        for (auto& note : project_free_annotations(*curved_, mesh, *annotations)) notes.push_back(std::move(note));
         curved_.reset();
     }
     for (auto& note : refresh_measures(mesh, *annotations).notes) notes.push_back(std::move(note));

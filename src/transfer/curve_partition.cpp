@@ -141,7 +141,7 @@ void keep_partition(const Mesh& source, const std::vector<const Annotation*>& an
     AnnotationSet set;
     for (const std::size_t i : which) set.annotations.push_back(projected[i].annotation);
     try {
-        const CutMesh cut = cut_along_curves(target, set);
+        const CutMesh cut = cut_along_curves({target, set});
         Parting parting(cut.mesh, cut.annotations.annotations);
         const std::vector<bool> changed = parting.settle(which.size());
         for (std::size_t r = 0; r < which.size(); ++r) {

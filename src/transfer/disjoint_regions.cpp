@@ -11,10 +11,11 @@ namespace {
 
 class Settlement {
 public:
-    Settlement(const Mesh& source, const AnnotationSet& set, const Mesh& mesh, std::vector<std::vector<bool>>& selected)
-        : source_(source), mesh_(mesh), set_(set), selected_(selected) {
-        for (std::size_t i = 0; i < set.annotations.size(); ++i)
-            if (set.annotations[i].type == AnnotationType::region && !set.annotations[i].all) regions_.push_back(i);
+    Settlement(AnnotatedMeshView source, const Mesh& mesh, std::vector<std::vector<bool>>& selected)
+        : source_(source), mesh_(mesh), selected_(selected) {
+        for (std::size_t i = 0; i < source.annotations.annotations.size(); ++i)
+            if (source.annotations.annotations[i].type == AnnotationType::region && !source.annotations.annotations[i].all)
+                regions_.push_back(i);
     }
 
     void settle(const std::function<const SurfaceSearch&()>& source_search) {
@@ -36,10 +37,10 @@ public:
 private:
     /// Whether each face of the source is in exactly one region.
     [[nodiscard]] bool part_all() const {
-        std::vector<bool> taken(source_.number_of_faces(), false);
+        std::vector<bool> taken(source_.mesh.number_of_faces(), false);
         std::size_t count = 0;
         for (const std::size_t i : regions_)
-            for (const Index f : set_.annotations[i].faces) {
+            for (const Index f : source_.annotations.annotations[i].faces) {
                 if (taken[f]) return false;
                 taken[f] = true;
                 ++count;
@@ -48,9 +49,9 @@ private:
     }
 
     void find_owners() {
-        owners_.resize(source_.number_of_faces());
+        owners_.resize(source_.mesh.number_of_faces());
         for (const std::size_t i : regions_)
-            for (const Index f : set_.annotations[i].faces) owners_[f].push_back(i);
+            for (const Index f : source_.annotations.annotations[i].faces) owners_[f].push_back(i);
     }
 
     /// How much of a face each region covers on the source, in sixteenths.
@@ -76,7 +77,8 @@ private:
     [[nodiscard]] bool disjoint(std::size_t a, std::size_t b) {
         const auto [known, fresh] = disjoint_.try_emplace(std::minmax(a, b), true);
         if (fresh) {
-            const std::vector<Index>&first = set_.annotations[a].faces, &second = set_.annotations[b].faces;
+            const std::vector<Index>&first = source_.annotations.annotations[a].faces,
+                  &second = source_.annotations.annotations[b].faces;
             for (auto i = first.begin(), j = second.begin(); i != first.end() && j != second.end() && known->second;) {
                 if (*i == *j) known->second = false;
                 else ++(*i < *j ? i : j);
@@ -118,8 +120,8 @@ private:
         return false;
     }
 
-    const Mesh &source_, &mesh_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView source_;
+    const Mesh& mesh_;
     std::vector<std::vector<bool>>& selected_;
     std::vector<std::size_t> regions_;              ///< their positions in the set
     std::vector<std::vector<std::size_t>> owners_;  ///< regions of each face of the source
@@ -128,9 +130,9 @@ private:
 
 }  // namespace
 
-void keep_disjoint(const Mesh& source, const AnnotationSet& set, const std::function<const SurfaceSearch&()>& source_search,
-                   const Mesh& mesh, std::vector<std::vector<bool>>& selected) {
-    Settlement(source, set, mesh, selected).settle(source_search);
+void keep_disjoint(AnnotatedMeshView source, const std::function<const SurfaceSearch&()>& source_search, const Mesh& mesh,
+                   std::vector<std::vector<bool>>& selected) {
+    Settlement(source, mesh, selected).settle(source_search);
 }
 
 }  // namespace ostraka

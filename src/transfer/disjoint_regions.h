@@ -1,7 +1,7 @@
 // Keeps regions disjoint that share no face on the source.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace ostraka {
 /// first one of several with equal coverage). If the regions of the set partition the whole source, unassigned faces are
 /// assigned in the same way. The region of the whole object is ignored. `source_search` is called only if there is such a face.
 /// Linear, except for these faces.
-void keep_disjoint(const Mesh& source, const AnnotationSet& set, const std::function<const SurfaceSearch&()>& source_search,
-                   const Mesh& mesh, std::vector<std::vector<bool>>& selected);
+void keep_disjoint(AnnotatedMeshView source, const std::function<const SurfaceSearch&()>& source_search, const Mesh& mesh,
+                   std::vector<std::vector<bool>>& selected);
 
 }  // namespace ostraka

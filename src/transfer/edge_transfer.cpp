@@ -41,18 +41,17 @@ void add_line(const TracedPath& vertex_path, Annotation& to) {
 
 }  // namespace
 
-EdgeTransfer::EdgeTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target,
-                           const TransferOptions& options, PathTracer& tracer)
+EdgeTransfer::EdgeTransfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options,
+                           PathTracer& tracer)
     : source_(source),
-      set_(set),
       search_(target),
       target_(target.mesh()),
       options_(options),
       tracer_(tracer),
-      regions_(source, set, target, options),
-      traced_(set.annotations.size()) {
-    for (const Annotation& annotation : set.annotations) {
-        vertex_paths_.push_back(paths_of(source, annotation));
+      regions_(source, target, options),
+      traced_(source.annotations.annotations.size()) {
+    for (const Annotation& annotation : source.annotations.annotations) {
+        vertex_paths_.push_back(paths_of(source.mesh, annotation));
         moved_.push_back({&annotation, {}, {}, false});
     }
 }
@@ -62,7 +61,7 @@ std::vector<Index> EdgeTransfer::vertices() const {
     for (std::size_t i = 0; i < vertex_paths_.size(); ++i) {
         for (const SourcePath& vertex_path : vertex_paths_[i])
             vertices.insert(vertices.end(), vertex_path.vertices.begin(), vertex_path.vertices.end());
-        const std::vector<Index>& points = set_.annotations[i].points;
+        const std::vector<Index>& points = source_.annotations.annotations[i].points;
         vertices.insert(vertices.end(), points.begin(), points.end());
     }
     return vertices;
@@ -75,7 +74,7 @@ void EdgeTransfer::trace() {
 }
 
 void EdgeTransfer::begin(std::size_t i) {
-    const Annotation& from = set_.annotations[i];
+    const Annotation& from = source_.annotations.annotations[i];
     Annotation& to = moved_[i].to;
     TransferScore& score = moved_[i].score;
     to.id = score.id = from.id;
@@ -121,7 +120,7 @@ void EdgeTransfer::insert() {
     std::vector<SurfaceCurve> curves = tracer_.curves();
     // Points become vertices as well: curves of a single point.
     std::map<Index, std::size_t> point_curve;
-    for (const Annotation& annotation : set_.annotations)
+    for (const Annotation& annotation : source_.annotations.annotations)
         for (const Index v : annotation.points) {
             const Correspondence& place = tracer_.place(v);
             if (place.vertex == no_index || point_curve.count(v) > 0) continue;
@@ -173,10 +172,10 @@ TracedPath EdgeTransfer::walked(const SourcePath& vertex_path, const std::vector
 /// Calls body(i) for each annotation in parallel, largest first for a balanced load.
 template <class Body>
 void EdgeTransfer::for_each_annotation(const Body& body) const {
-    std::vector<std::size_t> order(set_.annotations.size());
+    std::vector<std::size_t> order(source_.annotations.annotations.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-        return set_.annotations[i].faces.size() > set_.annotations[j].faces.size();
+        return source_.annotations.annotations[i].faces.size() > source_.annotations.annotations[j].faces.size();
     });
     parallel_for(
         order.size(), [&](std::size_t k) { body(order[k]); }, 1);
@@ -186,11 +185,11 @@ void EdgeTransfer::fill() {
     const bool overlapping = options_.cover == TransferOptions::Cover::overlapping;
     std::optional<OutlineRounding> rounding;
     if (!options_.refine && overlapping && options_.rounding != TransferOptions::Rounding::path)
-        rounding.emplace(source_, set_, target_, vertex_paths_, tracer_);
+        rounding.emplace(source_, target_, vertex_paths_, tracer_);
     regions_.set_outlines(traced_, mesh(), refined_ ? &refined_->face_origin : nullptr);
     std::vector<FilledRegion> filled(moved_.size());
     for_each_annotation([&](std::size_t i) {
-        if (set_.annotations[i].type == AnnotationType::region && !set_.annotations[i].all)
+        if (source_.annotations.annotations[i].type == AnnotationType::region && !source_.annotations.annotations[i].all)
             filled[i] = regions_.fill(i, moved_[i].score);
     });
     for (std::size_t i = 0; i < moved_.size(); ++i)
@@ -206,10 +205,10 @@ void EdgeTransfer::fill() {
     for (FilledRegion& region : filled) selected.push_back(std::move(region.selected));
     if (overlapping)
         keep_disjoint(
-            source_, set_, [&]() -> const SurfaceSearch& { return regions_.source_search(); }, mesh(), selected);
+            source_, [&]() -> const SurfaceSearch& { return regions_.source_search(); }, mesh(), selected);
     for_each_annotation([&](std::size_t i) {
-        if (set_.annotations[i].type == AnnotationType::region) finish_region(i, selected[i]);
-        if (set_.annotations[i].type == AnnotationType::line) finish_line(i);
+        if (source_.annotations.annotations[i].type == AnnotationType::region) finish_region(i, selected[i]);
+        if (source_.annotations.annotations[i].type == AnnotationType::line) finish_line(i);
     });
 }
 

@@ -24,8 +24,7 @@ struct MovedAnnotation {
 /// edges inserted into the target; regions are filled from their outlines. The arguments must outlive this object.
 class EdgeTransfer {
 public:
-    EdgeTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options,
-                 PathTracer& tracer);
+    EdgeTransfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options, PathTracer& tracer);
 
     /// The vertices whose correspondences the tracer must know before `trace`.
     [[nodiscard]] std::vector<Index> vertices() const;
@@ -52,8 +51,7 @@ private:
     template <class Body>
     void for_each_annotation(const Body& body) const;
 
-    const Mesh& source_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView source_;
     const SurfaceSearch& search_;
     const Mesh& target_;
     const TransferOptions& options_;

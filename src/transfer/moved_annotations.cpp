@@ -15,8 +15,8 @@ std::string unit_scaled(const std::string& unit, double scale) {
     return {};
 }
 
-AnnotationSet moved_annotations(const Mesh& mesh, const AnnotationSet& set, const Motion& motion, const std::string& unit) {
-    AnnotationSet result = set;
+AnnotationSet moved_annotations(AnnotatedMeshView object, const Motion& motion, const std::string& unit) {
+    AnnotationSet result = object.annotations;
     const auto turn = [&](std::optional<std::array<double, 3>>& direction) {
         if (!direction) return;
         const Eigen::Vector3d d = motion.rotation * Eigen::Vector3d((*direction)[0], (*direction)[1], (*direction)[2]);
@@ -24,14 +24,14 @@ AnnotationSet moved_annotations(const Mesh& mesh, const AnnotationSet& set, cons
     };
     turn(result.up);
     result.unit = unit;
-    DescriptorSearch descriptors(mesh);
-    descriptors.expect(set);
+    DescriptorSearch descriptors(object.mesh);
+    descriptors.expect(object.annotations);
     for (Annotation& annotation : result.annotations)
         for (Attribute& attribute : annotation.attributes) {
             turn(attribute.measure.direction);
-            if (attribute.type == AttributeType::measure && attribute.measure.unit == set.unit)
+            if (attribute.type == AttributeType::measure && attribute.measure.unit == object.annotations.unit)
                 attribute.measure.unit = result.unit;
-            if (attribute.type != AttributeType::descriptor || unit == set.unit) continue;
+            if (attribute.type != AttributeType::descriptor || unit == object.annotations.unit) continue;
             if (const auto known = descriptors.find(annotation, attribute.name))
                 attribute.descriptor.unit = unit_of(*known, unit);
         }

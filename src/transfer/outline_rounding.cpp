@@ -209,17 +209,16 @@ void round_shared(const Mesh& mesh, std::vector<FilledRegion>& regions, std::vec
 
 }  // namespace
 
-OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
+OutlineRounding::OutlineRounding(AnnotatedMeshView source, const Mesh& target,
                                  const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer)
     : source_(source),
-      set_(set),
       target_(target),
       tracer_(tracer),
-      source_edge_(mean_edge_length(source)),
+      source_edge_(mean_edge_length(source.mesh)),
       steps_(vertex_paths.size()),
       put_aside_(vertex_paths.size()) {
     for (std::size_t i = 0; i < vertex_paths.size(); ++i) {
-        if (set.annotations[i].type != AnnotationType::region) continue;
+        if (source.annotations.annotations[i].type != AnnotationType::region) continue;
         TransferScore ignored;  // these correspondences were already counted for the paths
         for (const SourcePath& vertex_path : vertex_paths[i])
             for (const PathTracer::Step& step : tracer.trace_curves(vertex_path, ignored)) steps_[i].push_back(step);
@@ -252,10 +251,10 @@ void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edg
     for (const auto& entry : shares)
         if (is_shared(entry)) put_aside_[region].push_back({entry.first, region, entry.second});
     shares.erase(std::remove_if(shares.begin(), shares.end(), is_shared), shares.end());
-    const Annotation& annotation = set_.annotations[region];
+    const Annotation& annotation = source_.annotations.annotations[region];
     RoundingGoal goal;
-    goal.area = area_of(source_, annotation.faces);
-    goal.perimeter = length_of(segments_of(source_, annotation));
+    goal.area = area_of(source_.mesh, annotation.faces);
+    goal.perimeter = length_of(segments_of(source_.mesh, annotation));
     goal.edge = edge;
     goal.coarser = edge > 1.5 * source_edge_;
     if (balance && goal.area > 0 && goal.perimeter > 0) round_region(target_, filled, shares, goal);

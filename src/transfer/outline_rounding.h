@@ -1,7 +1,7 @@
 // Rounding of transferred regions to the exact course of their outlines.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "transfer/path_tracer.h"
 #include "transfer/region_transfer.h"
 
@@ -18,10 +18,10 @@ struct SharedFace {
 
 class OutlineRounding {
 public:
-    /// Traces the outlines of all regions of `set` across the faces of the target; `vertex_paths` are their paths, by
+    /// Traces the outlines of all regions of `source` across the faces of the target; `vertex_paths` are their paths, by
     /// annotation.
-    OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
-                    const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer);
+    OutlineRounding(AnnotatedMeshView source, const Mesh& target, const std::vector<std::vector<SourcePath>>& vertex_paths,
+                    PathTracer& tracer);
 
     /// Rounds the parts of the outline that belong to this region only; faces along shared outlines are deferred. `edge`:
     /// typical edge length of the target. Regions may be rounded in parallel.
@@ -30,8 +30,7 @@ public:
     void round_shared_outlines(std::vector<FilledRegion>& regions);
 
 private:
-    const Mesh& source_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView source_;
     const Mesh& target_;
     const PathTracer& tracer_;
     double source_edge_;

@@ -432,15 +432,15 @@ std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::v
     return CurveProjector(source, target, options).run(annotations);
 }
 
-std::vector<std::string> project_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
-                                                  AnnotationSet& to, const CorrespondenceOptions& options) {
+std::vector<std::string> project_free_annotations(AnnotatedMeshView source, const Mesh& target, AnnotationSet& to,
+                                                  const CorrespondenceOptions& options) {
     std::vector<std::string> notes;
     std::vector<const Annotation*> free;
-    for (const Annotation& annotation : from.annotations)
+    for (const Annotation& annotation : source.annotations.annotations)
         if (is_free(annotation)) free.push_back(&annotation);
     if (free.empty() || target.number_of_faces() == 0) return notes;
     const SurfaceSearch search(target);
-    for (ProjectedAnnotation& projected : project_curves(source, free, search, options)) {
+    for (ProjectedAnnotation& projected : project_curves(source.mesh, free, search, options)) {
         Annotation* now = to.find(projected.annotation.id);
         if (projected.lost) {
             notes.push_back(name_of(projected.annotation) + ": its curves have no place on the new mesh");

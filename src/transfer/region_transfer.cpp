@@ -41,12 +41,11 @@ std::vector<Index> diameter_path(const std::vector<Index>& walk) {
     return sweep(first.front());
 }
 
-RegionTransfer::RegionTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target,
-                               const TransferOptions& options)
-    : source_(source), set_(set), search_(target), options_(options), target_edge_(target.typical_edge()) {}
+RegionTransfer::RegionTransfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options)
+    : source_(source), search_(target), options_(options), target_edge_(target.typical_edge()) {}
 
 const SurfaceSearch& RegionTransfer::source_search() {
-    std::call_once(source_search_once_, [this] { source_search_.emplace(source_); });
+    std::call_once(source_search_once_, [this] { source_search_.emplace(source_.mesh); });
     return *source_search_;
 }
 
@@ -131,11 +130,11 @@ void RegionTransfer::set_outlines(const std::vector<std::vector<TracedPath>>& tr
                                   const std::vector<Index>* origin) {
     mesh_ = &mesh;
     origin_ = origin;
-    traced_.resize(set_.annotations.size());
+    traced_.resize(source_.annotations.annotations.size());
     std::vector<Edge> walls;
     bool any = false;
     for (std::size_t i = 0; i < traced.size(); ++i) {
-        if (set_.annotations[i].type != AnnotationType::region || set_.annotations[i].all) continue;
+        if (source_.annotations.annotations[i].type != AnnotationType::region || source_.annotations.annotations[i].all) continue;
         any = true;
         traced_[i] = edges_of(traced[i]);
         for (const Halfedge h : traced_[i].edges) walls.push_back(mesh.edge(h));
@@ -144,11 +143,11 @@ void RegionTransfer::set_outlines(const std::vector<std::vector<TracedPath>>& tr
 }
 
 FilledRegion RegionTransfer::fill(std::size_t region, TransferScore& score) {
-    const std::vector<Index>& faces = set_.annotations[region].faces;
+    const std::vector<Index>& faces = source_.annotations.annotations[region].faces;
     const Traced& traced = traced_[region];
-    const double source_area = area_of(source_, faces);
-    std::vector<Patch> patches = patches_of(source_, faces);
-    if (traced.edges.empty()) free_large_patches(source_, faces, patches);
+    const double source_area = area_of(source_.mesh, faces);
+    std::vector<Patch> patches = patches_of(source_.mesh, faces);
+    if (traced.edges.empty()) free_large_patches(source_.mesh, faces, patches);
     const auto is_bounded = [](const Patch& patch) { return patch.bounded; };
     if (traced.vanished > 0 && traced.vanished < traced.pieces)
         score.note += (score.note.empty() ? "" : "; ") + std::to_string(traced.vanished) + " of " +
@@ -164,7 +163,7 @@ FilledRegion RegionTransfer::fill(std::size_t region, TransferScore& score) {
         for (const Patch& patch : patches) {
             if (patch.bounded) continue;
             const Face face(patch.face);
-            const auto hit = search_.closest_compatible(centroid(source_, face), area_vector(source_, face), 0,
+            const auto hit = search_.closest_compatible(centroid(source_.mesh, face), area_vector(source_.mesh, face), 0,
                                                         options_.correspondence.max_distance * search_.diagonal());
             if (!hit) continue;
             Index start = hit->face;
@@ -186,13 +185,14 @@ FilledRegion RegionTransfer::fill(std::size_t region, TransferScore& score) {
 }
 
 std::vector<bool> RegionTransfer::vote(std::size_t region) {
-    return region_by_vote(source_, source_search(), set_.annotations[region].faces, *mesh_, options_.correspondence);
+    return region_by_vote(source_.mesh, source_search(), source_.annotations.annotations[region].faces, *mesh_,
+                          options_.correspondence);
 }
 
 void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) const {
     // The faces crossed by the outline, which is traced exactly.
     TransferScore ignored;
-    PathTracer tracer(source_, search_, options_);
+    PathTracer tracer(source_.mesh, search_, options_);
     std::vector<Index> vertices;
     for (const SourcePath& vertex_path : vertex_paths)
         vertices.insert(vertices.end(), vertex_path.vertices.begin(), vertex_path.vertices.end());

@@ -1,7 +1,7 @@
 // Interior of transferred regions.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "transfer/face_parts.h"
 #include "transfer/path_tracer.h"
 
@@ -23,7 +23,7 @@ struct FilledRegion {
 
 class RegionTransfer {
 public:
-    RegionTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options);
+    RegionTransfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options);
 
     /// Sets the traced outlines, by annotation, on `mesh`: the target, or the refined target with `origin` giving the old face
     /// of each face. Both must outlive this object.
@@ -54,8 +54,7 @@ private:
     };
     [[nodiscard]] Traced edges_of(const std::vector<TracedPath>& paths) const;
 
-    const Mesh& source_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView source_;
     const SurfaceSearch& search_;
     const TransferOptions& options_;
     double target_edge_;

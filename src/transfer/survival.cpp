@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations, const SurvivalOptions& options) {
+std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const SurvivalOptions& options) {
     check_options(options, "annotation survival");
     TransferOptions transferring = options.transfer;
     transferring.overlap = false;
@@ -19,11 +19,11 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
     // Coarse surfaces lie farther away than the usual search radius.
     transferring.correspondence.max_distance = std::max(transferring.correspondence.max_distance, 0.1);
     std::vector<Survival> survivals;
-    for (const Annotation& annotation : annotations.annotations)
-        survivals.push_back({annotation.id, annotation.tag, mesh.number_of_vertices(), ""});
-    Mesh coarse = mesh;
-    const double steps =
-        std::log(static_cast<double>(options.minimum) / static_cast<double>(mesh.number_of_vertices())) / std::log(options.ratio);
+    for (const Annotation& annotation : object.annotations.annotations)
+        survivals.push_back({annotation.id, annotation.tag, object.mesh.number_of_vertices(), ""});
+    Mesh coarse = object.mesh;
+    const double steps = std::log(static_cast<double>(options.minimum) / static_cast<double>(object.mesh.number_of_vertices())) /
+                         std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
     bool tried = false;
@@ -35,7 +35,7 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
         if (!simplified.reached) break;
         tried = true;
         const SurfaceSearch search(coarse);
-        const TransferResult result = transfer(mesh, annotations, search, transferring);
+        const TransferResult result = transfer(object, search, transferring);
         for (std::size_t i = 0; i < survivals.size(); ++i) {
             if (!survivals[i].end.empty()) continue;
             const TransferScore& score = result.scores[i];

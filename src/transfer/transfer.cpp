@@ -20,33 +20,33 @@ namespace ostraka {
 
 namespace {
 
-void check_annotations(const Mesh& source, const AnnotationSet& set) {
-    for (const Annotation& annotation : set.annotations) {
+void check_indices(AnnotatedMeshView source) {
+    for (const Annotation& annotation : source.annotations.annotations) {
         const auto check = [&](Index v, std::size_t count, const char* what) {
             if (v >= count)
                 fail_input("annotation " + std::to_string(annotation.id),
                            std::string("names ") + what + " " + std::to_string(v) + " of " + std::to_string(count),
                            "is it of another mesh?");
         };
-        for (const Index v : annotation.points) check(v, source.number_of_vertices(), "vertex");
+        for (const Index v : annotation.points) check(v, source.mesh.number_of_vertices(), "vertex");
         for (const auto& line : annotation.polylines)
-            for (const Index v : line) check(v, source.number_of_vertices(), "vertex");
-        for (const Index f : annotation.faces) check(f, source.number_of_faces(), "face");
+            for (const Index v : line) check(v, source.mesh.number_of_vertices(), "vertex");
+        for (const Index f : annotation.faces) check(f, source.mesh.number_of_faces(), "face");
         for (const Attribute& attribute : annotation.attributes)
-            for (const Index v : pins_of(attribute.measure)) check(v, source.number_of_vertices(), "vertex");
+            for (const Index v : pins_of(attribute.measure)) check(v, source.mesh.number_of_vertices(), "vertex");
     }
 }
 
 /// Which annotations are projected by their curves: free ones, all if requested, and regions that partition the surface, whose
 /// partition only curves preserve without zigzags.
-std::vector<bool> find_projected(const Mesh& source, const AnnotationSet& set, const TransferOptions& options) {
+std::vector<bool> find_projected(AnnotatedMeshView source, const TransferOptions& options) {
     using Outlines = TransferOptions::Outlines;
     const bool along_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
     std::vector<const Annotation*> all;
-    for (const Annotation& annotation : set.annotations) all.push_back(&annotation);
-    const bool parted = options.outlines == Outlines::partitions && !along_edges && part_surface(source, all);
+    for (const Annotation& annotation : source.annotations.annotations) all.push_back(&annotation);
+    const bool parted = options.outlines == Outlines::partitions && !along_edges && part_surface(source.mesh, all);
     std::vector<bool> projected;
-    for (const Annotation& annotation : set.annotations)
+    for (const Annotation& annotation : source.annotations.annotations)
         projected.push_back(
             !annotation.all && options.outlines != Outlines::edges &&
             (is_free(annotation) || options.outlines == Outlines::free || (parted && annotation.type == AnnotationType::region)));
@@ -75,15 +75,14 @@ MovedAnnotation moved_by_curves(const Annotation& from, ProjectedAnnotation proj
 class Transfer {
 public:
     /// `projected`: for each annotation, whether it is projected by its curves.
-    Transfer(const Mesh& source, const AnnotationSet& set, const std::vector<bool>& projected, const SurfaceSearch& target,
+    Transfer(AnnotatedMeshView source, const std::vector<bool>& projected, const SurfaceSearch& target,
              const TransferOptions& options)
         : source_(source),
-          set_(set),
           projected_(projected),
           search_(target),
           options_(options),
-          tracer_(source, target, options),
-          edges_(source, along_edges_, target, options, tracer_) {}
+          tracer_(source.mesh, target, options),
+          edges_({source.mesh, along_edges_}, target, options, tracer_) {}
 
     TransferResult run(TransferTimes times);
 
@@ -94,8 +93,7 @@ private:
     void score_all(std::vector<MovedAnnotation>& moved);
     [[nodiscard]] std::optional<OverlapQuestion> measure(MovedAnnotation& moved);
 
-    const Mesh& source_;
-    const AnnotationSet& set_;
+    const AnnotatedMeshView source_;
     const std::vector<bool>& projected_;
     const SurfaceSearch& search_;
     const TransferOptions& options_;
@@ -105,8 +103,8 @@ private:
 
     [[nodiscard]] AnnotationSet without_projected() const {
         AnnotationSet others;
-        for (std::size_t i = 0; i < set_.annotations.size(); ++i)
-            if (!projected_[i]) others.annotations.push_back(set_.annotations[i]);
+        for (std::size_t i = 0; i < source_.annotations.annotations.size(); ++i)
+            if (!projected_[i]) others.annotations.push_back(source_.annotations.annotations[i]);
         return others;
     }
 };
@@ -132,9 +130,9 @@ TransferResult Transfer::run(TransferTimes times) {
     std::vector<MovedAnnotation> moved = in_order(std::move(projected));
     for (MovedAnnotation& annotation : moved) attributes.carry(*annotation.from, annotation.to);
     score_all(moved);
-    result.annotations.object_class = set_.object_class;
-    result.annotations.unit = set_.unit;
-    result.annotations.up = set_.up;
+    result.annotations.object_class = source_.annotations.object_class;
+    result.annotations.unit = source_.annotations.unit;
+    result.annotations.up = source_.annotations.up;
     for (MovedAnnotation& annotation : moved) {
         if (annotation.score.outcome != TransferOutcome::lost) result.annotations.annotations.push_back(std::move(annotation.to));
         result.scores.push_back(std::move(annotation.score));
@@ -150,7 +148,7 @@ TransferResult Transfer::run(TransferTimes times) {
 /// Finds the correspondences of the vertices of paths and of pins.
 void Transfer::match() {
     std::vector<Index> vertices = edges_.vertices();
-    for (const Annotation& annotation : set_.annotations)
+    for (const Annotation& annotation : source_.annotations.annotations)
         for (const Attribute& attribute : annotation.attributes) {
             const std::vector<Index> pins = pins_of(attribute.measure);
             vertices.insert(vertices.end(), pins.begin(), pins.end());
@@ -160,10 +158,10 @@ void Transfer::match() {
 
 std::vector<ProjectedAnnotation> Transfer::project() const {
     std::vector<const Annotation*> annotations;
-    for (std::size_t i = 0; i < set_.annotations.size(); ++i)
-        if (projected_[i]) annotations.push_back(&set_.annotations[i]);
+    for (std::size_t i = 0; i < source_.annotations.annotations.size(); ++i)
+        if (projected_[i]) annotations.push_back(&source_.annotations.annotations[i]);
     if (annotations.empty()) return {};
-    return project_curves(source_, annotations, search_, options_.correspondence);
+    return project_curves(source_.mesh, annotations, search_, options_.correspondence);
 }
 
 /// The results of both kinds in the order of the set.
@@ -171,8 +169,8 @@ std::vector<MovedAnnotation> Transfer::in_order(std::vector<ProjectedAnnotation>
     std::vector<MovedAnnotation> moved;
     auto next_projected = projected.begin();
     auto next_along_edges = edges_.moved().begin();
-    for (std::size_t i = 0; i < set_.annotations.size(); ++i)
-        moved.push_back(projected_[i] ? moved_by_curves(set_.annotations[i], std::move(*next_projected++))
+    for (std::size_t i = 0; i < source_.annotations.annotations.size(); ++i)
+        moved.push_back(projected_[i] ? moved_by_curves(source_.annotations.annotations[i], std::move(*next_projected++))
                                       : std::move(*next_along_edges++));
     return moved;
 }
@@ -191,7 +189,8 @@ void Transfer::score_all(std::vector<MovedAnnotation>& moved) {
     for (auto& question : questions)
         if (question) given.push_back(std::move(*question));
     if (!given.empty())
-        score_overlaps({source_, edges_.regions().source_search()}, {edges_.mesh(), search_}, given, options_.correspondence);
+        score_overlaps({source_.mesh, edges_.regions().source_search()}, {edges_.mesh(), search_}, given,
+                       options_.correspondence);
 }
 
 /// Computes all scores except the overlap, for which a query is returned if it is to be measured.
@@ -203,7 +202,7 @@ std::optional<OverlapQuestion> Transfer::measure(MovedAnnotation& moved) {
         to.faces.empty())
         score.outcome = TransferOutcome::lost;
     const Mesh& mesh = edges_.mesh();
-    const Segments a = segments_of(source_, from), b = segments_of(mesh, to);
+    const Segments a = segments_of(source_.mesh, from), b = segments_of(mesh, to);
     score.source_length = length_of(a);
     score.target_length = length_of(b);
     if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
@@ -215,7 +214,7 @@ std::optional<OverlapQuestion> Transfer::measure(MovedAnnotation& moved) {
             add_note(score.note, "several points fell on one vertex");
         return {};
     }
-    score.source_area = area_of(source_, from);
+    score.source_area = area_of(source_.mesh, from);
     score.target_area = area_of(mesh, to);
     if (!options_.overlap || score.outcome != TransferOutcome::kept) return {};
     if (from.all) {
@@ -226,7 +225,7 @@ std::optional<OverlapQuestion> Transfer::measure(MovedAnnotation& moved) {
         }
         return {};
     }
-    OverlapQuestion question{region_area(source_, from), region_area(mesh, to), {}, &score};
+    OverlapQuestion question{region_area(source_.mesh, from), region_area(mesh, to), {}, &score};
     if (const auto region = question.target.free)
         question.in_target = [region](const SurfaceHit& hit) { return region->contains(hit.face, hit.point); };
     else question.in_target = edges_.regions().membership(to.faces);
@@ -235,27 +234,26 @@ std::optional<OverlapQuestion> Transfer::measure(MovedAnnotation& moved) {
 
 }  // namespace
 
-TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
-                        const TransferOptions& options) {
+TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options) {
     const Stopwatch watch;
     check_options(options, "transfer");
-    check_annotations(source, annotations);
+    check_indices(source);
     if (!options.force) {
-        const Agreement alignment = compare_alignment(source, target.mesh());
+        const Agreement alignment = compare_alignment(source.mesh, target.mesh());
         if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
     }
     const bool needs_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
     if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
-    const std::vector<bool> projected = find_projected(source, annotations, options);
+    const std::vector<bool> projected = find_projected(source, options);
     if (needs_edges && std::find(projected.begin(), projected.end(), true) != projected.end())
         fail_usage("--refine and --cover are for outlines along edges", "leave them out, or give --outlines edges");
-    AnnotationSet set = annotations;
+    AnnotationSet set = source.annotations;
     if (options.outlines == TransferOptions::Outlines::edges)
         for (Annotation& annotation : set.annotations) annotation.curves.clear();
     TransferTimes times;
     times.checks = watch.seconds();
-    return Transfer(source, set, projected, target, options).run(times);
+    return Transfer({source.mesh, set}, projected, target, options).run(times);
 }
 
 std::string to_string(TransferOutcome outcome) {

@@ -26,7 +26,7 @@ void Scene::add(const ShownShape& shape) {
     object.mesh = shape.mesh;
     object.annotations = shape.set;
     object.graph = shape.graph;
-    if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations(*shape.mesh, *shape.set, *shape.graph);
+    if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations({*shape.mesh, *shape.set}, *shape.graph);
     object.cage = shape.cage;
     object.maps = shape.maps;
     object.exact = {shape.key, !known_keys_.contains(shape.key)};

@@ -382,7 +382,7 @@ void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /
     const Deformation& drag = deformation();
     std::vector<std::vector<std::size_t>> annotations_of_vertex(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
     const auto& annotations = drag.set->annotations;
-    const ContainmentOrder order = topology(drag.rest->mesh->mesh, *drag.set).order;
+    const ContainmentOrder order = topology({drag.rest->mesh->mesh, *drag.set}).order;
     std::vector<bool> contains(annotations.size(), false);
     for (std::size_t i = 0; i < annotations.size(); ++i)
         if (order.parent[i] && annotations[i].type == AnnotationType::region) contains[*order.parent[i]] = true;
@@ -415,7 +415,7 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
 void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
     if (!drag.rest->graph) fail_request(drag.object_name + " has no relationships", "state a constraint first");
-    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    const HandleSpace space{{drag.rest->mesh->mesh, *drag.set}, &drag.rest->cage->mesh, &drag.coordinates};
     const auto reaches = cage_reach(space, *drag.rest->graph);
     std::vector<std::string> texts;
     for (const ConstraintReach& constraint : reaches)
@@ -441,7 +441,7 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
     if (flag_in(request, "constraints") && drag.rest->graph)
         for (const Relationship& relationship : drag.rest->graph->relationships)
             if (relationship.is_constraint) graph.relationships.push_back(relationship);
-    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    const HandleSpace space{{drag.rest->mesh->mesh, *drag.set}, &drag.rest->cage->mesh, &drag.coordinates};
     if (drag.weights.size() == 0) drag.weights = drag.coordinates.vertex.cast<float>();
     drag.live = std::make_unique<LiveDeformation>(space, graph, edit_from_json(drag.edit, "the drag"), drag.handles);
     const auto& cage = drag.live->cage();

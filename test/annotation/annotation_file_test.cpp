@@ -39,7 +39,7 @@ void expect_error(const std::string& text, const Mesh& mesh, const std::string& 
 std::string with(const std::string& annotation) { return R"({"annotations": [)" + annotation + "]}"; }
 
 std::string written(const AnnotationSet& set, const Mesh& mesh) {
-    return to_text(annotations_to_json(set, mesh, "folder/mesh.ply", Provenance{}));
+    return to_text(annotations_to_json({mesh, set}, "folder/mesh.ply", Provenance{}));
 }
 
 /// The cells [a, b) x [c, d) of a grid of n x n cells.
@@ -137,7 +137,7 @@ TEST(AnnotationFile, TheThesisFormatIsReadExactly) {
     EXPECT_EQ(set.annotations[2].points, std::vector<Index>{15});
     ASSERT_EQ(set.notes.size(), 1U);  // it does not identify its mesh
     // The written file has the same members.
-    const Json out = annotations_to_json(set, mesh, "m.ply", {});
+    const Json out = annotations_to_json({mesh, set}, "m.ply", {});
     const JsonValue& region = out["annotations"][0];
     for (const char* member : {"id", "tag", "colour", "attributes", "type", "boundaries"})
         EXPECT_NE(find_member(region, member), nullptr) << member;
@@ -325,10 +325,10 @@ TEST(AnnotationFile, WritingChecksTheSet) {
     const Mesh mesh = grid(3);
     AnnotationSet set;
     set.annotations.emplace_back().faces = {3, 99};
-    EXPECT_THROW(annotations_to_json(set, mesh, "m", {}), Error);
+    EXPECT_THROW(annotations_to_json({mesh, set}, "m", {}), Error);
     const Path file = Path(testing::TempDir()) / "never.ant.json";
     std::filesystem::remove(file);
-    EXPECT_THROW(write_annotations(file, set, mesh, "m", {}), Error);
+    EXPECT_THROW(write_annotations(file, {mesh, set}, "m", {}), Error);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 

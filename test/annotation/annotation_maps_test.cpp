@@ -96,7 +96,7 @@ TEST(AnnotationMaps, ACollapsePreservesAnnotations) {
     const AnnotationSet after = collect_annotations(mesh, table, set, now);
     EXPECT_EQ(after.annotations[0].polylines, (std::vector<std::vector<Index>>{{now[a], now[c]}}));
     EXPECT_EQ(after.annotations[1].faces.size(), region.faces.size() - 2);
-    EXPECT_NO_THROW(check_annotations(after, mesh, "after"));
+    EXPECT_NO_THROW(check_annotations({mesh, after}, "after"));
 }
 
 TEST(AnnotationMaps, ASplitEdgeIsFollowed) {
@@ -141,7 +141,7 @@ TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointWithANote) {
     after = collect_annotations(mesh, table, set, map);
     EXPECT_TRUE(after.annotations[0].points.empty());
     EXPECT_NE(after.annotations[0].note.find("gone"), std::string::npos);
-    EXPECT_NO_THROW(check_annotations(after, mesh, "after"));
+    EXPECT_NO_THROW(check_annotations({mesh, after}, "after"));
 }
 
 TEST(AnnotationMaps, PinsFollowAndValuesAreStale) {

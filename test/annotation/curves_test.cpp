@@ -143,10 +143,10 @@ TEST(FreeOutline, CutAndBroughtBackIsTheIdentity) {
     plain.faces = {3, 4, 5, 100, 200};
     set.annotations.push_back(plain);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) set.annotations[i].id = static_cast<int>(i);
-    check_annotations(set, mesh, "test");
+    check_annotations({mesh, set}, "test");
 
-    const CutMesh cut = cut_along_curves(mesh, set);
-    check_annotations(cut.annotations, cut.mesh, "cut");
+    const CutMesh cut = cut_along_curves({mesh, set});
+    check_annotations(cut, "cut");
     EXPECT_NEAR(surface_area(cut.mesh), surface_area(mesh), 1e-10);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const RegionMeasures before = measure_region(mesh, set.annotations[i]),
@@ -182,7 +182,7 @@ TEST(FreeOutline, FileRoundTripIsExact) {
     settle_elements(mesh, point);
     EXPECT_EQ(point.points.size(), 2U);
     set.annotations.push_back(point);
-    const Json document = annotations_to_json(set, mesh, "sphere.ply", {});
+    const Json document = annotations_to_json({mesh, set}, "sphere.ply", {});
     EXPECT_EQ(document["version"].GetInt(), 2);
     const AnnotationSet read = annotations_from_json(document, mesh, "again");
     ASSERT_EQ(read.annotations.size(), 3U);
@@ -193,7 +193,7 @@ TEST(FreeOutline, FileRoundTripIsExact) {
         EXPECT_EQ(read.annotations[i].polylines, set.annotations[i].polylines);
         EXPECT_EQ(read.annotations[i].points, set.annotations[i].points);
     }
-    EXPECT_EQ(to_text(annotations_to_json(read, mesh, "sphere.ply", {})), to_text(document));
+    EXPECT_EQ(to_text(annotations_to_json({mesh, read}, "sphere.ply", {})), to_text(document));
 }
 
 TEST(FreeOutline, InvalidCurvesAreRefused) {
@@ -230,7 +230,7 @@ TEST(FreeOutline, InvalidCurvesAreRefused) {
     AnnotationSet set;
     set.annotations.push_back(region(mesh, {good}));
     set.annotations.front().faces.pop_back();
-    EXPECT_THROW(check_annotations(set, mesh, "test"), Error);
+    EXPECT_THROW(check_annotations({mesh, set}, "test"), Error);
 }
 
 TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
@@ -266,7 +266,7 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
     AnnotationSet set;
     set.annotations = {left, right};
     set.annotations[1].id = 1;
-    const CutMesh cut = cut_along_curves(mesh, set);
+    const CutMesh cut = cut_along_curves({mesh, set});
     for (std::size_t i = 0; i < 2; ++i) {
         Annotation back = cut.annotations.annotations[i];
         EXPECT_NEAR(measure_region(cut.mesh, back.faces).perimeter, measure_region(mesh, set.annotations[i]).perimeter, 1e-9);

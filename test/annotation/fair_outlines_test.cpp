@@ -38,7 +38,7 @@ TEST(FairOutlines, PartsOfASphereBecomeCircles) {
     AnnotationSet set = parted(mesh);
     const AnnotationSet before = set;
     const auto faired = fair_outlines(mesh, set, {});
-    check_annotations(set, mesh, "faired");
+    check_annotations({mesh, set}, "faired");
     ASSERT_EQ(faired.size(), 3U);
     const double limit = 1.3 * mean_edge_length(mesh);  // edges along the outline may be longer than the mean
     double sum = 0;
@@ -66,7 +66,7 @@ TEST(FairOutlines, StaysWithinTheDistance) {
         FairOptions options;
         options.distance = share * mean_edge_length(mesh);
         for (const auto& faired : fair_outlines(mesh, set, {}, options)) EXPECT_LE(faired.moved, options.distance) << share;
-        check_annotations(set, mesh, "faired");
+        check_annotations({mesh, set}, "faired");
     }
 }
 

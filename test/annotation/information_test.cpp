@@ -32,7 +32,7 @@ TEST(Information, RoundTripIsExact) {
                                     {Kind::image, "photos/spout.jpg", "the spout", std::string(64, 'a')},
                                     {Kind::link, "https://example.org/17", "", ""},
                                     {Kind::file, "https://example.org/x.pdf", "report", ""}});
-    const Json document = annotations_to_json(set, mesh, "pot.ply", Provenance{"test", {}, {}});
+    const Json document = annotations_to_json({mesh, set}, "pot.ply", Provenance{"test", {}, {}});
     const AnnotationSet back = annotations_from_json(document, mesh, "pot.ant.json");
     EXPECT_TRUE(back.notes.empty());
     EXPECT_EQ(back.annotations.at(0).information, set.annotations[0].information);
@@ -45,7 +45,7 @@ TEST(Information, LocalFilesAreChecked) {
     write_file(scratch / "note.txt", "broken");
     const std::string sum = sha256_of_file(scratch / "note.txt");
     const Mesh mesh = build_mesh(octahedron_sphere(1));
-    const auto findings_of = [&](const Information& item) { return check_files(with({item}), mesh, scratch.path()); };
+    const auto findings_of = [&](const Information& item) { return check_files({mesh, with({item})}, scratch.path()); };
     EXPECT_TRUE(findings_of({Kind::file, "note.txt", "", sum}).empty());
     EXPECT_TRUE(findings_of({Kind::link, "nowhere", "", ""}).empty());
     EXPECT_TRUE(findings_of({Kind::image, "https://example.org/a.png", "", ""}).empty());

@@ -68,7 +68,7 @@ TEST(Labels, BecomeRegionsAndBack) {
     EXPECT_EQ(set.annotations[0].tag, "part 0");
     EXPECT_EQ(set.annotations[1].tag, "head");
     EXPECT_EQ(set.annotations[1].faces, (std::vector<Index>{0, 1, 7}));
-    EXPECT_EQ(labels_of(mesh, set), labels);
+    EXPECT_EQ(labels_of({mesh, set}), labels);
     std::set<std::array<int, 3>> colours;
     for (std::size_t i = 0; i < 60; ++i) colours.insert(distinct_colour(i));
     EXPECT_EQ(colours.size(), 60U);
@@ -102,9 +102,9 @@ TEST(Colouring, NeighboursDifferAndTheWholeIsNeutral) {
     two.annotations.erase(two.annotations.begin() + 1);
     Annotation joining;
     joining.faces = {0, 1};
-    EXPECT_EQ(fresh_colour(mesh, two, joining), distinct_colour(1));
+    EXPECT_EQ(fresh_colour({mesh, two}, joining), distinct_colour(1));
     joining.faces.resize(70);
-    EXPECT_EQ(fresh_colour(mesh, two, joining), neutral_colour);
+    EXPECT_EQ(fresh_colour({mesh, two}, joining), neutral_colour);
 }
 
 TEST(Labels, NamesAreObjectsOrLists) {
@@ -127,7 +127,7 @@ TEST(Colouring, SmallestRegionOnTop) {
     set.annotations[2].type = AnnotationType::point;
     set.annotations[2].points = {8};
     set.annotations[2].colour = {255, 0, 0};
-    const MeshExtras extras = colour_by_annotation(mesh, set);
+    const MeshExtras extras = colour_by_annotation({mesh, set});
     EXPECT_EQ(extras.face_colours[0], (Colour{1, 2, 3, 255}));
     EXPECT_EQ(extras.face_colours[1], (Colour{4, 5, 6, 255}));
     EXPECT_EQ(extras.face_colours[2], (Colour{200, 200, 200, 255}));
@@ -157,16 +157,16 @@ TEST(Remap, FollowsMapsAndReportsLosses) {
     vertices[24] = no_index;
     faces[30] = faces[31] = no_index;
     for (const bool with_faces : {true, false}) {
-        const AnnotationSet moved = remap_annotations(before, set, after, vertices, with_faces ? faces : std::vector<Index>());
+        const AnnotationSet moved = remap_annotations({before, set}, after, vertices, with_faces ? faces : std::vector<Index>());
         EXPECT_EQ(moved.annotations[0].faces, (std::vector<Index>{0, 1, 2}));
         EXPECT_EQ(moved.annotations[1].polylines, (std::vector<std::vector<Index>>{{24, 23, 22, 21}}));
         EXPECT_EQ(moved.annotations[2].points, std::vector<Index>{18});
     }
     faces[0] = faces[1] = faces[2] = no_index;
-    const AnnotationSet lost = remap_annotations(before, set, after, vertices, faces);
+    const AnnotationSet lost = remap_annotations({before, set}, after, vertices, faces);
     EXPECT_EQ(lost.annotations[0].type, AnnotationType::line);
     EXPECT_FALSE(lost.annotations[0].note.empty());
-    EXPECT_THROW(remap_annotations(before, set, after, {0, 1}), Error);
+    EXPECT_THROW(remap_annotations({before, set}, after, {0, 1}), Error);
     EXPECT_EQ(remap_labels({5, 6, 7}, {1, no_index, 1}, 3), (std::vector<std::int32_t>{-1, 5, -1}));
     EXPECT_THROW(remap_labels({5}, {3}, 3), Error);
     EXPECT_THROW(remap_labels({5, 6}, {0}, 3), Error);

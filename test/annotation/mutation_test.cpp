@@ -73,7 +73,7 @@ TEST(Mutation, AnnotationFiles) {
     Attribute inferred;
     inferred.id = 7, inferred.name = "size", inferred.note = "small", inferred.origin = "rule 'small': height 0.2 < 0.5";
     cap.attributes.push_back(inferred);
-    const std::string whole = to_text(annotations_to_json(set, mesh, "m.ply", {}));
+    const std::string whole = to_text(annotations_to_json({mesh, set}, "m.ply", {}));
     // Without the mesh's counts and checksum, so that damage reaches the selections.
     const std::size_t begin = whole.find("  \"mesh\": {"), end = whole.find("},\n", begin) + 3;
     const std::string bare = whole.substr(0, begin) + whole.substr(end);
@@ -82,7 +82,7 @@ TEST(Mutation, AnnotationFiles) {
                           [&](const std::string& damaged) {
                               const AnnotationSet read =
                                   annotations_from_json(parse_json(damaged, "a"), mesh, "a", {.force_mesh = true});
-                              annotations_to_json(read, mesh, "m.ply", {});
+                              annotations_to_json({mesh, read}, "m.ply", {});
                           }),
                   200U);
 }

@@ -43,9 +43,9 @@ AnnotationSet halves(const Mesh& mesh) {
 TEST(Part, HasTheAreaOfItsRegionAndWhatIsAnnotatedOnIt) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const AnnotationSet set = halves(mesh);
-    const CutPart part = cut_out_part(mesh, set, {1});
+    const CutPart part = cut_out_part({mesh, set}, {1});
     EXPECT_NEAR(surface_area(part.mesh), area_of(mesh, set.annotations[1].faces), 1e-12);
-    check_annotations(part.annotations, part.mesh, "part");
+    check_annotations(part, "part");
     ASSERT_NE(part.annotations.find(2), nullptr);
     EXPECT_EQ(part.annotations.find(2)->faces.size(), set.find(2)->faces.size());
     EXPECT_EQ(part.annotations.find(3)->points.size(), 1U);
@@ -59,21 +59,21 @@ TEST(Part, LeavesOthersOut) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const AnnotationSet set = halves(mesh);
     const double upper = area_of(mesh, set.find(1)->faces), corner = area_of(mesh, set.find(2)->faces);
-    EXPECT_NEAR(surface_area(cut_out_part(mesh, set, {1}, {2}).mesh), upper - corner, 1e-12);
-    EXPECT_NEAR(surface_area(cut_out_part(mesh, set, {}, {1}).mesh), surface_area(mesh) - upper, 1e-12);
-    EXPECT_THROW(cut_out_part(mesh, set, {2}, {1}), Error);  // nothing is left
-    EXPECT_THROW(cut_out_part(mesh, set, {3}), Error);       // a point
+    EXPECT_NEAR(surface_area(cut_out_part({mesh, set}, {1}, {2}).mesh), upper - corner, 1e-12);
+    EXPECT_NEAR(surface_area(cut_out_part({mesh, set}, {}, {1}).mesh), surface_area(mesh) - upper, 1e-12);
+    EXPECT_THROW(cut_out_part({mesh, set}, {2}, {1}), Error);  // nothing is left
+    EXPECT_THROW(cut_out_part({mesh, set}, {3}), Error);       // a point
 }
 
 TEST(Part, IsClosedAcrossThePlaneOfItsCut) {
     const Mesh mesh = build_mesh(octahedron_sphere(4));
     const AnnotationSet set = halves(mesh);
-    const CutPart part = cut_out_part(mesh, set, {1}, {}, true);
+    const CutPart part = cut_out_part({mesh, set}, {1}, {}, true);
     EXPECT_EQ(part.closed, 1U);
     EXPECT_TRUE(CGAL::is_closed(part.mesh));
     // The equator of this sphere is a circle of edges: the lid adds no volume.
     EXPECT_NEAR(volume(part.mesh), volume(mesh) / 2, 1e-9);
-    check_annotations(part.annotations, part.mesh, "part");
+    check_annotations(part, "part");
     const Annotation& cap = part.annotations.annotations.back();
     EXPECT_EQ(cap.tag, "cut");
     for (const Index f : cap.faces) {
@@ -87,13 +87,13 @@ TEST(Part, IsClosedAcrossThePlaneOfItsCut) {
 
 TEST(Part, OfAnOpenMeshClosesItsCutsOnly) {
     const Mesh whole = build_mesh(octahedron_sphere(4));
-    const CutPart bowl = cut_out_part(whole, halves(whole), {1});
+    const CutPart bowl = cut_out_part({whole, halves(whole)}, {1});
     AnnotationSet set;
     std::vector<Index> band;
     for (const Face f : bowl.mesh.faces())
         if (centroid(bowl.mesh, f).z() < 0.5) band.push_back(f);
     set.annotations = {region(1, "band", band)};
-    const CutPart part = cut_out_part(bowl.mesh, set, {0}, {}, true);
+    const CutPart part = cut_out_part({bowl.mesh, set}, {0}, {}, true);
     EXPECT_EQ(part.cuts, 1U);
     EXPECT_EQ(holes_of(part.mesh).size(), 1U);  // the rim of the bowl
 }
@@ -111,7 +111,7 @@ TEST(Part, FollowsFreeOutlines) {
     free.curves = {{at(0.6, 0.2, 0.2), at(0.2, 0.6, 0.2), at(0.2, 0.2, 0.6), at(0.6, 0.2, 0.2)}};
     settle_elements(mesh, free);
     set.annotations.push_back(free);
-    const CutPart part = cut_out_part(mesh, set, {set.annotations.size() - 1});
+    const CutPart part = cut_out_part({mesh, set}, {set.annotations.size() - 1});
     EXPECT_NEAR(surface_area(part.mesh), 0.16 * face_area(mesh, Face(face)), 1e-12);
     ASSERT_TRUE(part.whole);
     for (const Index f : part.faces) EXPECT_EQ(part.whole->face_origin[f], face);
@@ -124,7 +124,7 @@ TEST(Part, OfOneTriangle) {
     const Mesh mesh = build_mesh(soup);
     AnnotationSet set;
     set.annotations = {region(0, "all of it", {0})};
-    const CutPart part = cut_out_part(mesh, set, {0}, {}, true);
+    const CutPart part = cut_out_part({mesh, set}, {0}, {}, true);
     EXPECT_EQ(part.mesh.number_of_faces(), 1U);
     EXPECT_EQ(part.cuts, 0U);  // its border was there before
 }

@@ -29,17 +29,14 @@ MeasureDefinitions definitions(const std::string& entries) {
 }
 
 /// A ball of radius r whose poles are annotated, and its upper half as a region.
-struct Ball {
-    Mesh mesh;
-    AnnotationSet set;
-
+struct Ball : AnnotatedMesh {
     explicit Ball(double r) {
         TriangleSoup soup = test::octahedron_sphere(3);
         for (auto& p : soup.points)
             for (double& c : p) c *= r;
         mesh = build_mesh(soup);
-        set.unit = "mm";
-        set.up = {0, 0, 1};
+        annotations.unit = "mm";
+        annotations.up = {0, 0, 1};
         Annotation poles;
         poles.id = 0;
         poles.tag = "pole";
@@ -59,7 +56,7 @@ struct Ball {
         height.descriptor.values = {r / 10};
         height.descriptor.unit = "cm";
         cap.attributes.push_back(height);
-        set.annotations = {poles, cap};
+        annotations.annotations = {poles, cap};
     }
 };
 
@@ -75,8 +72,7 @@ const char* const all_kinds = R"(
 
 TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
     const Ball ball(10);
-    const auto measures =
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
+    const auto measures = take_measures(ball, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
                                                                          {"name": "height", "tool": "bounding", "direction": "up"})"));
     ASSERT_TRUE(measures.values[0].has_value());
     EXPECT_EQ(measures.powers[0], 3);
@@ -91,7 +87,7 @@ TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
 TEST(MeasureDefinitions, AreTakenOnABall) {
     for (const double r : {1.0, 1e-6, 1e6}) {
         const Ball ball(r);
-        const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(all_kinds));
+        const ObjectMeasures measures = take_measures(ball, definitions(all_kinds));
         ASSERT_TRUE(measures.notes.empty()) << measures.notes.front();
         ASSERT_EQ(measures.values.size(), 8u);
         EXPECT_NEAR(*measures.values[0], 2 * r, 1e-12 * r);
@@ -109,7 +105,7 @@ TEST(MeasureDefinitions, AreTakenOnABall) {
 
 TEST(MeasureDefinitions, ImpossibleMeasuresAreMissingWithANote) {
     Ball ball(1);
-    const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(R"(
+    const ObjectMeasures measures = take_measures(ball, definitions(R"(
         {"name": "a", "tool": "ruler", "from": "pole", "to": "nose"},
         {"name": "b", "tool": "ruler", "from": "pole", "to": "cap"},
         {"name": "c", "tool": "ruler", "from": "pole", "to": "pole 3"},
@@ -124,12 +120,10 @@ TEST(MeasureDefinitions, ImpossibleMeasuresAreMissingWithANote) {
     ASSERT_EQ(measures.notes.size(), 8u);
     EXPECT_EQ(measures.notes[0], "no 'a': nothing is called 'nose'");
     EXPECT_NE(measures.notes[1].find("not a point"), std::string::npos);
-    ball.set.up.reset();
-    EXPECT_FALSE(
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "h", "tool": "bounding", "direction": "up"})")).values[0]);
-    ball.set.annotations.push_back(ball.set.annotations[1]);
-    EXPECT_FALSE(
-        take_measures(ball.mesh, ball.set, definitions(R"({"name": "h", "annotation": "cap", "descriptor": "area"})")).values[0])
+    ball.annotations.up.reset();
+    EXPECT_FALSE(take_measures(ball, definitions(R"({"name": "h", "tool": "bounding", "direction": "up"})")).values[0]);
+    ball.annotations.annotations.push_back(ball.annotations.annotations[1]);
+    EXPECT_FALSE(take_measures(ball, definitions(R"({"name": "h", "annotation": "cap", "descriptor": "area"})")).values[0])
         << "two annotations of one name";
 }
 
@@ -245,16 +239,16 @@ ProportionStudy fixed_ratio(double low, double high) {
 
 TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     Ball ball(1);
-    Annotation belt = ball.set.annotations[1];
+    Annotation belt = ball.annotations.annotations[1];
     belt.id = 2;
     belt.tag = "belt";
     belt.attributes.clear();
     belt.faces.resize(belt.faces.size() / 2);
-    ball.set.annotations.push_back(belt);
+    ball.annotations.annotations.push_back(belt);
     const MeasureDefinitions two_measures = definitions(R"(
         {"name": "cap width", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]},
         {"name": "belt width", "tool": "bounding", "annotation": "belt", "direction": [1, 0, 0]})");
-    const Proposals proposals = propose_proportions(ball.mesh, ball.set, {}, two_measures, fixed_ratio(1.25, 2));
+    const Proposals proposals = propose_proportions(ball, {}, two_measures, fixed_ratio(1.25, 2));
     ASSERT_EQ(proposals.proposed, 1u);
     const Relationship& r = proposals.graph.relationships.at(0);
     EXPECT_EQ(r.type, "proportion");
@@ -271,7 +265,7 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     RelationGraph relabelled;
     relabelled.relationships.push_back(copy);
     const Proposals second_proposals =
-        propose_proportions(ball.mesh, proposals.set, std::move(relabelled), two_measures, fixed_ratio(1.25, 2));
+        propose_proportions({ball.mesh, proposals.set}, std::move(relabelled), two_measures, fixed_ratio(1.25, 2));
     EXPECT_EQ(second_proposals.proposed, 0u);
     EXPECT_EQ(second_proposals.graph.relationships.size(), 1u);
     EXPECT_EQ(second_proposals.notes.size(), 1u);
@@ -287,8 +281,7 @@ TEST(ProposedProportions, ReportRejectedProposals) {
           R"({"name": "a", "annotation": "cap", "attribute": "height"})",
           R"({"name": "a", "annotation": "cap", "tool": "ruler", "from": "pole", "to": "nose"})"}) {
         const Proposals proposals = propose_proportions(
-            ball.mesh, ball.set, {},
-            definitions(first + R"(, {"name": "b", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]})"),
+            ball, {}, definitions(first + R"(, {"name": "b", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]})"),
             fixed_ratio(1, 2));
         EXPECT_EQ(proposals.proposed, 0u) << first;
         EXPECT_EQ(proposals.notes.size(), 1u) << first;

@@ -46,7 +46,7 @@ struct OneStatuette {
         MeshExtras extras;
         extras.face_labels = cast.face_labels;
         write_mesh(scratch / "one.ply", cast.mesh, extras, {});
-        write_annotations(scratch / "one.ant.json", set, cast.mesh, "one.ply", Provenance{"test", {}, {}});
+        write_annotations(scratch / "one.ant.json", {cast.mesh, set}, "one.ply", Provenance{"test", {}, {}});
         collection = read_collection(scratch.path());
     }
     [[nodiscard]] double area(const std::function<bool(HeadPart)>& is_in_region) const {
@@ -137,7 +137,7 @@ TEST(ObjectParts, StudiesOfAPartMatchStudiesOfTheExtractedPart) {
     const test::Scratch cut;
     const MeshFile file = read_mesh(statuette.scratch / "one.ply");
     const AnnotationSet set = read_annotations(statuette.scratch / "one.ant.json", file.mesh);
-    const CutPart part = cut_out_part(file.mesh, set, {1});
+    const CutPart part = cut_out_part({file.mesh, set}, {1});
     write_mesh(cut / "one.ply", part.mesh, {}, {});
     const auto on_whole = measure_technique(statuette.collection, set.up, {}, ResultStore(), ObjectParts(named({"body"})));
     const auto on_part = measure_technique(read_collection(cut.path()), set.up);

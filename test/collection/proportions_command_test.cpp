@@ -60,7 +60,7 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
             set.annotations.push_back(annotation);
         }
         write_mesh(folder / (table.objects[i] + ".ply"), mesh);
-        write_annotations(folder / (table.objects[i] + ".ant.json"), set, mesh, table.objects[i] + ".ply", {});
+        write_annotations(folder / (table.objects[i] + ".ant.json"), {mesh, set}, table.objects[i] + ".ply", {});
     }
     std::string definitions;
     for (int part = 1; part <= 3; ++part)

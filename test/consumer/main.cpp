@@ -15,12 +15,12 @@ int main() try {
     const SyntheticMesh target = make_mesh(object, {.vertices = 4000, .seed = 2});
     const AnnotationSet annotations = regions_from_labels(source.mesh, source.face_labels);
 
-    const TransferResult result = transfer(source.mesh, annotations, SurfaceSearch(target.mesh));
+    const TransferResult result = transfer({source.mesh, annotations}, SurfaceSearch(target.mesh));
     for (const TransferScore& score : result.scores)
         std::cout << score.tag << ": " << to_string(score.outcome) << ", area " << score.source_area << " -> "
                   << score.target_area << '\n';
 
-    const std::vector<Finding> findings = examine(target.mesh, result.annotations);
+    const std::vector<Finding> findings = examine({target.mesh, result.annotations});
     const bool sound = std::none_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.defect; });
     const bool kept = std::all_of(result.scores.begin(), result.scores.end(),
                                   [](const TransferScore& score) { return score.outcome == ostraka::TransferOutcome::kept; });

@@ -75,7 +75,7 @@ TEST_F(CageCommand, InfluenceMaps) {
         if (centroid(mesh, f).z() > 0.8) top.faces.push_back(f);
     ensure_root(set, mesh);
     const std::string ant = (scratch / "ball.ant.json").string();
-    write_annotations(ant, set, mesh, ball, {});
+    write_annotations(ant, {mesh, set}, ball, {});
     result = run_command(start + " --annotations " + ant + " --annotation top --threshold 0.15 --json");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json report = parse_json(result.out, "report");

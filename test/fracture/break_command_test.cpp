@@ -19,7 +19,7 @@ TEST(BreakCommand, TheCentreIsAPointOrATag) {
     set.annotations.emplace_back();
     set.annotations[0].tag = "head";
     set.annotations[0].faces = {0, 1, 2};
-    write_annotations(scratch / "ball.ant.json", set, ball, "ball.ply", {});
+    write_annotations(scratch / "ball.ant.json", {ball, set}, "ball.ply", {});
     const Path piece = scratch / "piece.ply", annotations = scratch / "piece.ant.json";
     const std::string command = "mesh break " + quoted(scratch / "ball.ply") + " " + quoted(piece),
                       annotated = command + " --annotations " + quoted(scratch / "ball.ant.json"),

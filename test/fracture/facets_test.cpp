@@ -211,7 +211,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     EXPECT_TRUE(report["result"]["shell"].GetBool());
     const AnnotationSet set = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     ASSERT_EQ(set.annotations.size(), 3U);
-    EXPECT_GT(agreement(sherd, facets_of(sherd.mesh, set)), 0.95);
+    EXPECT_GT(agreement(sherd, facets_of({sherd.mesh, set})), 0.95);
     // Again, with existing landmarks and other regions, one facet with a different spelling and one duplicated.
     AnnotationSet more = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     Annotation mark, handle;
@@ -233,7 +233,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     Annotation twice = more.annotations[0];
     twice.id = again;
     more.annotations.insert(more.annotations.end(), {mark, handle, twice});
-    write_annotations(scratch / "sherd.ant.json", more, sherd.mesh, "sherd.ply", {});
+    write_annotations(scratch / "sherd.ant.json", {sherd.mesh, more}, "sherd.ply", {});
     const std::string update = "annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ant.json");
     EXPECT_EQ(test::run_command(update + " --unit cm").code, 2) << "the file says mm";
     ASSERT_EQ(test::run_command(update).code, 0);
@@ -246,13 +246,13 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const std::string before = read_file(scratch / "sherd.ant.json");
     ASSERT_EQ(test::run_command(update + " --output " + quoted(scratch / "other.ant.json")).code, 0);
     EXPECT_EQ(read_file(scratch / "sherd.ant.json"), before) << "--output leaves the file as it is";
-    EXPECT_EQ(facets_of(sherd.mesh, read_annotations(scratch / "other.ant.json", sherd.mesh)), facets_of(sherd.mesh, set));
+    EXPECT_EQ(facets_of({sherd.mesh, read_annotations(scratch / "other.ant.json", sherd.mesh)}), facets_of({sherd.mesh, set}));
     EXPECT_EQ(test::run_command(update + " --output " + quoted(scratch / "sherd.ant.json")).code, 2);
     EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ply")).code,
               2)
         << "the mesh is not written over";
     EXPECT_EQ(updated.annotations.size(), 5U);
-    EXPECT_EQ(facets_of(sherd.mesh, updated), facets_of(sherd.mesh, set));
+    EXPECT_EQ(facets_of({sherd.mesh, updated}), facets_of({sherd.mesh, set}));
     ASSERT_NE(updated.find(outer), nullptr);
     EXPECT_EQ(updated.find(outer)->tag, "Outer");
     EXPECT_EQ(updated.find(outer)->faces, set.annotations[0].faces);

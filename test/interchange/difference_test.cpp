@@ -184,7 +184,7 @@ TEST(Merge, ConflictsAreTheSameFromBothSides) {
         if (forward.empty()) {
             EXPECT_EQ(as_file(merge_annotations(base, a, b, ours).set, mesh), as_file(merge_annotations(base, a, b).set, mesh));
         }
-        EXPECT_NO_THROW(check_annotations(merge_annotations(base, a, b, ours).set, mesh, "merged"));
+        EXPECT_NO_THROW(check_annotations({mesh, merge_annotations(base, a, b, ours).set}, "merged"));
     }
     EXPECT_GT(with_conflicts, 5U);
 }

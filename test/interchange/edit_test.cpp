@@ -163,7 +163,7 @@ TEST(Edit, DamagedListsAreRefusedWithAMessage) {
         AnnotationSet set = tile_set(mesh);
         try {
             edit_annotations(mesh, set, edits_from_json(parse_json(test::mutate(list, seed), "e"), "e"), "e");
-            EXPECT_NO_THROW(check_annotations(set, mesh, "edited"));
+            EXPECT_NO_THROW(check_annotations({mesh, set}, "edited"));
             ++successes;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();

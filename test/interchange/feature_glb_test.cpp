@@ -19,9 +19,9 @@ using namespace ostraka::example;
 
 namespace {
 
-std::string written(const Mesh& mesh, const AnnotationSet& set) {
+std::string written(AnnotatedMeshView object) {
     std::vector<std::string> notes;
-    return feature_glb(mesh, set, "m <1>.ply", {}, notes);
+    return feature_glb(object, "m <1>.ply", {}, notes);
 }
 
 std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
@@ -65,18 +65,18 @@ std::string with(const std::string& glb, const std::string& from, const std::str
 TEST(FeatureGlb, RoundTripKeepsEverything) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
-    const std::string glb = written(mesh, set);
+    const std::string glb = written({mesh, set});
     const PlacedAnnotations read = read_feature_glb(glb, mesh, "file");
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
     for (const PlacedAnnotation& placement : read.placements) EXPECT_EQ(placement.how, "indices");
-    EXPECT_EQ(written(mesh, set), glb);
-    EXPECT_EQ(as_file(read_feature_glb(written(mesh, {}), mesh, "f").set, mesh), as_file({}, mesh));
+    EXPECT_EQ(written({mesh, set}), glb);
+    EXPECT_EQ(as_file(read_feature_glb(written({mesh, {}}), mesh, "f").set, mesh), as_file({}, mesh));
 }
 
 TEST(FeatureGlb, ConformsToTheFormat) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
-    const std::string glb = written(mesh, set);
+    const std::string glb = written({mesh, set});
     EXPECT_EQ(glb.substr(0, 4), "glTF");
     EXPECT_EQ(word_at(glb, 8), glb.size());
     const std::size_t json_size = word_at(glb, 12), binary = 20 + json_size + 8;
@@ -137,7 +137,7 @@ TEST(FeatureGlb, ConformsToTheFormat) {
 TEST(FeatureGlb, IsShownUprightInMetres) {
     const Mesh mesh = spheres(3);
     AnnotationSet set = wild_set(mesh);
-    const Json json = json_of(written(mesh, set));
+    const Json json = json_of(written({mesh, set}));
     const JsonValue& node = json["nodes"][json["scenes"][0]["nodes"][0].GetUint()];
     EXPECT_EQ(node["children"][0].GetInt(), 0);
     EXPECT_NEAR(node["scale"][0].GetDouble(), 0.001, 1e-15);
@@ -147,9 +147,9 @@ TEST(FeatureGlb, IsShownUprightInMetres) {
     EXPECT_LT((rotation * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
     set.up.reset();
     set.unit = "";
-    EXPECT_EQ(json_of(written(mesh, set))["nodes"].Size(), 1U);
+    EXPECT_EQ(json_of(written({mesh, set}))["nodes"].Size(), 1U);
     set.up = {0, -1, 0};  // upside down
-    const Json turned = json_of(written(mesh, set));
+    const Json turned = json_of(written({mesh, set}));
     EXPECT_NEAR(std::abs(turned["nodes"][1]["rotation"][3].GetDouble()), 0, 1e-12);
 }
 
@@ -162,7 +162,7 @@ TEST(FeatureGlb, TheSmallestRegionLiesInTheFirstSet) {
         for (Index f = 0; f < count; ++f) region.faces.push_back(f);
         set.annotations.push_back(region);
     }
-    const Json document = json_of(written(mesh, set));
+    const Json document = json_of(written({mesh, set}));
     const JsonValue& ids = document["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"];
     EXPECT_EQ(ids.Size(), 3U);
     // Disjoint regions need one set; vertices on their border are duplicated, others are not.
@@ -173,7 +173,7 @@ TEST(FeatureGlb, TheSmallestRegionLiesInTheFirstSet) {
         for (Index f = 0; f < 16; ++f) region.faces.push_back(16 * half + f);
         halves.annotations.push_back(region);
     }
-    const Json flat = json_of(written(mesh, halves));
+    const Json flat = json_of(written({mesh, halves}));
     const JsonValue& primitive = flat["meshes"][0]["primitives"][0];
     EXPECT_EQ(primitive["extensions"]["EXT_mesh_features"]["featureIds"].Size(), 1U);
     EXPECT_EQ(flat["accessors"][primitive["attributes"]["POSITION"].GetUint()]["count"].GetUint(), 25U + 5U);
@@ -189,7 +189,7 @@ TEST(FeatureGlb, ManyAnnotationsHaveFloatIds) {
         point.points = {static_cast<Index>(i % 9)};
         set.annotations.push_back(std::move(point));
     }
-    const PlacedAnnotations read = read_feature_glb(written(mesh, set), mesh, "f");
+    const PlacedAnnotations read = read_feature_glb(written({mesh, set}), mesh, "f");
     ASSERT_EQ(read.set.annotations.size(), set.annotations.size());
     for (std::size_t i = 0; i < set.annotations.size(); i += 997)
         EXPECT_EQ(read.set.annotations[i].points, set.annotations[i].points);
@@ -198,7 +198,7 @@ TEST(FeatureGlb, ManyAnnotationsHaveFloatIds) {
 TEST(FeatureGlb, AnotherMeshTakesTheNearestFeatures) {
     const Mesh mesh = spheres(4);
     const AnnotationSet set = wild_set(mesh);
-    const std::string glb = written(mesh, set);
+    const std::string glb = written({mesh, set});
     TriangleSoup soup = to_soup(spheres(5));
     for (auto& p : soup.points) p = {0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]};
     const Mesh other = build_mesh(soup);
@@ -220,7 +220,7 @@ TEST(FeatureGlb, AnotherMeshTakesTheNearestFeatures) {
 
 TEST(FeatureGlb, InvalidFilesAreRefusedWithTheirPosition) {
     const Mesh mesh = spheres(3);
-    const std::string glb = written(mesh, wild_set(mesh));
+    const std::string glb = written({mesh, wild_set(mesh)});
     EXPECT_NE(message("solid", mesh).find("not a GLB"), std::string::npos);
     EXPECT_NE(message(glb.substr(0, glb.size() / 2), mesh).find("truncated"), std::string::npos);
     EXPECT_EQ(message(with(glb, "\"scene\":0", "\"scene\":0"), mesh), "");
@@ -245,7 +245,7 @@ TEST(FeatureGlb, ThePublicValidatorFindsNoError) {
         GTEST_SKIP() << "set OSTRAKA_GLTF_VALIDATOR to the folder of the npm package gltf-validator";
     const Mesh mesh = spheres(3);
     const test::Scratch scratch;
-    const Path glb = scratch.file("a.glb", written(mesh, wild_set(mesh)));
+    const Path glb = scratch.file("a.glb", written({mesh, wild_set(mesh)}));
     const Path script = scratch.file(
         "check.js",
         std::string("const v = require(") + '"' + module + "\");\n" +
@@ -259,7 +259,7 @@ TEST(FeatureGlb, ThePublicValidatorFindsNoError) {
 
 TEST(FeatureGlb, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3), other = spheres(2);
-    const std::string glb = written(mesh, wild_set(mesh));
+    const std::string glb = written({mesh, wild_set(mesh)});
     std::size_t successes = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
         try {
@@ -313,11 +313,11 @@ TEST(FeatureGlb, FreeOutlinesRoundTripExactly) {
         if (const Point p = centroid(mesh, f); std::abs(p.z()) < 0.7) set.annotations[p.z() > 0.1 ? 0 : 1].faces.push_back(f);
     fair_outlines(mesh, set, {});
     ASSERT_TRUE(is_free(set.annotations[0]) && is_free(set.annotations[1]));
-    const std::string glb = written(mesh, set);
+    const std::string glb = written({mesh, set});
     const PlacedAnnotations read = read_feature_glb(glb, mesh, "file");
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
     for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read.set.annotations.at(i).curves, set.annotations[i].curves);
-    EXPECT_EQ(written(mesh, read.set), glb);
+    EXPECT_EQ(written({mesh, read.set}), glb);
     // A feature renamed by another tool is accepted: its faces are then those in the file.
     const std::string renamed = with(glb, "\"tag\":\"part 0\"", "\"tag\":\"past 0\"");
     EXPECT_EQ(read_feature_glb(renamed, mesh, "file").set.annotations.size(), 2U);

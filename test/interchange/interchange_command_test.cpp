@@ -21,7 +21,7 @@ struct Folder : Scratch {
         write(wild_set(mesh), "a.ant.json");
     }
     void write(const AnnotationSet& set, const std::string& name) const {
-        write_annotations(*this / name, set, mesh, "ball.ply", {});
+        write_annotations(*this / name, {mesh, set}, "ball.ply", {});
     }
     [[nodiscard]] std::string at(const std::string& name) const { return (*this / name).string(); }
     [[nodiscard]] test::CommandResult run(const std::string& verb, const std::vector<std::string>& files,

@@ -155,7 +155,7 @@ TEST(Landmarks, PointsAndLinesRoundTrip) {
     const AnnotationSet set = wild_set(mesh);
     for (const LandmarkFormat format : all_formats) {
         std::vector<std::string> notes;
-        const LandmarkSet places = landmarks_of(mesh, set);
+        const LandmarkSet places = landmarks_of({mesh, set});
         EXPECT_EQ(places.notes.size(), 2U);
         const std::string text = landmarks_to_text(places, format, "m.ply", {}, notes, {});
         const auto placed = place_landmarks(mesh, landmarks_from_text(text, format, "f"), "f");
@@ -240,7 +240,7 @@ TEST(Landmarks, DegenerateInput) {
 
 TEST(Landmarks, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(2);
-    LandmarkSet set = landmarks_of(spheres(3), wild_set(spheres(3)));
+    LandmarkSet set = landmarks_of({spheres(3), wild_set(spheres(3))});
     for (const LandmarkFormat format : all_formats) {
         const std::string text = written(set, format);
         std::size_t successes = 0;

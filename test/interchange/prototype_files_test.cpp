@@ -13,7 +13,7 @@ TEST(PrototypeFiles, AnnotationsRoundTrip) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     std::vector<std::string> notes;
-    const std::string text = prototype_annotations(mesh, set, notes);
+    const std::string text = prototype_annotations({mesh, set}, notes);
     EXPECT_EQ(text.find_first_of("<>&"), std::string::npos);
     EXPECT_FALSE(notes.empty());
     const Json document = parse_json(text, "f");
@@ -64,7 +64,7 @@ TEST(PrototypeFiles, FacetsRoundTrip) {
         if (centroid(mesh, f).x() > 1.5) ball.faces.push_back(f);
     set.annotations.push_back(ball);
     std::vector<std::string> notes;
-    const std::string text = prototype_facets(mesh, set, "m.ply", notes);
+    const std::string text = prototype_facets({mesh, set}, "m.ply", notes);
     const AnnotationSet read = read_prototype_facets(text, mesh, "f");
     std::vector<const Annotation*> regions;
     for (const Annotation& annotation : set.annotations)
@@ -100,8 +100,8 @@ TEST(PrototypeFiles, FacetsRoundTrip) {
 TEST(PrototypeFiles, DamagedFacetsAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3);
     std::vector<std::string> notes;
-    const std::string facets = prototype_facets(mesh, wild_set(mesh), "m.ply", notes),
-                      ant = prototype_annotations(mesh, wild_set(mesh), notes);
+    const std::string facets = prototype_facets({mesh, wild_set(mesh)}, "m.ply", notes),
+                      ant = prototype_annotations({mesh, wild_set(mesh)}, notes);
     std::size_t successes = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed)
         for (const bool facet : {true, false}) {

@@ -155,7 +155,7 @@ inline AnnotationSet copy_of(const AnnotationSet& set) {
 
 /// Text of the set's file; sets are equal if their texts are.
 inline std::string as_file(const AnnotationSet& set, const Mesh& mesh) {
-    return to_text(annotations_to_json(set, mesh, "m.ply", {}));
+    return to_text(annotations_to_json({mesh, set}, "m.ply", {}));
 }
 
 /// Checks that `whole` does not contain `part` outside of quoted data.

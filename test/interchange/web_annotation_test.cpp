@@ -57,17 +57,17 @@ std::string message(const std::string& text, const Mesh& mesh, const PlaceOption
 TEST(WebAnnotation, RoundTripsByIndices) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
-    const std::string text = web_annotations(mesh, set, "m <1>.ply", {});
+    const std::string text = web_annotations({mesh, set}, "m <1>.ply", {});
     const PlacedAnnotations read = read_web_annotations(text, mesh, "file");
     EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
     for (const PlacedAnnotation& placement : read.placements) EXPECT_EQ(placement.how, "indices");
-    EXPECT_EQ(web_annotations(mesh, set, "m <1>.ply", {}), text);
+    EXPECT_EQ(web_annotations({mesh, set}, "m <1>.ply", {}), text);
 }
 
 TEST(WebAnnotation, ConformsToTheModelAndIsSafeInAPage) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
-    const std::string text = web_annotations(mesh, set, "m <1>.ply", {});
+    const std::string text = web_annotations({mesh, set}, "m <1>.ply", {});
     EXPECT_EQ(text.find_first_of("<>&"), std::string::npos);
     const Json document = parse_json(text, "text");
     EXPECT_STREQ(document["@context"][0].GetString(), "http://www.w3.org/ns/anno.jsonld");
@@ -104,7 +104,7 @@ TEST(WebAnnotation, TheSameShapeWithOtherIndicesGivesTheSameSelections) {
     set.annotations.push_back(ball);
     set.annotations.push_back(ring);
     const Mesh other = shuffled(mesh);
-    const PlacedAnnotations read = read_web_annotations(web_annotations(mesh, set, "m.ply", {}), other, "file");
+    const PlacedAnnotations read = read_web_annotations(web_annotations({mesh, set}, "m.ply", {}), other, "file");
     ASSERT_EQ(read.set.annotations.size(), set.annotations.size());
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation &before = set.annotations[i], &after = read.set.annotations[i];
@@ -137,7 +137,7 @@ TEST(WebAnnotation, AnotherResolutionKeepsPlacesAndAreas) {
     for (const Face f : mesh.faces())
         if (centroid(mesh, f).z() > 0.5) cap.faces.push_back(f);
     set.annotations.push_back(cap);
-    const std::string text = web_annotations(mesh, set, "m.ply", {});
+    const std::string text = web_annotations({mesh, set}, "m.ply", {});
     const double original_area = area_of(mesh, cap);
     for (const int level : {4, 6}) {
         // Rotated, so that no vertex coincides with an old one.
@@ -175,7 +175,7 @@ TEST(WebAnnotation, AnnotationsOfOtherToolsAreRead) {
 
 TEST(WebAnnotation, FarPointsAreRefusedOrSkipped) {
     const Mesh mesh = spheres(3);
-    const std::string text = web_annotations(mesh, wild_set(mesh), "m.ply", {});
+    const std::string text = web_annotations({mesh, wild_set(mesh)}, "m.ply", {});
     const Mesh moved = spheres(3, {{50, 0, 0}});
     EXPECT_NE(message(text, moved).find("--skip-far"), std::string::npos);
     PlaceOptions skip;
@@ -187,7 +187,7 @@ TEST(WebAnnotation, FarPointsAreRefusedOrSkipped) {
 TEST(WebAnnotation, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3), other = shuffled(mesh);
     AnnotationSet set = wild_set(mesh);
-    const std::string text = web_annotations(mesh, set, "m.ply", {});
+    const std::string text = web_annotations({mesh, set}, "m.ply", {});
     std::size_t successes = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
         try {

@@ -101,7 +101,7 @@ TEST(Tetrahedra, AnnotationsOfTheirSurfaceAreTransferredBothWays) {
     for (const Face f : file.mesh.faces())
         if (centroid(file.mesh, f).z() > 0.99) lid.faces.push_back(f.idx());
     set.annotations = {lid};
-    write_annotations(scratch / "cube.ant.json", set, file.mesh, "cube.mesh", Provenance{"test", {}, {}});
+    write_annotations(scratch / "cube.ant.json", {file.mesh, set}, "cube.mesh", Provenance{"test", {}, {}});
     write_mesh(scratch / "cube.ply", file.mesh, file.extras);
     write_mesh(scratch / "cube.vtu", file.mesh, file.extras);
     for (const char* name : {"cube.mesh", "cube.ply", "cube.vtu"})

@@ -30,7 +30,7 @@ protected:
         side.tag = "side";
         for (const Face f : mesh.faces())
             if (centroid(mesh, f).x() == 0) side.faces.push_back(f);
-        write_annotations(annotated, set, mesh, cube.string(), {});
+        write_annotations(annotated, {mesh, set}, cube.string(), {});
     }
     Index vertex_at(double x, double y, double z) const {
         for (const Vertex v : mesh.vertices())
@@ -197,7 +197,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     write_values(map, {1, 2, 3});
     AnnotationSet changed = updated;
     changed.annotations[0].attributes[0].descriptor.sha256 = sha256_of_file(map);
-    write_annotations(set_file, changed, body, pot.string(), {});
+    write_annotations(set_file, {body, changed}, pot.string(), {});
     EXPECT_EQ(check().code, 3);
     EXPECT_NE(check().out.find("which has 3 numbers"), std::string::npos) << check().out;
     std::filesystem::remove(map);
@@ -205,7 +205,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_NE(check().out.find("is not there"), std::string::npos) << check().out;
 
     // At another resolution the map belongs to the old mesh.
-    write_annotations(set_file, set, body, pot.string(), {});
+    write_annotations(set_file, {body, set}, pot.string(), {});
     const Path finer = scratch / "finer.ply", carried = scratch / "finer.ant.json";
     const auto refined = run_command("mesh refine " + pot.string() + " " + finer.string() + " --vertices 500 --annotations " +
                                      set_file.string() + " --annotations-out " + carried.string());

@@ -76,7 +76,7 @@ TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
         set.annotations[0].attributes[0].name = "height";
         set.annotations[0].attributes[0].measure = measure("bounding", {ends[0], ends[1]}, direction);
         set.up = direction;
-        EXPECT_NO_THROW(check_annotations(set, mesh, "set")) << length;
+        EXPECT_NO_THROW(check_annotations({mesh, set}, "set")) << length;
     }
 }
 
@@ -183,7 +183,7 @@ TEST(Examine, DefectsAndRemarks) {
     attribute.type = AttributeType::measure;
     attribute.measure = measure("ruler", {0, 1});
     attribute.measure.value = 1.5;
-    std::vector<Finding> findings = examine(mesh, set);
+    std::vector<Finding> findings = examine({mesh, set});
     EXPECT_TRUE(mentions(findings, false, "2 separate patches"));
     EXPECT_TRUE(mentions(findings, false, "touch"));
     EXPECT_TRUE(mentions(findings, false, "'same' is used 2 times"));
@@ -194,11 +194,11 @@ TEST(Examine, DefectsAndRemarks) {
     EXPECT_TRUE(mentions(findings, true, "tag is empty"));
     EXPECT_TRUE(mentions(findings, true, "is 1.5 but measures 1"));
     attribute.measure.stale = true;
-    EXPECT_TRUE(mentions(examine(mesh, set), true, "stale"));
+    EXPECT_TRUE(mentions(examine({mesh, set}), true, "stale"));
     attribute.measure.stale = false;
     attribute.measure.value.reset();
-    EXPECT_TRUE(mentions(examine(mesh, set), false, "has no value"));
-    EXPECT_TRUE(examine(mesh, AnnotationSet()).empty());
+    EXPECT_TRUE(mentions(examine({mesh, set}), false, "has no value"));
+    EXPECT_TRUE(examine({mesh, AnnotationSet()}).empty());
 }
 
 TEST(Examine, Summaries) {

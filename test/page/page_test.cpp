@@ -67,18 +67,16 @@ std::string bytes_of_view(const std::string& glb, const JsonValue& packed) {
 }
 
 /// A sphere far from the origin with a region, a region in it, a line and a point.
-struct Annotated {
+struct Annotated : AnnotatedMesh {
     TriangleSoup soup = octahedron_sphere(4);
-    Mesh mesh;
-    AnnotationSet set;
 
     explicit Annotated(const std::string& tag = "cap") {
         for (auto& p : soup.points)
             for (std::size_t k = 0; k < 3; ++k) p[k] = 7 * p[k] + 1000.0 * static_cast<double>(k + 1);
         mesh = build_mesh(soup);
-        set.unit = "mm";
-        set.annotations.reserve(4);  // the parts are named below
-        Annotation& upper = set.annotations.emplace_back();
+        annotations.unit = "mm";
+        annotations.annotations.reserve(4);  // the parts are named below
+        Annotation& upper = annotations.annotations.emplace_back();
         upper.id = 4;
         upper.tag = tag;
         for (Index f = 0; f < soup.triangles.size(); ++f)
@@ -90,16 +88,16 @@ struct Annotated {
         measure.measure.points = {0, 1};
         measure.measure.value = 14;
         measure.measure.unit = "mm";
-        Annotation& top = set.annotations.emplace_back();
+        Annotation& top = annotations.annotations.emplace_back();
         top.id = 9;
         top.tag = "top";
         for (const Index f : upper.faces)
             if (soup.points[soup.triangles[f][0]][2] > 3006) top.faces.push_back(f);
-        Annotation& line = set.annotations.emplace_back();
+        Annotation& line = annotations.annotations.emplace_back();
         line.id = 11;
         line.type = AnnotationType::line;
         line.polylines = {{soup.triangles[0][0], soup.triangles[0][1]}};
-        Annotation& point = set.annotations.emplace_back();
+        Annotation& point = annotations.annotations.emplace_back();
         point.id = 12;
         point.type = AnnotationType::point;
         point.points = {5};
@@ -108,7 +106,7 @@ struct Annotated {
         PageObject page_object;
         page_object.name = "sphere";
         page_object.mesh = &mesh;
-        page_object.annotations = &set;
+        page_object.annotations = &annotations;
         return page_object;
     }
 };
@@ -161,7 +159,7 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
     const Annotated annotated;
     Page page("a sphere");
     page.add(annotated.object());
-    page.add(annotation_table(annotated.mesh, annotated.set, 0, "sphere"));
+    page.add(annotation_table(annotated, 0, "sphere"));
     const ReadPage read(page.html(""));
     const JsonValue& annotations = read.data["objects"][0]["annotations"];
     ASSERT_EQ(annotations.Size(), 4U);
@@ -184,7 +182,7 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
             face += next();
             for (Index run = next(); run > 0; --run) faces.push_back(face++);
         }
-        EXPECT_EQ(faces, annotated.set.annotations[i].faces);
+        EXPECT_EQ(faces, annotated.annotations.annotations[i].faces);
     }
     const JsonValue& pins = annotations[0]["measures"][0]["pins"];
     const JsonValue& origin = read.data["objects"][0]["origin"];
@@ -193,7 +191,7 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
     EXPECT_EQ(annotations[2]["lines"][0][1].GetUint(), annotated.soup.triangles[0][1]);
     EXPECT_EQ(annotations[3]["points"][0].GetUint(), 5U);
     const JsonValue& rows = read.data["tables"][0]["rows"];
-    EXPECT_NEAR(rows[0][4].GetDouble(), area_of(annotated.mesh, annotated.set.annotations[0].faces), 1e-9);
+    EXPECT_NEAR(rows[0][4].GetDouble(), area_of(annotated.mesh, annotated.annotations.annotations[0].faces), 1e-9);
     EXPECT_EQ(read.data["tables"][0]["annotations"][1].GetInt(), 1);
 }
 
@@ -201,13 +199,13 @@ TEST(Page, HoldsCurvesThatRunThroughTheTriangles) {
     Annotated annotated;
     const std::string recipe = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 20, "tag": "cap",
         "type": "region", "outline": "free", "select": {"sphere": {"centre": [1007, 2000, 3000], "radius": 5.3}}}]})";
-    annotated.set = apply_recipe(parse_json(recipe, "r"), annotated.mesh, {}, "r");
-    ASSERT_TRUE(is_free(annotated.set.annotations[0]));
+    annotated.annotations = apply_recipe(parse_json(recipe, "r"), annotated.mesh, {}, "r");
+    ASSERT_TRUE(is_free(annotated.annotations.annotations[0]));
     Page page("a sphere");
     page.add(annotated.object());
     const ReadPage read(page.html(""));
     const JsonValue &entry = read.data["objects"][0]["annotations"][0], &origin = read.data["objects"][0]["origin"];
-    const auto curves = curves_on(annotated.mesh, annotated.set.annotations[0]);
+    const auto curves = curves_on(annotated.mesh, annotated.annotations.annotations[0]);
     ASSERT_EQ(entry["curves"].Size(), curves.size());
     ASSERT_EQ(entry["curves"][0].Size(), curves[0].points.size());
     for (rapidjson::SizeType i = 0; i < curves[0].points.size(); ++i) {
@@ -342,14 +340,14 @@ TEST(Page, PageOfACollectionLoadsObjectsFromItsFolder) {
 TEST(Page, EscapesMarkupInTexts) {
     const std::string evil = "</script><img src=x onerror=alert(1)><!--";
     Annotated annotated(evil);
-    annotated.set.unit = evil;
-    annotated.set.annotations[0].note = evil;
-    annotated.set.annotations[0].attributes[0].name = evil;
+    annotated.annotations.unit = evil;
+    annotated.annotations.annotations[0].note = evil;
+    annotated.annotations.annotations[0].attributes[0].name = evil;
     Page page(evil);
     PageObject object = annotated.object();
     object.name = evil;
     page.add(object);
-    page.add(annotation_table(annotated.mesh, annotated.set, 0, evil));
+    page.add(annotation_table(annotated, 0, evil));
     page.add_drawing(evil, "<svg/>");
     page.note(evil);
     const std::string html = page.html(evil), plain = Page("").html("");

@@ -178,7 +178,7 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     stated.tag = "Fracture";
     for (Index f = 0; f < sherd.facets.size(); f += 10) stated.faces.push_back(f);
     set.annotations.push_back(stated);
-    write_annotations(scratch / "sherd.ant.json", set, sherd.mesh, "sherd.ply", {});
+    write_annotations(scratch / "sherd.ant.json", {sherd.mesh, set}, "sherd.ply", {});
     options.facets = FacetSource::either;
     const FragmentFile either = read_fragment(scratch / "sherd.ply", options);
     EXPECT_EQ(either.facets_from, "annotations");
@@ -193,7 +193,7 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     set.annotations[0].all = true;
     set.annotations[0].faces.resize(sherd.facets.size());
     std::iota(set.annotations[0].faces.begin(), set.annotations[0].faces.end(), 0U);
-    write_annotations(scratch / "sherd.ant.json", set, sherd.mesh, "sherd.ply", {});
+    write_annotations(scratch / "sherd.ant.json", {sherd.mesh, set}, "sherd.ply", {});
     const FragmentFile fragment = read_fragment(scratch / "sherd.ply", options);
     EXPECT_EQ(fragment.facets_from, "shape and annotations");
     EXPECT_EQ(fragment.fragment.facets, std::vector<Facet>(sherd.facets.size(), Facet::fracture));

@@ -61,7 +61,7 @@ protected:
 
 TEST_F(CageFit, RecoversADeformationByTheCage) {
     make(4, 60);
-    TemplateFitter fitter(mesh, set, &cage);
+    TemplateFitter fitter({mesh, set}, &cage);
     const double in_cage = worst(fitter.fit(1, placed(original), in("cage"))),
                  direct = worst(fitter.fit(1, placed(original), in("mesh"))),
                  both = worst(fitter.fit(1, placed(original), in("both")));
@@ -72,7 +72,7 @@ TEST_F(CageFit, RecoversADeformationByTheCage) {
 
 TEST_F(CageFit, RecoversTheDeformationOfALargeTemplate) {
     make(6, 80);
-    TemplateFitter fitter(mesh, set, &cage);
+    TemplateFitter fitter({mesh, set}, &cage);
     EXPECT_LT(worst(fitter.fit(1, placed(original), in("cage"))), 1e-4) << "levels are solved on a simplified template";
 }
 
@@ -83,7 +83,7 @@ TEST_F(CageFit, NoiseFoldsNoFace) {
     const double amount = 0.01 * box_diagonal(mesh);
     for (const Vertex v : rough.vertices())
         rough.point(v) = rough.point(v) + amount * (2 * random.uniform() - 1) * vertex_normal(original, v);
-    std::vector<Point> points = TemplateFitter(mesh, set, &cage).fit(1, placed(rough), in("cage")).points;
+    std::vector<Point> points = TemplateFitter({mesh, set}, &cage).fit(1, placed(rough), in("cage")).points;
     Mesh fitted = mesh;
     for (const Vertex v : fitted.vertices()) fitted.point(v) = points[v];
     for (const Face face : mesh.faces()) EXPECT_GT(area_vector(fitted, face) * area_vector(original, face), 0);
@@ -91,7 +91,7 @@ TEST_F(CageFit, NoiseFoldsNoFace) {
 
 TEST_F(CageFit, TheSameForAnyNumberOfThreadsAndAfterEarlierFits) {
     make(3, 40);
-    TemplateFitter fitter(mesh, set, &cage);
+    TemplateFitter fitter({mesh, set}, &cage);
     const int before = threads();
     set_threads(1);
     const NonRigidFit alone = fitter.fit(1, placed(original), in("cage"));
@@ -107,10 +107,10 @@ TEST_F(CageFit, FragmentsOfTheObjectThroughTheCage) {
     const AnnotationSet landmarks = landmarks_of(mesh);
     FragmentOptions options;
     options.share = 0.5;
-    const Cut cut_piece = cut(original, landmarks, Point(0, 0, 1.9), options);
+    const Cut cut_piece = cut({original, landmarks}, Point(0, 0, 1.9), options);
     ReconstructOptions options_in_cage;
     options_in_cage.fit.space = NonRigidOptions::Space::cage;
-    const Reconstruction result = reconstruct(mesh, landmarks, {}, {&cut_piece.fragment}, options_in_cage, {}, nullptr, &cage);
+    const Reconstruction result = reconstruct({mesh, landmarks}, {}, {&cut_piece.fragment}, options_in_cage, {}, nullptr, &cage);
     ASSERT_TRUE(result.placement.any());
     EXPECT_NEAR(result.observed_share, 0.5, 0.08);
     EXPECT_EQ(result.crossings, 0U);
@@ -127,15 +127,15 @@ TEST_F(CageFit, RefusesAnInvalidCage) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         EXPECT_NE(std::string(error.what()).find("outside"), std::string::npos) << error.what();
     }
-    EXPECT_THROW((void)TemplateFitter(mesh, set).fit(1, placed(original), in("cage")), Error);
+    EXPECT_THROW((void)TemplateFitter({mesh, set}).fit(1, placed(original), in("cage")), Error);
     ReconstructOptions options_in_cage;
     options_in_cage.fit.space = NonRigidOptions::Space::both;
     const RelationGraph graph;
-    EXPECT_THROW(Reconstructor(mesh, set, graph, options_in_cage), Error);
+    EXPECT_THROW(Reconstructor({mesh, set}, graph, options_in_cage), Error);
     const TemplateCage green{cage.cage, compute_coordinates("green", cage.cage, mesh)};
-    EXPECT_THROW(TemplateFitter(mesh, set, &green), Error);
+    EXPECT_THROW(TemplateFitter({mesh, set}, &green), Error);
     const Mesh other = body(2);
-    EXPECT_THROW(TemplateFitter(other, set, &cage), Error);
+    EXPECT_THROW(TemplateFitter({other, set}, &cage), Error);
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ TEST(Fit, AFragmentOfTheTemplateItselfChangesNothing) {
     const AnnotationSet set = landmarks_of(original);
     FragmentOptions options;
     options.share = 0.4;
-    const Cut cut_piece = cut(original, set, Point(0, 0, 1.8), options);
-    const Reconstruction result = reconstruct(original, set, {}, {&cut_piece.fragment});
+    const Cut cut_piece = cut({original, set}, Point(0, 0, 1.8), options);
+    const Reconstruction result = reconstruct({original, set}, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     EXPECT_NEAR(result.placement.scale, 1, 1e-9);
     EXPECT_LT((result.placement.fragments[0].pose.rotation - cut_piece.piece.pose.rotation).norm(), 1e-9);
@@ -49,8 +49,8 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
         mesh, [](const Vector3d& p) { return Vector3d(p.x() * (1 + 0.1 * p.z()), p.y() + 0.08 * p.z() * p.z(), 1.08 * p.z()); });
     FragmentOptions options;
     options.share = 0.5;
-    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Cut cut_piece = cut({original, set}, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     EXPECT_NEAR(result.observed_share, 0.5, 0.08);
     std::vector<bool> observed(mesh.number_of_vertices(), false);
@@ -79,8 +79,8 @@ TEST(Fit, TheUnobservedPartKeepsItsSizeWhereTheFragmentIsNarrowAtTheFracture) {
     });
     FragmentOptions options;
     options.share = 0.5;
-    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Cut cut_piece = cut({original, set}, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     // Distances of the points of the missing end from their mean.
     std::vector<Vector3d> at_rest, fitted;
@@ -106,8 +106,8 @@ TEST(Fit, NoiseDoesNotSpreadIntoTheUnobservedPart) {
     options.share = 0.3;
     options.noise = 0.005;
     options.erosion = 0.01;
-    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Cut cut_piece = cut({mesh, set}, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     const Motion frame = result.placement.fragments[0].pose.after(cut_piece.piece.pose.inverse());
     for (const Vertex v : mesh.vertices())
         if (result.distance[v] < 0) {
@@ -129,7 +129,7 @@ TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
     AnnotationSet points = landmarks_of(mesh);
     FragmentOptions options;
     options.share = 0.4;
-    Cut cut_piece = cut(original, points, Point(0, 0, 1.9), options);
+    Cut cut_piece = cut({original, points}, Point(0, 0, 1.9), options);
     Annotation part = head;
     part.faces.clear();
     for (Index f = 0; f < cut_piece.piece.faces.size(); ++f)
@@ -138,7 +138,7 @@ TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
     for (const std::string counterparts : {"surface", "best", "one-to-one"}) {
         ReconstructOptions fit_options;
         set_option(fit_options.fit, "counterparts", counterparts);
-        const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, fit_options);
+        const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, fit_options);
         ASSERT_TRUE(result.placement.any());
         std::vector<bool> observed(mesh.number_of_vertices(), false);
         for (const Index f : head.faces)
@@ -154,9 +154,9 @@ TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
 TEST(Fit, NothingIsFittedToAFracture) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    Cut cut_piece = cut(mesh, set, Point(0, 0, 1.8), {});
+    Cut cut_piece = cut({mesh, set}, Point(0, 0, 1.8), {});
     cut_piece.fragment.facets.assign(cut_piece.fragment.mesh.number_of_faces(), Facet::fracture);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     EXPECT_EQ(result.observed_share, 0);
     for (const auto& match : result.fit.matches) EXPECT_EQ(match.fragment, -1);
 }
@@ -165,20 +165,20 @@ TEST(Fit, TheSameForAnyNumberOfThreadsAndFarAway) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
     const Mesh original = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(p.x(), p.y(), 1.1 * p.z()); });
-    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), {});
+    const Cut cut_piece = cut({original, set}, Point(0, 0, 1.9), {});
     const int before = threads();
     set_threads(1);
-    const Reconstruction alone = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Reconstruction alone = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     set_threads(4);
-    const Reconstruction many = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Reconstruction many = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     set_threads(before);
     EXPECT_EQ(alone.points, many.points);
-    Fragment far = cut_piece.fragment.facets.empty() ? Fragment{"far", {}, {}, {}} : Fragment{};
+    Fragment far = cut_piece.fragment.facets.empty() ? Fragment{{}, "far", {}} : Fragment{};
     Motion away;
     away.translation = Vector3d(1e5, -1e5, 1e5);
     far.mesh = moved(cut_piece.fragment.mesh, away);
     for (const auto& annotation : cut_piece.fragment.annotations.annotations) far.annotations.annotations.push_back(annotation);
-    const Reconstruction far_result = reconstruct(mesh, set, {}, {&far});
+    const Reconstruction far_result = reconstruct({mesh, set}, {}, {&far});
     for (std::size_t i = 0; i < alone.points.size(); ++i)
         EXPECT_LT(std::sqrt(CGAL::squared_distance(alone.points[i], far_result.points[i])), 1e-4);
 }
@@ -186,17 +186,17 @@ TEST(Fit, TheSameForAnyNumberOfThreadsAndFarAway) {
 TEST(Fit, WithoutLandmarksItCannotDecide) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    Cut cut_piece = cut(mesh, set, Point(0, 0, 1.8), {});
+    Cut cut_piece = cut({mesh, set}, Point(0, 0, 1.8), {});
     cut_piece.fragment.annotations.annotations.clear();
     ReconstructOptions never;
     never.search.search = SearchOptions::Search::never;
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, never);
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, never);
     EXPECT_EQ(result.verdict, Compatibility::undecided);
     EXPECT_NE(result.undecided, "");
     ASSERT_EQ(result.objections.size(), 1U);
     EXPECT_NE(result.objections[0].text.find("landmarks"), std::string::npos);
     EXPECT_TRUE(result.points.empty());
-    EXPECT_THROW(reconstruct(mesh, set, {}, {}), Error);
+    EXPECT_THROW(reconstruct({mesh, set}, {}, {}), Error);
 }
 
 TEST(Fragments, HaveTheRequestedShareAndPose) {

@@ -57,20 +57,20 @@ protected:
         std::vector<Point> points;
         std::vector<bool> is_observed;  ///< vertices that the fragment has
     };
-    [[nodiscard]] Result fit(const AnnotationSet& set, const Mesh& original, const std::vector<bool>& kept, bool outlines,
+    [[nodiscard]] Result fit(AnnotatedMeshView object, const std::vector<bool>& kept, bool outlines,
                              const std::vector<int>& left_out = {}, const std::string& counterparts = "surface") const {
-        SubMesh sub = keep_faces(original, kept.empty() ? std::vector<bool>(original.number_of_faces(), true) : kept);
-        std::vector<Index> face(original.number_of_faces(), no_index), vertex(original.number_of_vertices(), no_index);
+        SubMesh sub = keep_faces(object.mesh, kept.empty() ? std::vector<bool>(object.mesh.number_of_faces(), true) : kept);
+        std::vector<Index> face(object.mesh.number_of_faces(), no_index), vertex(object.mesh.number_of_vertices(), no_index);
         for (Index f = 0; f < sub.faces.size(); ++f) face[sub.faces[f]] = f;
         Result result;
-        result.is_observed.assign(original.number_of_vertices(), false);
+        result.is_observed.assign(object.mesh.number_of_vertices(), false);
         for (Index v = 0; v < sub.vertices.size(); ++v) {
             vertex[sub.vertices[v]] = v;
             result.is_observed[sub.vertices[v]] = true;
         }
         AnnotationSet theirs;
         PlacedFragment fragment;
-        for (const Annotation& annotation : set.annotations) {
+        for (const Annotation& annotation : object.annotations.annotations) {
             Annotation other = annotation;
             other.faces.clear();
             other.points.clear();
@@ -99,7 +99,7 @@ protected:
         NonRigidOptions options;
         options.outlines = outlines;
         set_option(options, "counterparts", counterparts);
-        result.points = fit_template(mesh, set, fragments, options).points;
+        result.points = fit_template({mesh, object.annotations}, fragments, options).points;
         return result;
     }
     /// Root mean square distance of the vertices of a region from their slid positions, for vertices on the fragment.
@@ -121,7 +121,7 @@ TEST_F(SlidParts, AnOutlineDeterminesHowFarARegionHasSlid) {
     set.annotations = {disc, landmark(1, "left", on_outline(disc, {-0.6, 0, 0.8})),
                        landmark(2, "right", on_outline(disc, {0.6, 0, 0.8}))};
     const Mesh original = slid(20, 0.7);
-    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    const Result with_outlines = fit({original, set}, {}, true), without_outlines = fit({original, set}, {}, false);
     EXPECT_LT(error(with_outlines, original, disc), 0.5 * error(without_outlines, original, disc));
     EXPECT_LT(error(with_outlines, original, disc), 0.02);
 }
@@ -132,7 +132,7 @@ TEST_F(SlidParts, EachOfSeveralOutlinesCounts) {
     set.annotations = {ring, landmark(1, "inner", on_outline(ring, {0.34, 0, 0.94})),
                        landmark(2, "outer", on_outline(ring, {-0.64, 0, 0.77}))};
     const Mesh original = slid(15, 0.75);
-    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    const Result with_outlines = fit({original, set}, {}, true), without_outlines = fit({original, set}, {}, false);
     EXPECT_LT(error(with_outlines, original, ring), 0.5 * error(without_outlines, original, ring));
 }
 
@@ -144,7 +144,7 @@ TEST_F(SlidParts, APartOfAnOutlineWithOneLandmarkHelps) {
     const Mesh original = slid(20, 0.7);
     std::vector<bool> half(mesh.number_of_faces());
     for (const Face face : mesh.faces()) half[face] = centroid(mesh, face).x() < 0.1;
-    const Result with_outlines = fit(set, original, half, true), without_outlines = fit(set, original, half, false);
+    const Result with_outlines = fit({original, set}, half, true), without_outlines = fit({original, set}, half, false);
     EXPECT_LT(error(with_outlines, original, disc), 0.8 * error(without_outlines, original, disc));
 }
 
@@ -165,7 +165,7 @@ TEST_F(SlidParts, LinesCorrespondInEitherDirection) {
     AnnotationSet set;
     set.annotations = {line, landmark(1, "top", vertices.front()), landmark(2, "end", vertices.back())};
     const Mesh original = slid(15, 1.1);
-    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    const Result with_outlines = fit({original, set}, {}, true), without_outlines = fit({original, set}, {}, false);
     EXPECT_LT(error(with_outlines, original, line), 0.6 * error(without_outlines, original, line));
 }
 
@@ -181,9 +181,9 @@ TEST_F(SlidParts, AnOuterPartDoesNotOverrideAnInnerOne) {
                        landmark(4, "d", on_outline(outer, {-1, 0, 0.2}))};
     const Mesh original = slid(20, 0.4);
     for (const std::string counterparts : {"surface", "best"}) {
-        const double alone = error(fit(set, original, {}, true, {101, 3, 4}, counterparts), original, inner);
-        const double both = error(fit(set, original, {}, true, {}, counterparts), original, inner);
-        const double without = error(fit(set, original, {}, true, {100, 1, 2}, counterparts), original, inner);
+        const double alone = error(fit({original, set}, {}, true, {101, 3, 4}, counterparts), original, inner);
+        const double both = error(fit({original, set}, {}, true, {}, counterparts), original, inner);
+        const double without = error(fit({original, set}, {}, true, {100, 1, 2}, counterparts), original, inner);
         EXPECT_LT(both, alone + 0.05 * without) << counterparts;
         EXPECT_LT(both, 0.2 * without) << counterparts;
     }

@@ -54,10 +54,10 @@ struct Cut {
     Fragment fragment;
     SyntheticFragment piece;
 };
-inline Cut cut(const Mesh& original, const AnnotationSet& set, const Point& centre, const FragmentOptions& options) {
-    Cut result{{"piece", {}, {}, {}}, generate_fragment(original, centre, options)};
+inline Cut cut(AnnotatedMeshView object, const Point& centre, const FragmentOptions& options) {
+    Cut result{{{}, "piece", {}}, generate_fragment(object.mesh, centre, options)};
     result.fragment.mesh = result.piece.mesh;
-    for (const Annotation& annotation : set.annotations) {
+    for (const Annotation& annotation : object.annotations.annotations) {
         const auto& original_vertices = result.piece.vertices;
         const auto entry = std::find(original_vertices.begin(), original_vertices.end(), annotation.points.front());
         if (entry != original_vertices.end())

@@ -174,8 +174,8 @@ TEST(Placement, CommonLandmarksHaveAUniqueTagOnEitherSide) {
         return set;
     };
     std::vector<std::string> notes;
-    const auto pairs = common_landmarks(mesh, set_of({{"nose", 0}, {"eye", 1}, {"eye", 2}, {"chin", 3}, {"Ear", 5}}), mesh,
-                                        set_of({{"chin", 5}, {"eye", 4}, {"nose", 3}, {"horn", 1}, {"ear", 2}}), &notes);
+    const auto pairs = common_landmarks({mesh, set_of({{"nose", 0}, {"eye", 1}, {"eye", 2}, {"chin", 3}, {"Ear", 5}})},
+                                        {mesh, set_of({{"chin", 5}, {"eye", 4}, {"nose", 3}, {"horn", 1}, {"ear", 2}})}, &notes);
     ASSERT_EQ(pairs.size(), 2U);
     EXPECT_EQ(pairs[0].name, "chin");
     EXPECT_EQ(pairs[1].name, "nose");
@@ -188,7 +188,7 @@ TEST(Placement, CommonLandmarksHaveAUniqueTagOnEitherSide) {
     AnnotationSet path = set_of({{"chin", 5}, {"nose", 3}});
     path.annotations[0].points.push_back(4);
     notes.clear();
-    EXPECT_EQ(common_landmarks(mesh, set_of({{"nose", 0}, {"chin", 3}}), mesh, path, &notes).size(), 1U);
+    EXPECT_EQ(common_landmarks({mesh, set_of({{"nose", 0}, {"chin", 3}})}, {mesh, path}, &notes).size(), 1U);
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].find("'chin' has several points"), std::string::npos);
 }

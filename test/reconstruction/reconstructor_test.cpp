@@ -61,7 +61,7 @@ struct Pieces {
         options.noise = 0.001;
         const std::vector<Point> places{Point(0, 0, 1.9), Point(0, 0, -1.9), Point(1.2, 0, 0)};
         for (std::size_t k = 0; k < places.size(); ++k) {
-            Cut cut_piece = cut(original, points, places[k], options);
+            Cut cut_piece = cut({original, points}, places[k], options);
             cut_piece.fragment.name = "piece " + std::to_string(k);
             if (k == 0) {
                 Annotation part = head;
@@ -85,12 +85,12 @@ TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
     // With and without a simplified template.
     for (const int levels : {4, 6}) {
         const Pieces pieces(levels);
-        Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+        Reconstructor reconstructor({pieces.mesh, pieces.set}, pieces.graph);
         std::vector<std::size_t> present;
         const auto check = [&](const std::string& context) {
             std::vector<const Fragment*> fragments;
             for (const std::size_t k : present) fragments.push_back(&pieces.fragments[k]);
-            expect_same(reconstructor.run(), reconstruct(pieces.mesh, pieces.set, pieces.graph, fragments), context);
+            expect_same(reconstructor.run(), reconstruct({pieces.mesh, pieces.set}, pieces.graph, fragments), context);
         };
         const auto add = [&](std::size_t k) {
             reconstructor.add(pieces.fragments[k]);
@@ -122,7 +122,7 @@ TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
 
 TEST(Reconstructor, AFragmentIsSearchedOnce) {
     const Pieces pieces(4);
-    Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+    Reconstructor reconstructor({pieces.mesh, pieces.set}, pieces.graph);
     reconstructor.add(pieces.fragments[2]);
     (void)reconstructor.run();
     EXPECT_EQ(reconstructor.searches().made(), 1U);
@@ -135,14 +135,14 @@ TEST(Reconstructor, AFragmentIsSearchedOnce) {
 
 TEST(Reconstructor, RefusesMissingFragmentsAndPositions) {
     const Pieces pieces(3);
-    Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+    Reconstructor reconstructor({pieces.mesh, pieces.set}, pieces.graph);
     EXPECT_THROW((void)reconstructor.run(), Error);
     EXPECT_THROW(reconstructor.remove(0), Error);
     reconstructor.add(pieces.fragments[0]);
     EXPECT_THROW(reconstructor.remove(1), Error);
     Mesh turned = pieces.mesh;
     for (const Vertex v : turned.vertices()) turned.point(v) = point_of(-eigen(turned.point(v)));
-    const Fragment inside_out{"turned", turned, {}, {}};
+    const Fragment inside_out{{turned, {}}, "turned", {}};
     EXPECT_THROW(reconstructor.add(inside_out), Error);
     EXPECT_EQ(reconstructor.size(), 1U);
 }
@@ -181,10 +181,10 @@ TEST_F(PoseSearchFile, IsNotUsedForOtherInputs) {
     // Another fragment, other facets, another range, other options, another template.
     PoseSearches again(pieces.mesh, {});
     EXPECT_EQ(again.add(document, "searches"), 0U);
-    Fragment moved_one{"moved", pieces.fragments[2].mesh, {}, {}};
+    Fragment moved_one{{pieces.fragments[2].mesh, {}}, "moved", {}};
     moved_one.mesh.point(Vertex(0)) = moved_one.mesh.point(Vertex(0)) + Vector(1e-9, 0, 0);
     (void)again.find(moved_one, 1, 1);
-    Fragment broken{"broken", pieces.fragments[2].mesh, {}, {}};
+    Fragment broken{{pieces.fragments[2].mesh, {}}, "broken", {}};
     broken.facets.assign(broken.mesh.number_of_faces(), Facet::outer);
     broken.facets[0] = Facet::fracture;
     (void)again.find(broken, 1, 1);

@@ -53,7 +53,7 @@ std::vector<FragmentPlacement> without_landmarks(std::size_t count) {
 TEST(SearchPlacement, PlacesAFragmentWithoutLandmarks) {
     const Mesh mesh = potato();
     Cut cut_piece = cut(mesh, Point(0, 0.5, 1.6));
-    const Reconstruction result = reconstruct(mesh, {}, {}, {&cut_piece.fragment});
+    const Reconstruction result = reconstruct({mesh, {}}, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     ASSERT_EQ(result.searched.size(), 1U);
     ASSERT_TRUE(result.searched[0].has_value());
@@ -134,11 +134,11 @@ TEST(SearchPlacement, OneLandmarkDecidesTheRotationOfAVessel) {
         if ((eigen(mesh.point(v)) - moved_place).norm() < (eigen(mesh.point(Vertex(same))) - moved_place).norm()) same = v;
     AnnotationSet set;
     set.annotations.push_back(test::landmark(0, "mark", same));
-    const Reconstruction without_landmark = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Reconstruction without_landmark = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     ASSERT_TRUE(without_landmark.searched[0].has_value() && without_landmark.searched[0]->decided);
     EXPECT_EQ(without_landmark.searched[0]->slippable.kind, SlippableKind::rotation);
     cut_piece.fragment.annotations.annotations.push_back(test::landmark(0, "mark", far));
-    const Reconstruction with_landmark = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Reconstruction with_landmark = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
     EXPECT_EQ(with_landmark.searched[0]->slippable.kind, SlippableKind::none);
     EXPECT_LT((with_landmark.placement.fragments[0].pose.rotation - cut_piece.pose.rotation).norm(), 0.02);
     ASSERT_EQ(with_landmark.placement.fragments[0].landmarks.size(), 1U);
@@ -153,14 +153,14 @@ TEST(SearchPlacement, AnotherUnitIsReported) {
         Cut cut_piece = cut(mesh, Point(0, 0.5, 1.6));
         for (const Vertex v : cut_piece.fragment.mesh.vertices())
             cut_piece.fragment.mesh.point(v) = point_of(factor * eigen(cut_piece.fragment.mesh.point(v)));
-        const Reconstruction result = reconstruct(mesh, {}, {}, {&cut_piece.fragment});
+        const Reconstruction result = reconstruct({mesh, {}}, {}, {&cut_piece.fragment});
         EXPECT_FALSE(result.placement.any());
         EXPECT_NE(result.placement.fragments[0].problem.find("another unit"), std::string::npos) << factor;
     }
     Fragment triangle;
     triangle.name = "triangle";
     triangle.mesh = build_mesh({{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}}});
-    EXPECT_FALSE(reconstruct(mesh, {}, {}, {&triangle}).placement.any());
+    EXPECT_FALSE(reconstruct({mesh, {}}, {}, {&triangle}).placement.any());
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ TEST(ShapePrior, TheMissingPartIsThatOfTheObservedMember) {
         FragmentOptions options;
         options.share = 0.35;
         options.noise = 0.001;
-        const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
-        const Reconstruction with_prior = reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
-        const Reconstruction without_prior = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+        const Cut cut_piece = cut({original, set}, Point(0, 0, 1.9), options);
+        const Reconstruction with_prior = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, {}, {}, &prior);
+        const Reconstruction without_prior = reconstruct({mesh, set}, {}, {&cut_piece.fragment});
         ASSERT_TRUE(with_prior.prior.has_value());
         EXPECT_FALSE(without_prior.prior.has_value());
         const double diagonal = box_diagonal(original);
@@ -83,14 +83,14 @@ TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThread
     const Mesh original = member(mesh, prior, Vector3d(6, 0, 0));
     FragmentOptions half;
     half.share = 0.5;
-    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), half);
+    const Cut cut_piece = cut({original, set}, Point(0, 0, 1.9), half);
     ReconstructOptions options;
     options.prior.maximum = 1;
     const int before = threads();
     set_threads(1);
-    const Reconstruction alone = reconstruct(mesh, set, {}, {&cut_piece.fragment}, options, {}, &prior);
+    const Reconstruction alone = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, options, {}, &prior);
     set_threads(3);
-    const Reconstruction many = reconstruct(mesh, set, {}, {&cut_piece.fragment}, options, {}, &prior);
+    const Reconstruction many = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, options, {}, &prior);
     set_threads(before);
     for (const double b : alone.prior->coefficients) EXPECT_LE(std::abs(b), 1 + 1e-12);
     EXPECT_GT(alone.prior->coefficients[0], 0.99);
@@ -104,8 +104,8 @@ TEST(ShapePrior, WithoutModesItIsTheMean) {
     ShapePrior prior = prior_of_bodies(mesh);
     prior.modes.resize(prior.modes.rows(), 0);
     prior.deviations.clear();
-    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), {});
-    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
+    const Cut cut_piece = cut({mesh, set}, Point(0, 0, 1.9), {});
+    const Reconstruction result = reconstruct({mesh, set}, {}, {&cut_piece.fragment}, {}, {}, &prior);
     ASSERT_TRUE(result.prior.has_value());
     EXPECT_TRUE(result.prior->coefficients.empty());
     EXPECT_LT(missing_error(mesh, cut_piece, result), 1e-3 * box_diagonal(mesh));
@@ -114,10 +114,10 @@ TEST(ShapePrior, WithoutModesItIsTheMean) {
 TEST(ShapePrior, RefusesWhatDoesNotFitTheTemplate) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), {});
+    const Cut cut_piece = cut({mesh, set}, Point(0, 0, 1.9), {});
     const auto refused = [&](const ShapePrior& prior, const std::string& word) {
         try {
-            reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
+            reconstruct({mesh, set}, {}, {&cut_piece.fragment}, {}, {}, &prior);
             ADD_FAILURE() << word;
         } catch (const Error& error) {
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();

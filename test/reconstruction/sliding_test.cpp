@@ -105,7 +105,7 @@ Fitted fit_member(const Mesh& mesh, const Mesh& other, double share, const std::
     reconstruct_options.completion.join = false;
     set_option(reconstruct_options.fit, "counterparts", counterparts);
     Fitted fitted;
-    fitted.result = reconstruct(mesh, annotated(mesh, parts_of(mesh), marks), {}, {&fragment}, reconstruct_options);
+    fitted.result = reconstruct({mesh, annotated(mesh, parts_of(mesh), marks)}, {}, {&fragment}, reconstruct_options);
     if (!fitted.result.placement.any()) throw Error(ErrorKind::failure, "member", "was not placed", "");
     const Motion frame = fitted.result.placement.fragments[0].pose.after(to_piece);
     for (const Vertex v : mesh.vertices())
@@ -118,9 +118,9 @@ TEST(Sliding, IsNoFartherFromTheTruthThanOtherCounterparts) {
     const Mesh mesh = meshed_body(900, 0), again = meshed_body(1100, 1);
     for (const bool same : {true, false})
         for (const double share : {1.0, 0.6}) {
-            const double error = fit_member(mesh, same ? mesh : again, share, "sliding").error;
+            const double error = fit_member({mesh, same ? mesh : again}, share, "sliding").error;
             for (const std::string other : {"surface", "one-to-one"})
-                EXPECT_LE(error, fit_member(mesh, same ? mesh : again, share, other).error)
+                EXPECT_LE(error, fit_member({mesh, same ? mesh : again}, share, other).error)
                     << other << ", " << share << (same ? ", the template's mesh" : ", its own mesh");
         }
 }
@@ -160,7 +160,7 @@ TEST(Sliding, TinyFragmentsAreFitted) {
         ++corner;
     }
     ours.annotations.push_back(region);
-    const Reconstruction result = reconstruct(mesh, ours, {}, {&fragment});
+    const Reconstruction result = reconstruct({mesh, ours}, {}, {&fragment});
     ASSERT_EQ(result.points.size(), mesh.number_of_vertices());
     for (const Vertex v : mesh.vertices())
         EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], mesh.point(v))), 0.01 * box_diagonal(mesh));
@@ -194,7 +194,7 @@ TEST(JointCurves, TheRimOfAPartMovesToTheRimOfItsCounterpart) {
         for (const Annotation& annotation : theirs.annotations) fragments[0].matches.push_back({annotation.id, annotation.id, 1});
         NonRigidOptions options;
         set_option(options, "counterparts", counterparts);
-        const NonRigidFit fit = fit_template(mesh, ours, fragments, options);
+        const NonRigidFit fit = fit_template({mesh, ours}, fragments, options);
         double sum = 0, count = 0;
         const std::vector<bool> inside = face_flags(mesh, ours.find(100)->faces);
         for (const Edge e : mesh.edges()) {

@@ -128,7 +128,7 @@ TEST(GeometricRelations, PlantedRelationsAreFoundAndFalseOnesAreNot) {
             add_noise(object.mesh, noise, seed);
             RelationOptions options;
             if (noise > 0.004) options.ratio = 12;  // such noise alone makes the areas of small parts differ by up to 11 %
-            RelationMeter meter(object.mesh, set, options);
+            RelationMeter meter({object.mesh, set}, options);
             for (const auto& [holds, type, members, attribute] : list) {
                 const RelationCheck check = meter.measure(stated(type, members, attribute));
                 std::string text = name + " " + std::to_string(noise) + " " + std::to_string(seed) + " " + type;
@@ -141,7 +141,7 @@ TEST(GeometricRelations, PlantedRelationsAreFoundAndFalseOnesAreNot) {
 TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
     const SyntheticMesh object = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     const AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", object.mesh, object.face_labels);
-    RelationMeter meter(object.mesh, set);
+    RelationMeter meter({object.mesh, set});
     RelationGraph graph;
     graph.relationships = meter.extract({}, 3);
     ASSERT_FALSE(graph.relationships.empty());
@@ -159,7 +159,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
     EXPECT_TRUE(has("co-axiality", {1, 2}));
     EXPECT_FALSE(has("mirror symmetry", {5, 6}));
     // Extracted relationships hold when checked.
-    for (const auto& check : check_relations(object.mesh, set, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
+    for (const auto& check : check_relations({object.mesh, set}, graph)) EXPECT_EQ(check.verdict, Verdict::holds) << words(check);
     // Selected types only.
     for (const auto& relationship : meter.extract({"same level"}, 0)) EXPECT_EQ(relationship.type, "same level");
 }
@@ -167,7 +167,7 @@ TEST(GeometricRelations, ExtractionFindsThePlantedRelations) {
 TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
     const SyntheticMesh object = make_mesh(synthetic_object("teapot"), {.vertices = 12000});
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", object.mesh, object.face_labels);
-    const ExtractedRelations all = extract_relations(object.mesh, set);
+    const ExtractedRelations all = extract_relations({object.mesh, set});
     EXPECT_TRUE(all.stated.empty());
     EXPECT_TRUE(all.not_looked_for.empty());
     RelationGraph old;
@@ -179,7 +179,7 @@ TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
     std::size_t stated = 0;
     for (const auto& relationship : old.relationships) stated += relationship.origin == "stated";
     ASSERT_GT(stated, 0U);
-    const ExtractedRelations again = extract_relations(object.mesh, set, old, {"Co-Axiality", "containment"});
+    const ExtractedRelations again = extract_relations({object.mesh, set}, old, {"Co-Axiality", "containment"});
     EXPECT_EQ(again.stated.size(), stated);
     std::set<int> ids;
     for (const auto& relationship : again.graph.relationships) {
@@ -187,9 +187,9 @@ TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
         EXPECT_EQ(relationship.type, relationship.origin == "stated" ? "co-axiality" : "containment");
     }
     set.up.reset();
-    EXPECT_EQ(extract_relations(object.mesh, set, {}, {"same level", "containment"}).not_looked_for,
+    EXPECT_EQ(extract_relations({object.mesh, set}, {}, {"same level", "containment"}).not_looked_for,
               std::vector<std::string>{"same level"});
-    EXPECT_THROW(extract_relations(object.mesh, set, {}, {"proportion"}), Error);
+    EXPECT_THROW(extract_relations({object.mesh, set}, {}, {"proportion"}), Error);
 }
 
 TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {
@@ -212,7 +212,7 @@ TEST(GeometricRelations, SupportOnTheAxisOfItsLeg) {
     for (const double noise : {0.0, 0.001, 0.005}) {
         Mesh noisy = mesh;
         add_noise(noisy, noise);
-        RelationMeter meter(noisy, set);
+        RelationMeter meter({noisy, set});
         const RelationCheck good = meter.measure(stated("co-axiality", {0, 1}));
         EXPECT_EQ(good.verdict, Verdict::holds) << noise << words(good);
         EXPECT_LT(*good.parameters.deviations[0].value, 0.1 + 400 * noise);
@@ -250,7 +250,7 @@ TEST(GeometricRelations, PointsAndPlanes) {
         a.id = static_cast<int>(set.annotations.size()), a.tag = "points", a.type = AnnotationType::point, a.points = points;
         set.annotations.push_back(a);
     }
-    RelationMeter meter(mesh, set);
+    RelationMeter meter({mesh, set});
     EXPECT_EQ(meter.measure(stated("co-linearity", {3})).verdict, Verdict::holds);
     EXPECT_EQ(meter.measure(stated("co-linearity", {4})).verdict, Verdict::fails);
     EXPECT_EQ(meter.measure(stated("co-linearity", {0})).verdict, Verdict::unknown);
@@ -274,7 +274,7 @@ TEST(GeometricRelations, PointsAndPlanes) {
         << "there is no such attribute";
     RelationOptions wrong;
     wrong.angle = -1;
-    EXPECT_THROW(RelationMeter(mesh, set, wrong), Error);
+    EXPECT_THROW(RelationMeter({mesh, set}, wrong), Error);
 }
 
 TEST(GeometricRelations, OmittedRelationsAreReported) {
@@ -287,9 +287,9 @@ TEST(GeometricRelations, OmittedRelationsAreReported) {
         for (Index f = static_cast<Index>(i % 2); f < faces; f += 2) annotation.faces.push_back(f);
         set.annotations.push_back(annotation);
     }
-    const ExtractedRelations extracted = extract_relations(object.mesh, set, {}, {"adjacency", "containment", "side contact"});
+    const ExtractedRelations extracted = extract_relations({object.mesh, set}, {}, {"adjacency", "containment", "side contact"});
     EXPECT_LE(extracted.graph.relationships.size(), 60000U);
     ASSERT_FALSE(extracted.notes.empty());
     EXPECT_NE(extracted.notes.front().find("are reported"), std::string::npos) << extracted.notes.front();
-    for (const auto& check : check_relations(object.mesh, set, extracted.graph)) EXPECT_EQ(check.verdict, Verdict::holds);
+    for (const auto& check : check_relations({object.mesh, set}, extracted.graph)) EXPECT_EQ(check.verdict, Verdict::holds);
 }

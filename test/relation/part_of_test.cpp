@@ -48,12 +48,12 @@ TEST(PartOf, PartsLieInTheirWholes) {
     AnnotationSet set;
     set.annotations = {region(1, "Kopf", 0, 100), region(2, "naso 1", 10, 20), region(3, "nose 2", 150, 160),
                        region(4, "hand", 200, 210), region(5, "face", 0, 50)};
-    const auto findings = check_parts(mesh, set, vocabulary());
+    const auto findings = check_parts({mesh, set}, vocabulary());
     ASSERT_EQ(findings.size(), 1U);
     EXPECT_TRUE(findings[0].defect);
     EXPECT_EQ(findings[0].where, "/annotations/2");
     EXPECT_NE(findings[0].text.find("face"), std::string::npos);  // the nearest whole that is annotated
-    const auto relations = part_relationships(topology(mesh, set).order, set, vocabulary(), 7);
+    const auto relations = part_relationships(topology({mesh, set}).order, set, vocabulary(), 7);
     ASSERT_EQ(relations.size(), 2U);
     EXPECT_EQ(relations[0].annotations, (std::vector<int>{5, 2}));  // the nose in the face, which is nearer than the head
     EXPECT_EQ(relations[0].id, 7);
@@ -66,7 +66,7 @@ TEST(PartOf, TheSmallestContainingWholeIsUsed) {
     AnnotationSet set;
     set.annotations = {region(1, "head", 0, 200), region(2, "head", 0, 100), region(3, "nose", 10, 20),
                        region(4, "head", 300, 310)};
-    const auto relations = part_relationships(topology(mesh, set).order, set, vocabulary(), 0);
+    const auto relations = part_relationships(topology({mesh, set}).order, set, vocabulary(), 0);
     ASSERT_EQ(relations.size(), 1U);
     EXPECT_EQ(relations[0].annotations, (std::vector<int>{2, 3}));
 }

@@ -55,7 +55,7 @@ protected:
         return relationship;
     }
     QueryAnswer ask(const std::string& text) {
-        QueriedObject object{&mesh, &set, &graph, words, {}};
+        QueriedObject object{{mesh, set}, &graph, words, {}};
         object.values_elsewhere = [](const QueryReference& reference) {
             return reference == QueryReference{"decoration", "17"} ? std::vector<std::string>{"painted"}
                                                                    : std::vector<std::string>{};
@@ -128,7 +128,7 @@ TEST_F(Query, WordsAndOtherObjects) {
     EXPECT_FALSE(holds("decoration(body) != painted"));
     EXPECT_EQ(annotations_of("same(decoration, 17)"), (Ids{1}));
     EXPECT_FALSE(holds("same(height, 17)"));
-    QueriedObject object{&mesh, &set, nullptr, nullptr, {}};
+    QueriedObject object{{mesh, set}, nullptr, nullptr, {}};
     EXPECT_EQ(values_of(object, "decoration"), std::vector<std::string>{"painted"});
     EXPECT_EQ(values_of(object, "height").size(), 2U);
 }

@@ -37,7 +37,7 @@ protected:
         Annotation point;
         point.id = 5, point.tag = "top", point.type = AnnotationType::point, point.points = {4};
         set.annotations = {cap, line, point};
-        write_annotations(scratch / "ball.ant.json", set, mesh, "ball.ply", {});
+        write_annotations(scratch / "ball.ant.json", {mesh, set}, "ball.ply", {});
     }
     [[nodiscard]] CommandResult run(const std::string& arguments) const { return run_command("mesh " + arguments); }
     [[nodiscard]] std::string path_of(const std::string& name) const { return (scratch / name).string(); }
@@ -175,7 +175,7 @@ TEST_F(ResizeCommand, RegionsWithoutFacesAreReported) {
         region.faces = {Index(i * 30)};
         set.annotations.push_back(region);
     }
-    write_annotations(scratch / "many.ant.json", set, mesh, "ball.ply", {});
+    write_annotations(scratch / "many.ant.json", {mesh, set}, "ball.ply", {});
     const auto result =
         run("simplify " + path_of("ball.ply") + " " + path_of("few.ply") + " --vertices 40 --json --annotations " +
             path_of("many.ant.json") + " --annotations-out " + path_of("few.ant.json"));

@@ -74,7 +74,7 @@ TEST(RevolutionTemplate, IsTheVesselOfItsSherds) {
         EXPECT_LT(sherd_on_profile.aside, 0.01);
         EXPECT_LT(sherd_on_profile.residual, 0.01);
     }
-    ASSERT_NO_THROW(check_annotations(revolved.annotations, revolved.mesh, "turned"));
+    ASSERT_NO_THROW(check_annotations(revolved, "turned"));
     double outer = 0, inner = 0;
     for (const Annotation& annotation : revolved.annotations.annotations) {
         if (annotation.tag == "outer") outer = double(annotation.faces.size());

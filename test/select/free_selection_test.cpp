@@ -22,7 +22,7 @@ Annotation selected(const Mesh& mesh, const std::string& select, const std::stri
     const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 1, "tag": "part", "type": ")" +
                              type + R"(", "outline": "free", "select": )" + select + "}]}";
     AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
-    check_annotations(set, mesh, "selected");
+    check_annotations({mesh, set}, "selected");
     return *set.find(1);
 }
 
@@ -139,7 +139,7 @@ TEST(FreeSelection, EditsKeepFreeOutlines) {
         {"id": 1, "action": "add to", "select": {"sphere": {"centre": [0.4, 0, 0.9], "radius": 0.5}}},
         {"id": 1, "action": "remove from", "select": {"sphere": {"centre": [0.2, 0, 1], "radius": 0.2}}}]})";
     const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
-    check_annotations(set, mesh, "edited");
+    check_annotations({mesh, set}, "edited");
     const Annotation& part = set.annotations.front();
     ASSERT_TRUE(is_free(part));
     EXPECT_EQ(part.curves.size(), 2U);  // with a hole
@@ -191,7 +191,7 @@ TEST(FreeSelection, SetsOfFacesEndAtIsolines) {
             {"id": 1, "tag": "part", "type": "region", "outline": ")" +
                                  outline + R"(", "select": )" + select + "}]}";
         AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, labels, "test");
-        check_annotations(set, mesh, "labelled");
+        check_annotations({mesh, set}, "labelled");
         return measure_region(mesh, *set.find(1));
     };
     const double circle = 2 * pi * std::sqrt(1 - 0.34 * 0.34), cap = 2 * pi * (1 - 0.34);
@@ -221,7 +221,7 @@ AnnotationSet by_default(const Mesh& mesh, const std::vector<std::int32_t>& labe
         {"id": 2, "tag": "part", "type": "region", "select": )" +
                              select + "}" + more + "]}";
     AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, labels, "test");
-    check_annotations(set, mesh, "by default");
+    check_annotations({mesh, set}, "by default");
     return set;
 }
 
@@ -314,7 +314,7 @@ TEST(FreeSelection, WithoutAFreeOutlineItRunsAlongTheEdges) {
                 "type": "region", "select": {"sphere": {"centre": [)" +
                                      std::to_string(x) + ", 3, 0], \"radius\": " + std::to_string(radius) + "}}}]}";
             const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
-            check_annotations(set, mesh, "plate");
+            check_annotations({mesh, set}, "plate");
             const bool free = is_free(*set.find(1));
             EXPECT_EQ(set.notes.empty(), free) << x << ' ' << radius;
             if (free || set.notes.empty()) continue;

@@ -176,8 +176,8 @@ TEST(Recipe, MeasuresAndDescriptorsAreComputed) {
     EXPECT_DOUBLE_EQ(attributes[4].descriptor.values.at(0), 6);
     EXPECT_EQ(attributes[4].descriptor.unit, "mm^2");
     // Written, read and written again: the same bytes; followed again: the same bytes.
-    const std::string text = to_text(annotations_to_json(set, mesh, "m", {}));
-    EXPECT_EQ(to_text(annotations_to_json(annotations_from_json(parse_json(text, "t"), mesh, "t"), mesh, "m", {})), text);
+    const std::string text = to_text(annotations_to_json({mesh, set}, "m", {}));
+    EXPECT_EQ(to_text(annotations_to_json({mesh, annotations_from_json(parse_json(text, "t"), mesh, "t")}, "m", {})), text);
 }
 
 TEST(Recipe, ErrorsNameTheStep) {
@@ -291,9 +291,9 @@ TEST(Recipe, TheLionHeadIsAnnotatedOnItsPictures) {
     OSTRAKA_SCAN(mesh, "lion-head.off");
     const Path file = Path(OSTRAKA_SOURCE_DIR) / "data/lion-head.recipe.json";
     const AnnotationSet set = apply_recipe(file, mesh);
-    EXPECT_EQ(to_text(annotations_to_json(set, mesh, "m", {})),
-              to_text(annotations_to_json(apply_recipe(file, mesh), mesh, "m", {})));
-    for (const Finding& finding : examine(mesh, set)) EXPECT_FALSE(finding.defect) << finding.where << ": " << finding.text;
+    EXPECT_EQ(to_text(annotations_to_json({mesh, set}, "m", {})),
+              to_text(annotations_to_json({mesh, apply_recipe(file, mesh)}, "m", {})));
+    for (const Finding& finding : examine({mesh, set})) EXPECT_FALSE(finding.defect) << finding.where << ": " << finding.text;
     const auto area = [&](int id) { return measure_region(mesh, set.find(id)->faces).area; };
     EXPECT_NEAR(area(1) + area(2), area(0), 1e-9 * area(0)) << "neck and head are the whole";
     for (const int id : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})

@@ -17,7 +17,7 @@ TEST(CageDensity, MoreVerticesNearAnnotations) {
     mark.tag = "top";
     mark.type = AnnotationType::point;
     mark.points = {4};
-    const CageDensity plain = annotation_density(mesh, set), stated = annotation_density(mesh, set, {{3, 9}});
+    const CageDensity plain = annotation_density({mesh, set}), stated = annotation_density({mesh, set}, {{3, 9}});
     EXPECT_EQ(plain(mesh.point(Vertex(4))), 4);
     EXPECT_EQ(stated(mesh.point(Vertex(4))), 9);
     EXPECT_EQ(plain(mesh.point(Vertex(5))), 1);

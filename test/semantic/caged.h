@@ -27,8 +27,8 @@ struct Caged {
           set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), synthetic.mesh, synthetic.face_labels)),
           cage(make_cage(synthetic.mesh, {.vertices = cage_vertices}).cage),
           coordinates(compute_coordinates("mean-value", cage, synthetic.mesh)) {}
-    [[nodiscard]] HandleSpace handles() const { return {synthetic.mesh, set, &cage, &coordinates}; }
-    [[nodiscard]] HandleSpace bare() const { return {synthetic.mesh, set}; }
+    [[nodiscard]] HandleSpace handles() const { return {{synthetic.mesh, set}, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace bare() const { return {{synthetic.mesh, set}}; }
 };
 
 inline const Caged& teapot() {

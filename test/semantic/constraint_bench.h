@@ -20,10 +20,8 @@ inline constexpr int a = 1, b = 2, a_lower = 3, a_upper = 4, a_line = 5, b_line 
 
 /// Closed cylinders about z and a flat sheet, each a separate component: 13 rings of 24 vertices from below, then the centres of
 /// the ends.
-struct Bench {
+struct Bench : AnnotatedMesh {
     static constexpr Index around = 24, levels = 13;
-    Mesh mesh;
-    AnnotationSet set;
     std::map<int, Index> first;  ///< vertex of a cylinder
 
     Bench() {
@@ -78,8 +76,8 @@ struct Bench {
                 soup.triangles.push_back({p, p + 1 + side, p + side});
             }
         mesh = build_mesh(soup);
-        set.up = {0, 0, 1};
-        set.unit = "mm";
+        annotations.up = {0, 0, 1};
+        annotations.unit = "mm";
         for (const auto& [id, range] : faces) region(id, {range.first, range.second}, [](double) { return true; });
         region(a_lower, faces[a], [](double z) { return z < 3; });
         region(a_upper, faces[a], [](double z) { return z > 3; });
@@ -105,8 +103,8 @@ struct Bench {
         annotation.id = id;
         annotation.tag = "part " + std::to_string(id);
         annotation.type = type;
-        set.annotations.push_back(annotation);
-        return set.annotations.back();
+        annotations.annotations.push_back(annotation);
+        return annotations.annotations.back();
     }
     void region(int id, std::pair<std::size_t, std::size_t> range, const std::function<bool(double)>& has) {
         Annotation& annotation = add(id, AnnotationType::region);
@@ -120,10 +118,10 @@ struct Bench {
         height.measure.tool = "bounding";
         height.measure.points = {first[id], first[id] + (levels - 1) * around};
         height.measure.direction = {0, 0, 1};
-        for (Annotation& annotation : set.annotations)
+        for (Annotation& annotation : annotations.annotations)
             if (annotation.id == id) annotation.attributes.push_back(height);
     }
-    [[nodiscard]] std::vector<Index> vertices(int id) const { return vertices_of(mesh, *set.find(id)); }
+    [[nodiscard]] std::vector<Index> vertices(int id) const { return vertices_of(mesh, *annotations.find(id)); }
     [[nodiscard]] Places at_rest() const {
         Places places;
         for (const Vertex v : mesh.vertices()) places.push_back(eigen(mesh.point(v)));
@@ -154,7 +152,9 @@ struct Bench {
         for (const Index v : vertices(id)) low = std::min(low, p[v].z()), high = std::max(high, p[v].z());
         return high - low;
     }
-    [[nodiscard]] const Vector3d& point(const Places& p, int id, std::size_t i) const { return p[set.find(id)->points[i]]; }
+    [[nodiscard]] const Vector3d& point(const Places& p, int id, std::size_t i) const {
+        return p[annotations.find(id)->points[i]];
+    }
 };
 
 inline const Bench& bench() {
@@ -187,7 +187,7 @@ inline Shape stretched(int id, const Vector3d& along) {
 }
 /// One point of a point annotation.
 inline Shape pulled(int id, std::size_t i, const Vector3d& way) {
-    return [=](Places& p, double wrong) { p[bench().set.find(id)->points[i]] += wrong * way; };
+    return [=](Places& p, double wrong) { p[bench().annotations.find(id)->points[i]] += wrong * way; };
 }
 
 struct Case {

@@ -390,14 +390,14 @@ TEST(ConstraintCheck, EveryTypeIsJudgedByPositions) {
             const RelationGraph graph = graph_of(test_case);
             const std::string name =
                 std::string(test_case.type) + " " + test_case.parameters + ", wrong by " + std::to_string(test_case.wrong.at(i));
-            const ConstraintReport alone = judge_constraints(object, bench().set, graph).at(0);
+            const ConstraintReport alone = judge_constraints({object, bench().annotations}, graph).at(0);
             if (test_case.rest) {
                 EXPECT_EQ(alone.verdict, Verdict::unknown) << name;
                 EXPECT_NE(alone.text.find("--rest"), std::string::npos) << name << ": " << alone.text;
             }
             // With the rest shape the verdict is that of `deform`.
             const ConstraintReport judged =
-                test_case.rest ? judge_constraints(object, bench().set, graph, &bench().mesh).at(0) : alone;
+                test_case.rest ? judge_constraints({object, bench().annotations}, graph, &bench().mesh).at(0) : alone;
             ASSERT_FALSE(judged.deviations.empty()) << name << ": " << judged.text;
             EXPECT_EQ(judged.verdict, value <= test_case.tolerance ? Verdict::holds : Verdict::fails)
                 << name << ": " << *judged.deviations[0].value << " " << judged.text << "; " << value;
@@ -419,7 +419,7 @@ TEST(ConstraintCheck, SelectionsAreJudgedByTheirFaces) {
     graph.relationships.push_back(constraint(0, "containment", {a, a_lower}, "{}"));
     graph.relationships.push_back(constraint(1, "containment", {a_lower, a}, "{}"));
     graph.relationships.push_back(constraint(2, "equal selections", {a_lower, a_upper}, "{}"));
-    const auto judged = judge_constraints(bench().mesh, bench().set, graph);
+    const auto judged = judge_constraints(bench(), graph);
     EXPECT_EQ(judged.at(0).verdict, Verdict::holds);
     EXPECT_EQ(judged.at(1).verdict, Verdict::fails);
     EXPECT_EQ(judged.at(2).verdict, Verdict::fails);
@@ -435,12 +435,12 @@ TEST(ConstraintCheck, TheSolvedQuantityIsTheMeasuredOne) {
         graph.relationships[0].weight = 1000;
         const std::vector<Point> start = wrong_by(test_case, test_case.wrong[2]);
         const std::vector<bool> fixed(start.size(), false);
-        DeformResult result = restore_constraints(bench().mesh, bench().set, graph, start, fixed, options);
+        DeformResult result = restore_constraints(bench(), graph, start, fixed, options);
         const Mesh object = from_file(scratch, result.points);
         const double value = test_case.value(places_of(object)), before = test_case.value(places_of(from_file(scratch, start)));
         const std::string name = std::string(test_case.type) + " " + test_case.parameters;
         const ConstraintReport &solved = result.constraints.at(0),
-                               judged = judge_constraints(object, bench().set, graph, &bench().mesh).at(0);
+                               judged = judge_constraints({object, bench().annotations}, graph, &bench().mesh).at(0);
         EXPECT_EQ(solved.verdict, judged.verdict) << name;
         std::cout << name << ": " << before << " -> " << value << " (at most " << test_case.tolerance << "), "
                   << to_string(solved.verdict) << "\n";
@@ -455,14 +455,14 @@ TEST(ConstraintCheck, AShapeAtRestHasTheVerticesOfTheMesh) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep shape", {a}, "{}"));
     const Mesh other = make_mesh(synthetic_object("teapot"), {.vertices = 2000}).mesh;
-    EXPECT_THROW(judge_constraints(bench().mesh, bench().set, graph, &other), Error);
+    EXPECT_THROW(judge_constraints(bench(), graph, &other), Error);
 }
 
 TEST(ConstraintCheck, UnreadableConstraintsAreReportedAndOthersJudged) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {a}, R"({"measure": "girth"})"));
     graph.relationships.push_back(constraint(1, "same level", {a, b}, "{}"));
-    const auto judged = judge_constraints(bench().mesh, bench().set, graph);
+    const auto judged = judge_constraints(bench(), graph);
     EXPECT_EQ(judged.at(0).verdict, Verdict::unknown);
     EXPECT_NE(judged.at(0).text.find("measure"), std::string::npos) << judged.at(0).text;
     EXPECT_EQ(judged.at(1).verdict, Verdict::holds);
@@ -475,7 +475,7 @@ TEST(ConstraintCheck, ContradictoryDirectionsAreNamedAndThePartIsIntact) {
         constraint(4, "keep direction", {b}, R"({"angle": 0, "direction": [0.5, 0, 0.866], "hard": true})"));
     DeformOptions options;
     options.followed = 0;
-    const DeformResult result = deform({bench().mesh, bench().set}, graph, edit(""), "e", options);
+    const DeformResult result = deform({bench()}, graph, edit(""), "e", options);
     EXPECT_FALSE(result.acceptable);
     EXPECT_EQ(result.constraints.at(0).verdict, Verdict::holds);
     EXPECT_EQ(result.constraints.at(1).verdict, Verdict::fails);

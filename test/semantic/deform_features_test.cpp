@@ -265,7 +265,7 @@ TEST(Deform, AScannedBustKeepsItsFeatures) {
         graph.relationships.push_back(constraint(0, "same level", {1, 2}, parameters, 1e4));
         DeformOptions options;
         options.handles = 0.01;
-        const DeformResult result = deform({mesh, set}, graph, edit(stretch), "e", options);
+        const DeformResult result = deform({{mesh, set}}, graph, edit(stretch), "e", options);
         EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << result.constraints[0].text;
         EXPECT_GT(result.constraints[0].before_values[0], 0.01 * diagonal);
         const Points rest = points_matrix(points_of(mesh)), now = points_matrix(result.points);

@@ -31,7 +31,7 @@ struct Hand {
             annotation.attributes.push_back(length);
         }
     }
-    [[nodiscard]] HandleSpace space() const { return {synthetic.mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {{synthetic.mesh, set}}; }
 };
 
 }  // namespace
@@ -128,7 +128,7 @@ TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "structural continuity", {6, 8}, R"({"hard": true})"));
     const DeformResult result =
-        deform({synthetic.mesh, set}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
+        deform({{synthetic.mesh, set}}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
     EXPECT_LT(result.constraints.at(0).before_values.at(1), 0.002 * box_diagonal(synthetic.mesh));
     EXPECT_EQ(result.points, result.edited) << "what holds is left alone";
     Mesh after = synthetic.mesh;
@@ -176,7 +176,7 @@ TEST(Deform, AReferenceIsFixedWhileAPartIsMovedToIt) {
         graph.relationships.push_back(constraint(0, "structural continuity", {60, 7}, R"({"hard": true})"));
         DeformOptions options;
         options.passes = passes;
-        const DeformResult result = deform({synthetic.mesh, set}, graph, edit(steps), "e", options);
+        const DeformResult result = deform({{synthetic.mesh, set}}, graph, edit(steps), "e", options);
         const ConstraintReport& report = result.constraints.at(0);
         ASSERT_EQ(report.deviations.size(), 2U);
         std::cout << "angle " << report.before_values[0] << " -> " << *report.deviations[0].value << " in " << result.passes
@@ -291,7 +291,7 @@ TEST(Deform, PartsMoveToTheAxisOfAnother) {
     graph.relationships = {constraint(0, "co-axiality", {2, 0}, R"({"hard": true})"),
                            constraint(1, "co-axiality", {1, 0}, R"({"hard": true})")};
     const DeformResult result =
-        deform({synthetic.mesh, set}, graph, edit(R"({"select": {"annotation": "part 0"}, "translate": [8, 0, 0]})"), "e");
+        deform({{synthetic.mesh, set}}, graph, edit(R"({"select": {"annotation": "part 0"}, "translate": [8, 0, 0]})"), "e");
     for (const ConstraintReport& report : result.constraints) EXPECT_EQ(report.verdict, Verdict::holds) << report.text;
 }
 
@@ -456,7 +456,7 @@ TEST(Deform, AdjacentPartsStayAdjacent) {
     tolerances.distance = 0.02;
     const double away = 0.2 * width;
     const DeformResult result =
-        deform({both, set}, graph, edit(R"({"select": {"annotation": 0}, "translate": [)" + std::to_string(-away) + ", 0, 0]}"),
+        deform({{both, set}}, graph, edit(R"({"select": {"annotation": 0}, "translate": [)" + std::to_string(-away) + ", 0, 0]}"),
                "e", options, tolerances);
     EXPECT_GT(result.constraints[1].before_values[0], 0.9 * away);
     EXPECT_LT(*result.constraints[1].deviations[0].value, 0.02 * width) << result.constraints[1].text;

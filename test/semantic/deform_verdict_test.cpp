@@ -21,7 +21,7 @@ struct Annotated {
     explicit Annotated(const std::string& name, std::uint64_t vertices = 6000)
         : synthetic(make_mesh(synthetic_object(name), {.vertices = vertices})),
           set(apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), synthetic.mesh, synthetic.face_labels)) {}
-    [[nodiscard]] HandleSpace space() const { return {synthetic.mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {{synthetic.mesh, set}}; }
     [[nodiscard]] Annotation& tagged(const std::string& tag) {
         return *std::find_if(set.annotations.begin(), set.annotations.end(),
                              [&](const auto& annotation) { return annotation.tag == tag; });
@@ -97,7 +97,7 @@ TEST(DeformVerdict, NewCrossingsAreNotAcceptable) {
     for (Index v = half; v < mesh.number_of_vertices(); ++v) vertices += (vertices.empty() ? "" : ", ") + std::to_string(v);
     const AnnotationSet none;
     const DeformResult result =
-        deform({mesh, none}, {}, edit(R"({"select": {"vertices": [)" + vertices + R"(]}, "translate": [0.6, 0, 0]})"), "e");
+        deform({{mesh, none}}, {}, edit(R"({"select": {"vertices": [)" + vertices + R"(]}, "translate": [0.6, 0, 0]})"), "e");
     EXPECT_GT(result.surface.crossings, 0U);
     EXPECT_LT(result.surface.crossings, result.surface.crossings_before);
     EXPECT_GT(result.surface.crossings_new, 0U);
@@ -140,7 +140,7 @@ TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
     EXPECT_LT(off, result.constraints[0].before_values[0]);
     // As in the annotations of the result, with their pins at the new positions.
     AnnotationSet set = hand.set;
-    move_extents(hand.synthetic.mesh, hand.set, now, set);
+    move_extents({hand.synthetic.mesh, hand.set}, now, set);
     refresh_measures(now, set);
     for (const Attribute& attribute : set.find(finger.id)->attributes)
         if (attribute.name == "reach") {

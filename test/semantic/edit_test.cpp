@@ -100,13 +100,13 @@ struct Nested {
         while (whole.set.annotations[spout].tag != "spout") ++spout;
         CageOptions options;
         options.vertices = 40;
-        const auto parts = make_part_cages(whole.synthetic.mesh, whole.set, {spout}, options, {}, "graph");
+        const auto parts = make_part_cages({whole.synthetic.mesh, whole.set}, {spout}, options, {}, "graph");
         EXPECT_TRUE(parts[0].check.valid());
         cage = together({&whole.cage, &parts[0].made.cage});
         coordinates = compute_coordinates("mean-value", cage, whole.synthetic.mesh);
         levels = cage_levels(cage);
     }
-    [[nodiscard]] HandleSpace handles() const { return {whole.synthetic.mesh, whole.set, &cage, &coordinates}; }
+    [[nodiscard]] HandleSpace handles() const { return {{whole.synthetic.mesh, whole.set}, &cage, &coordinates}; }
     [[nodiscard]] std::vector<EditState> follow(const std::string& steps) const {
         return follow_edit(edit(steps), handles(), "e");
     }
@@ -184,7 +184,7 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
     graph.relationships.push_back(mirror);
     CageOptions options;
     options.vertices = 30;
-    const auto cages = make_part_cages(mesh, set, {0, 1}, options, graph, "graph");
+    const auto cages = make_part_cages({mesh, set}, {0, 1}, options, graph, "graph");
     ASSERT_EQ(cages.size(), 2U);
     const Mesh &a = cages[0].made.cage, &b = cages[1].made.cage;
     ASSERT_EQ(a.number_of_vertices(), b.number_of_vertices());
@@ -197,10 +197,10 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
     EXPECT_TRUE(cages[1].check.valid());
     // Without a given plane it is estimated.
     graph.relationships[0].parameters.plane.reset();
-    const auto plane = symmetry_plane(mesh, set, graph, {1, 2}, "graph");
+    const auto plane = symmetry_plane({mesh, set}, graph, {1, 2}, "graph");
     ASSERT_TRUE(plane);
     EXPECT_NEAR(std::abs(plane->normal.x()), 1, 1e-6);
-    EXPECT_FALSE(symmetry_plane(mesh, set, graph, {1}, "graph"));
+    EXPECT_FALSE(symmetry_plane({mesh, set}, graph, {1}, "graph"));
 }
 
 TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
@@ -219,7 +219,7 @@ TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
         const DeformResult result = deform(space, graph, edit(turn), "e", options);
         EXPECT_TRUE(result.solved);
         std::vector<bool> of_spout(space.mesh.number_of_vertices(), false);
-        for (const Index v : vertices_of(space.mesh, *space.set.find(spout))) of_spout[v] = true;
+        for (const Index v : vertices_of(space.mesh, *space.annotations.find(spout))) of_spout[v] = true;
         double sum = 0;
         for (const Vertex v : space.mesh.vertices())
             if (!of_spout[v]) sum += std::sqrt(CGAL::squared_distance(result.points[v], space.mesh.point(v)));

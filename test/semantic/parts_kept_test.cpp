@@ -20,9 +20,7 @@ namespace {
 constexpr int foot = 1, shaft = 2, top = 3, left_line = 4, right_line = 5, whole = 6;
 
 /// A closed column of radius 1 about z from 0 to 12: foot below 4, shaft, top above 8; two lines up its sides.
-struct Column {
-    Mesh mesh;
-    AnnotationSet set;
+struct Column : AnnotatedMesh {
     Column() {
         constexpr Index around = 24, levels = 37;
         TriangleSoup soup;
@@ -46,15 +44,15 @@ struct Column {
             soup.triangles.push_back({above, last + i, last + (i + 1) % around});
         }
         mesh = build_mesh(soup);
-        set.up = {0, 0, 1};
-        set.unit = "mm";
+        annotations.up = {0, 0, 1};
+        annotations.unit = "mm";
         const auto region = [&](int id, const std::string& tag, double low, double high) {
             Annotation annotation;
             annotation.id = id;
             annotation.tag = tag;
             for (const Face f : mesh.faces())
                 if (const double z = centroid(mesh, f).z(); z > low && z < high) annotation.faces.push_back(f.idx());
-            set.annotations.push_back(annotation);
+            annotations.annotations.push_back(annotation);
         };
         region(foot, "foot", -1, 4);
         region(shaft, "shaft", 4, 8);
@@ -66,14 +64,14 @@ struct Column {
             line.type = AnnotationType::line;
             line.polylines.emplace_back();
             for (Index j = 12; j <= 24; ++j) line.polylines[0].push_back(j * around + column);
-            set.annotations.push_back(line);
+            annotations.annotations.push_back(line);
         }
         region(whole, "column", -1, 13);
     }
-    [[nodiscard]] HandleSpace space() const { return {mesh, set}; }
+    [[nodiscard]] HandleSpace space() const { return {*this}; }
     [[nodiscard]] Eigen::Vector3d mean(int id, const std::vector<Point>& points) const {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        const auto vertices = vertices_of(mesh, *set.find(id));
+        const auto vertices = vertices_of(mesh, *annotations.find(id));
         for (const Index v : vertices) sum += eigen(points[v]);
         return sum / static_cast<double>(vertices.size());
     }
@@ -112,9 +110,9 @@ void measure_heights(Column& column) {
         height.type = AttributeType::measure;
         height.measure.tool = "bounding";
         height.measure.direction = {0, 0, 1};
-        const auto ends = extremes(column.mesh, *column.set.find(id), {0, 0, 1});
+        const auto ends = extremes(column.mesh, *column.annotations.find(id), {0, 0, 1});
         height.measure.points.assign(ends.begin(), ends.end());
-        column.set.find(id)->attributes.push_back(height);
+        column.annotations.find(id)->attributes.push_back(height);
     }
 }
 
@@ -184,24 +182,24 @@ TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
 TEST(PartsThatFollow, GrowAsMuchAsTheEditedPart) {
     const Column column;
     const std::string grow = R"({"select": {"annotation": "top"}, "scale": {"factor": 1.4, "centre": [0, 0, 8]}})";
-    const double foot_area = area_of(column.mesh, column.set.find(foot)->faces);
-    const double top_area = area_of(column.mesh, column.set.find(top)->faces);
+    const double foot_area = area_of(column.mesh, column.annotations.find(foot)->faces);
+    const double top_area = area_of(column.mesh, column.annotations.find(top)->faces);
     for (const char* follow : {"true", R"("top")", "3"}) {
         const DeformResult result = solved(column, constraint(0, "part similarity", {foot, top}, follows(follow)), grow);
         EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
         const Mesh deformed = with_points(column.mesh, result.points);
-        EXPECT_NEAR(area_of(deformed, column.set.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
-        EXPECT_NEAR(area_of(deformed, column.set.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
+        EXPECT_NEAR(area_of(deformed, column.annotations.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
+        EXPECT_NEAR(area_of(deformed, column.annotations.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
     }
     // Without it all parts change to their mean; if the unedited part leads, nothing grows.
     const Mesh alike =
         with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, R"({"hard": true})"), grow).points);
-    EXPECT_LT(area_of(alike, column.set.find(top)->faces) / top_area, 1.7);
+    EXPECT_LT(area_of(alike, column.annotations.find(top)->faces) / top_area, 1.7);
     const Mesh led =
         with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, follows("\"foot\"")), grow).points);
-    const double led_foot = area_of(led, column.set.find(foot)->faces) / foot_area;
+    const double led_foot = area_of(led, column.annotations.find(foot)->faces) / foot_area;
     EXPECT_NEAR(led_foot, 1, 0.002);
-    EXPECT_NEAR(area_of(led, column.set.find(top)->faces) / top_area, led_foot, 1e-4);
+    EXPECT_NEAR(area_of(led, column.annotations.find(top)->faces) / top_area, led_foot, 1e-4);
 }
 
 TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
@@ -210,7 +208,7 @@ TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
     const std::string stretch = R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})";
     const auto height = [&](const DeformResult& result, int id) {
         const Mesh deformed = with_points(column.mesh, result.points);
-        const auto ends = extremes(deformed, *column.set.find(id), {0, 0, 1});
+        const auto ends = extremes(deformed, *column.annotations.find(id), {0, 0, 1});
         return std::abs(deformed.point(Vertex(ends[1])).z() - deformed.point(Vertex(ends[0])).z());
     };
     const auto rest = points_of(column.mesh);
@@ -233,7 +231,7 @@ TEST(PartsThatFollow, AdoptTheMeasureAndLengthOfTheLeaderAndKeepAProportion) {
     }
     const auto length = [&](const DeformResult& result, int id) {
         double sum = 0;
-        const auto& way = column.set.find(id)->polylines[0];
+        const auto& way = column.annotations.find(id)->polylines[0];
         for (std::size_t i = 1; i < way.size(); ++i)
             sum += (eigen(result.points[way[i]]) - eigen(result.points[way[i - 1]])).norm();
         return sum;
@@ -254,9 +252,9 @@ TEST(PartsThatFollow, ReachTheLevelOfTheLeaderAndMirrorIt) {
         Annotation half;
         half.id = side < 0 ? 7 : 8;
         half.tag = side < 0 ? "left" : "right";
-        for (const Index f : column.set.find(shaft)->faces)
+        for (const Index f : column.annotations.find(shaft)->faces)
             if (side * centroid(column.mesh, Face(f)).x() > 0.5) half.faces.push_back(f);
-        column.set.annotations.push_back(half);
+        column.annotations.annotations.push_back(half);
     }
     const DeformResult mirrored = solved(
         column,
@@ -299,8 +297,7 @@ TEST(PartsKept, PositionAndShapeOrDirectionTogether) {
         RelationGraph graph;
         graph.relationships.push_back(constraint(0, other, {top}, parameters));
         graph.relationships.push_back(constraint(1, "keep position", {top}, R"({"hard": true})"));
-        const DeformResult result =
-            deform({column.mesh, column.set}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
+        const DeformResult result = deform({column}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
         for (const ConstraintReport& constraint_report : result.constraints)
             EXPECT_EQ(constraint_report.verdict, Verdict::holds) << constraint_report.type;
         EXPECT_TRUE(result.conflicts.empty()) << other;
@@ -317,10 +314,10 @@ TEST(PartsKept, TheBaseConsistsOfTheCurrentlyLowestVertices) {
             constraint(0, "same level", {left_line, right_line},
                        hard ? R"({"reference": "base", "shapes": "free", "hard": true})" : R"({"reference": "base"})", 10));
         const DeformResult result =
-            deform({column.mesh, column.set}, graph,
-                   edit(R"({"select": {"all": true}, "rotate": {"axis": [0, 1, 0], "angle": 10}})"), "e", DeformOptions());
+            deform({column}, graph, edit(R"({"select": {"all": true}, "rotate": {"axis": [0, 1, 0], "angle": 10}})"), "e",
+                   DeformOptions());
         const auto base = [&](int id) {
-            const auto vertices = vertices_of(column.mesh, *column.set.find(id));
+            const auto vertices = vertices_of(column.mesh, *column.annotations.find(id));
             double low = 1e300, high = -1e300, sum = 0, count = 0;
             for (const Index v : vertices) low = std::min(low, result.points[v].z()), high = std::max(high, result.points[v].z());
             for (const Index v : vertices)
@@ -341,11 +338,12 @@ TEST(PartsKept, OnOneLevelFollowersGrowWithTheirLeader) {
     graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("true")));
     graph.relationships.push_back(constraint(1, "same level", {foot, top}, R"({"hard": true})"));
     const DeformResult result =
-        deform({column.mesh, column.set}, graph,
-               edit(R"({"select": {"annotation": "top"}, "scale": {"factor": 1.2, "centre": [0, 0, 8]}})"), "e");
+        deform({column}, graph, edit(R"({"select": {"annotation": "top"}, "scale": {"factor": 1.2, "centre": [0, 0, 8]}})"), "e");
     const Mesh deformed = with_points(column.mesh, result.points);
     for (const int id : {foot, top})
-        EXPECT_NEAR(area_of(deformed, column.set.find(id)->faces) / area_of(column.mesh, column.set.find(id)->faces), 1.44, 1e-3)
+        EXPECT_NEAR(
+            area_of(deformed, column.annotations.find(id)->faces) / area_of(column.mesh, column.annotations.find(id)->faces),
+            1.44, 1e-3)
             << id;
 }
 
@@ -360,7 +358,7 @@ TEST(PartsKept, AreasOfFreePartsAreMeasuredByTheirCurves) {
         const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
         RelationGraph graph;
         graph.relationships.push_back(constraint(0, "part similarity", {1, 2}, "{}"));
-        const ConstraintReport judged = judge_constraints(mesh, set, graph).at(0);
+        const ConstraintReport judged = judge_constraints({mesh, set}, graph).at(0);
         EXPECT_FALSE(judged.deviations.empty()) << judged.text;
         for (const Deviation& judged_deviation : judged.deviations)
             if (judged_deviation.quantity == "area") return judged_deviation.value.value();

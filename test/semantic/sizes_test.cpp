@@ -79,7 +79,7 @@ TEST(Sizes, NestedPartsReachTheirMeasures) {
         Object object(name);
         const RelationGraph graph = object.ask(requests);
         const std::vector<Point> rest = points_of(object.synthetic.mesh);
-        const DeformResult result = deform({object.synthetic.mesh, object.set}, graph, edit(""), "e");
+        const DeformResult result = deform({{object.synthetic.mesh, object.set}}, graph, edit(""), "e");
         for (std::size_t i = 0; i < requests.size(); ++i) {
             EXPECT_NEAR(object.extent(requests[i].tag, requests[i].direction, result.points) /
                             object.extent(requests[i].tag, requests[i].direction, rest),
@@ -96,7 +96,7 @@ TEST(Sizes, NestedPartsReachTheirMeasures) {
 TEST(Sizes, TwoMeasuresOfOnePart) {
     Object object("statuette");
     const std::vector<Asked> requests{{"base", x, 0.8}, {"base", y, 1.1}, {"base", z, 1.2}};
-    const DeformResult result = deform({object.synthetic.mesh, object.set}, object.ask(requests), edit(""), "e");
+    const DeformResult result = deform({{object.synthetic.mesh, object.set}}, object.ask(requests), edit(""), "e");
     for (const Asked& request : requests)
         EXPECT_NEAR(object.extent(request.tag, request.direction, result.points) /
                         object.extent(request.tag, request.direction, points_of(object.synthetic.mesh)),
@@ -109,7 +109,7 @@ TEST(Sizes, APartCannotBeLongerThanItsContainer) {
     const std::vector<Point> rest = points_of(object.synthetic.mesh);
     const double all = object.extent("statuette", z, rest), body = object.extent("body", z, rest);
     const RelationGraph graph = object.ask({{"statuette", z, 0.7}, {"body", z, 0.8 * all / body}, {"cap", z, 1.1}});
-    const DeformResult result = deform({object.synthetic.mesh, object.set}, graph, edit(""), "e");
+    const DeformResult result = deform({{object.synthetic.mesh, object.set}}, graph, edit(""), "e");
     EXPECT_FALSE(result.acceptable);
     EXPECT_TRUE(result.constraints[0].verdict == Verdict::fails || result.constraints[1].verdict == Verdict::fails);
     ASSERT_FALSE(result.conflicts.empty());
@@ -126,12 +126,12 @@ TEST(Sizes, APartCannotBeLongerThanItsContainer) {
 TEST(Sizes, ASatisfiedMeasureIsNotSolvedFor) {
     Object object("statuette");
     const DeformResult result =
-        deform({object.synthetic.mesh, object.set}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
+        deform({{object.synthetic.mesh, object.set}}, object.ask({{"cap", z, 1}, {"base", x, 1}}), edit(""), "e");
     EXPECT_TRUE(result.acceptable);
     EXPECT_EQ(result.points, result.edited);
     // A measure that others would violate is solved for.
     const DeformResult pulled =
-        deform({object.synthetic.mesh, object.set}, object.ask({{"cap", z, 1}, {"statuette", z, 1.2}}), edit(""), "e");
+        deform({{object.synthetic.mesh, object.set}}, object.ask({{"cap", z, 1}, {"statuette", z, 1.2}}), edit(""), "e");
     EXPECT_TRUE(pulled.constraints[0].verdict == Verdict::holds && pulled.constraints[1].verdict == Verdict::holds);
     EXPECT_NEAR(object.extent("cap", z, pulled.points), object.extent("cap", z, points_of(object.synthetic.mesh)), 0.05);
 }
@@ -140,7 +140,7 @@ TEST(Sizes, PartsThatMovedAreListedForAnEditWithoutSteps) {
     Object object("statuette");
     const double diagonal = box_diagonal(object.synthetic.mesh);
     const std::vector<Point> rest = points_of(object.synthetic.mesh);
-    const DeformResult result = deform({object.synthetic.mesh, object.set}, object.ask({{"head", z, 1.4}}), edit(""), "e");
+    const DeformResult result = deform({{object.synthetic.mesh, object.set}}, object.ask({{"head", z, 1.4}}), edit(""), "e");
     std::size_t listed = 0;
     for (const Annotation& annotation : object.set.annotations) {
         double sum = 0, largest = 0;
@@ -169,7 +169,7 @@ TEST(Sizes, AMeasureIsMovedToTheNearerEndOfItsRange) {
         parameters["minValue"].SetDouble(share < 1 ? 0.5 * rest : share * rest);
         parameters["maxValue"].SetDouble(share < 1 ? share * rest : 2 * rest);
         graph.relationships[0].constraint = to_compact_text(parameters);
-        const DeformResult result = deform({object.synthetic.mesh, object.set}, graph, edit(""), "e");
+        const DeformResult result = deform({{object.synthetic.mesh, object.set}}, graph, edit(""), "e");
         EXPECT_NEAR(object.extent("lip", z, result.points) / rest, share, 2e-4);
     }
 }

@@ -78,7 +78,7 @@ TEST(Parts, RegionsOfTheMemberReplaceTheirCounterparts) {
     EXPECT_GT(*disagreement, 0.1);
     EXPECT_LT(*disagreement, 0.8);
     // The template's own parts agree in full, and cells at random by no more than chance.
-    member.annotations.annotations = template_tower.set.annotations;
+    member.annotations.annotations = template_tower.annotations.annotations;
     EXPECT_NEAR(own_disagreement(template_tower.known(), points_in(member.mesh), member).value_or(9), 0, 1e-12);
     Random random(5);
     low.faces.clear();
@@ -97,21 +97,21 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
         for (const Vertex v : template_tower.mesh.vertices())
             if (CGAL::squared_distance(template_tower.mesh.point(v), Point(x, y, z)) < 1e-12) {
                 Annotation corner;
-                corner.id = 10 + static_cast<int>(template_tower.set.annotations.size());
+                corner.id = 10 + static_cast<int>(template_tower.annotations.annotations.size());
                 corner.tag = tag;
                 corner.type = AnnotationType::point;
                 corner.points = {v.idx()};
-                template_tower.set.annotations.push_back(corner);
-                other.set.annotations.push_back(corner);
+                template_tower.annotations.annotations.push_back(corner);
+                other.annotations.annotations.push_back(corner);
             }
     // One numbers from below, the other from above.
-    template_tower.set.annotations[0].tag = "part 0";
-    template_tower.set.annotations[1].tag = "part 1";
+    template_tower.annotations.annotations[0].tag = "part 0";
+    template_tower.annotations.annotations[1].tag = "part 1";
     WholeObject object = member_of(other, "object", 1, 0.5, 1);
-    object.annotations = other.set;
+    object.annotations = other.annotations;
     object.annotations.annotations[0].tag = "part 1";
     object.annotations.annotations[1].tag = "part 0";
-    const MemberFit fit = fit_member(template_tower.mesh, template_tower.set, object);
+    const MemberFit fit = fit_member(template_tower, object);
     ASSERT_TRUE(fit.problem.empty()) << fit.problem;
     EXPECT_TRUE(std::any_of(fit.notes.begin(), fit.notes.end(),
                             [](const std::string& note) { return note.find("'part' are numbered") != std::string::npos; }));
@@ -119,11 +119,11 @@ TEST(Parts, NumberedPartsAreMatchedByPosition) {
     EXPECT_LT(fit.residuals->off(), 0.1);
     // The same as with distinguishing tags; exchanged tags are trusted.
     const auto with_tags = [&](const std::string& low, const std::string& high) {
-        template_tower.set.annotations[0].tag = "base";
-        template_tower.set.annotations[1].tag = "top";
+        template_tower.annotations.annotations[0].tag = "base";
+        template_tower.annotations.annotations[1].tag = "top";
         object.annotations.annotations[0].tag = low;
         object.annotations.annotations[1].tag = high;
-        return fit_member(template_tower.mesh, template_tower.set, object);
+        return fit_member(template_tower, object);
     };
     const MemberFit words = with_tags("base", "top");
     EXPECT_TRUE(words.notes.empty());

@@ -311,7 +311,7 @@ TEST(MemberFit, FitsATowerWithOtherTrianglesAndTransfersAnnotations) {
     object.mesh = build_mesh(refined);
     EXPECT_FALSE(in_correspondence(template_tower.mesh, object.mesh));
     EXPECT_THROW(static_cast<void>(member_in_correspondence(template_tower.mesh, object)), Error);
-    const MemberFit fit = fit_member(template_tower.mesh, template_tower.set, object);
+    const MemberFit fit = fit_member(template_tower, object);
     ASSERT_TRUE(fit.problem.empty()) << fit.problem;
     ASSERT_TRUE(fit.residuals.has_value());
     EXPECT_LT(fit.residuals->distance, 0.01);
@@ -390,13 +390,13 @@ TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
     const LearntRange* ratio = learnt.find("proportion 7 ");
     for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(template_tower.mesh, sample.points);
-        const double top =
-            evaluate(mesh, template_tower.set.annotations[1], template_tower.set.annotations[1].attributes[0].measure);
-        const double base =
-            evaluate(mesh, template_tower.set.annotations[0], template_tower.set.annotations[0].attributes[0].measure);
+        const double top = evaluate(mesh, template_tower.annotations.annotations[1],
+                                    template_tower.annotations.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, template_tower.annotations.annotations[0],
+                                     template_tower.annotations.annotations[0].attributes[0].measure);
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
-        WholeObject object{"sample", mesh, {}};
+        WholeObject object{{mesh, {}}, "sample"};
         EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).against.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);
@@ -417,10 +417,10 @@ TEST(ClassSample, RestoresAStatedProportionOrRejects) {
     const Sampling sampling = sample_class(learnt, template_tower.known(), options);
     for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(template_tower.mesh, in_template_frame(template_tower.mesh, sample.points, false));
-        const double top =
-            evaluate(mesh, template_tower.set.annotations[1], template_tower.set.annotations[1].attributes[0].measure);
-        const double base =
-            evaluate(mesh, template_tower.set.annotations[0], template_tower.set.annotations[0].attributes[0].measure);
+        const double top = evaluate(mesh, template_tower.annotations.annotations[1],
+                                    template_tower.annotations.annotations[1].attributes[0].measure);
+        const double base = evaluate(mesh, template_tower.annotations.annotations[0],
+                                     template_tower.annotations.annotations[0].attributes[0].measure);
         EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
     }
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);

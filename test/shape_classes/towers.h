@@ -8,11 +8,9 @@
 
 namespace ostraka::test {
 
-struct Tower {
-    Mesh mesh;
-    AnnotationSet set;
+struct Tower : AnnotatedMesh {
     RelationGraph graph;
-    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
+    [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }
 };
 
 /// A class's answer about an object.
@@ -55,9 +53,9 @@ inline Tower tower(double maximum = 5) {
         const Point p = tower.mesh.point(v);
         tower.mesh.point(v) = Point((p.x() - low) / (high - low), (p.y() - low) / (high - low), (p.z() - low) / (high - low));
     }
-    tower.set.unit = "mm";
-    tower.set.annotations.push_back(half(tower.mesh, 1, "base", false));
-    tower.set.annotations.push_back(half(tower.mesh, 2, "top", true));
+    tower.annotations.unit = "mm";
+    tower.annotations.annotations.push_back(half(tower.mesh, 1, "base", false));
+    tower.annotations.annotations.push_back(half(tower.mesh, 2, "top", true));
     Relationship proportion;
     proportion.id = 7;
     proportion.type = "proportion";

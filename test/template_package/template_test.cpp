@@ -55,7 +55,7 @@ struct Ball : Scratch {
         set.up = {0, 0, 1};
         set.annotations = {point_at(1, "eye", 3), point_at(2, "eye 2", 5)};
         ensure_root(set, mesh);
-        write_annotations(*this / "ball.ant.json", set, mesh, "ball.ply", {});
+        write_annotations(*this / "ball.ant.json", {mesh, set}, "ball.ply", {});
         (void)file("ball.graph.json", R"({"format": "ostraka-graph", "version": 1, "relationships": [
             {"id": 0, "type": "same level", "isDirected": false, "annotations": [1, 2], "isConstraint": false}]})");
         (void)file("ball.vocabulary.json", R"({"format": "ostraka-vocabulary", "version": 1, "concepts": [
@@ -243,7 +243,7 @@ TEST(Template, PartsStayInItsFolder) {
         set.annotations[0].attributes[0].name = "map";
         set.annotations[0].attributes[0].type = AttributeType::descriptor;
         set.annotations[0].attributes[0].descriptor.file = name;
-        write_annotations(ball / "o.ant.json", set, ball.mesh, "ball.ply", {});
+        write_annotations(ball / "o.ant.json", {ball.mesh, set}, "ball.ply", {});
         write_file(ball / "o.template.json",
                    R"({"format": "ostraka-template", "version": 1, "mesh": "ball.ply", "annotations": "o.ant.json"})");
         const auto checked = run_command("template check " + ball.at("o.template.json"));

@@ -41,7 +41,7 @@ void expect_whole(const BoundMesh& bound) {
     ASSERT_EQ(bound.extras.vertex_colours.size(), bound.mesh.number_of_vertices());
     for (const Vertex v : bound.mesh.vertices())
         ASSERT_NEAR(bound.extras.vertex_colours[v][0], 100 + 50 * bound.mesh.point(v).x(), 8);
-    check_annotations(*bound.annotations, bound.mesh, "test");
+    check_annotations({bound.mesh, *bound.annotations}, "test");
     EXPECT_EQ(bound.after.vertices, bound.mesh.number_of_vertices());
     EXPECT_FALSE((bound.mesh.property_map<Face, std::uint32_t>(face_annotations).second));
     EXPECT_FALSE((bound.mesh.property_map<Face, std::int32_t>("f:file-label").second));

@@ -26,9 +26,9 @@ Annotation region(int id, std::vector<Index> faces) {
 }
 
 /// Number of faces that belong to the given number of regions.
-std::size_t claimed(const Mesh& mesh, const AnnotationSet& set, std::size_t times) {
-    std::vector<std::size_t> count(mesh.number_of_faces(), 0);
-    for (const Annotation& annotation : set.annotations)
+std::size_t claimed(AnnotatedMeshView object, std::size_t times) {
+    std::vector<std::size_t> count(object.mesh.number_of_faces(), 0);
+    for (const Annotation& annotation : object.annotations.annotations)
         for (const Index f : annotation.faces) ++count[f];
     return static_cast<std::size_t>(std::count(count.begin(), count.end(), times));
 }
@@ -51,7 +51,7 @@ TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     const auto source_search = [&]() -> const SurfaceSearch& { return ++queries, search; };
     const std::vector<bool> none(8, false), all(8, true);
     std::vector<std::vector<bool>> selected{all, all, all};
-    keep_disjoint(source, set, source_search, target, selected);
+    keep_disjoint({source, set}, source_search, target, selected);
     // Both faces of the left cells, three quarters of which are left of 0.8; the third region overlaps both.
     EXPECT_EQ(selected[0], (std::vector<bool>{false, false, true, true, false, false, true, true}));
     EXPECT_EQ(selected[1], (std::vector<bool>{true, true, false, false, true, true, false, false}));
@@ -63,7 +63,7 @@ TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     queries = 0;
     // Unassigned faces are assigned if the regions partition the whole.
     selected = {none, {}};
-    keep_disjoint(source, set, source_search, target, selected);
+    keep_disjoint({source, set}, source_search, target, selected);
     ASSERT_EQ(selected[1].size(), 8U);
     for (std::size_t f = 0; f < 8; ++f) EXPECT_NE(selected[0][f], selected[1][f]) << f;
     EXPECT_TRUE(selected[1][4] && selected[1][7]);
@@ -72,7 +72,7 @@ TEST(DisjointRegions, AFaceInTwoRegionsIsAssignedToTheOneWithTheLargerShare) {
     set.annotations.pop_back();
     queries = 0;
     selected = {none};
-    keep_disjoint(source, set, source_search, target, selected);
+    keep_disjoint({source, set}, source_search, target, selected);
     EXPECT_EQ(selected[0], none);
     EXPECT_EQ(queries, 0U);
 }
@@ -99,11 +99,11 @@ TEST(DisjointRegions, PartitionsOfBustsStayPartitions) {
         for (const int number : {1, 3, 5}) {
             const Path labels = scratch / ("seg/bust/309/309_" + std::to_string(number) + ".seg");
             const AnnotationSet set = regions_from_labels(source, read_labels(labels, source.number_of_faces()));
-            ASSERT_EQ(claimed(source, set, 1), source.number_of_faces());
-            const AnnotationSet transferred = transfer(source, set, search, along_edges).annotations;
-            EXPECT_EQ(claimed(*target, transferred, 1), target->number_of_faces()) << number;
+            ASSERT_EQ(claimed({source, set}, 1), source.number_of_faces());
+            const AnnotationSet transferred = transfer({source, set}, search, along_edges).annotations;
+            EXPECT_EQ(claimed({*target, transferred}, 1), target->number_of_faces()) << number;
             set_threads(1);
-            const AnnotationSet alone = transfer(source, set, search, along_edges).annotations;
+            const AnnotationSet alone = transfer({source, set}, search, along_edges).annotations;
             set_threads(0);
             for (std::size_t i = 0; i < transferred.annotations.size(); ++i)
                 EXPECT_EQ(transferred.annotations[i].faces, alone.annotations[i].faces);

@@ -46,9 +46,9 @@ AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
     return set;
 }
 
-double area_sum(const Mesh& mesh, const AnnotationSet& set) {
+double area_sum(AnnotatedMeshView object) {
     double sum = 0;
-    for (const Annotation& annotation : set.annotations) sum += area_of(mesh, annotation);
+    for (const Annotation& annotation : object.annotations.annotations) sum += area_of(object.mesh, annotation);
     return sum;
 }
 
@@ -78,9 +78,9 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
     const Mesh coarse = object_mesh("teapot", 2500, 1), fine = object_mesh("teapot", 20000, 2);
     const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 4);
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
-    const TransferResult forward = transfer(coarse, set, on_fine);
-    const TransferResult back = transfer(fine, forward.annotations, on_coarse);
-    check_annotations(forward.annotations, fine, "there");
+    const TransferResult forward = transfer({coarse, set}, on_fine);
+    const TransferResult back = transfer({fine, forward.annotations}, on_coarse);
+    check_annotations({fine, forward.annotations}, "there");
     for (const Annotation& annotation : set.annotations) {
         ASSERT_TRUE(is_free(annotation));
         const Annotation *moved = forward.annotations.find(annotation.id), *again = back.annotations.find(annotation.id);
@@ -100,12 +100,12 @@ TEST(ProjectCurves, ThereAndBackIsTheSameCurve) {
 TEST(ProjectCurves, APartitionStaysAPartition) {
     const Mesh coarse = object_mesh("statuette", 3000, 1), fine = object_mesh("statuette", 12000, 5);
     const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
-    ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
+    ASSERT_NEAR(area_sum({fine, set}) / surface_area(fine), 1, 1e-9);
     const SurfaceSearch on_coarse(coarse);
-    const TransferResult transferred = transfer(fine, set, on_coarse);
-    EXPECT_NEAR(area_sum(coarse, transferred.annotations) / surface_area(coarse), 1, 1e-6);
+    const TransferResult transferred = transfer({fine, set}, on_coarse);
+    EXPECT_NEAR(area_sum({coarse, transferred.annotations}) / surface_area(coarse), 1, 1e-6);
     // On the cut mesh every piece of significant size is in exactly one region.
-    const CutMesh cut = cut_along_curves(coarse, transferred.annotations);
+    const CutMesh cut = cut_along_curves({coarse, transferred.annotations});
     std::vector<int> holders(cut.mesh.number_of_faces(), 0);
     for (const Annotation& annotation : cut.annotations.annotations)
         for (const Index f : annotation.faces) ++holders[f];
@@ -125,16 +125,16 @@ TEST(ProjectCurves, OutlinesAlongEdgesBecomeFreeIfRequested) {
     const SurfaceSearch on_fine(fine);
     TransferOptions options;
     set.annotations[0].information = {{Information::Kind::text, "cracked", "", ""}};
-    const TransferResult along_edges = transfer(coarse, set, on_fine, options);
+    const TransferResult along_edges = transfer({coarse, set}, on_fine, options);
     EXPECT_FALSE(is_free(along_edges.annotations.annotations.at(0)));
     options.outlines = TransferOptions::Outlines::free;
-    const TransferResult free = transfer(coarse, set, on_fine, options);
+    const TransferResult free = transfer({coarse, set}, on_fine, options);
     EXPECT_TRUE(is_free(free.annotations.annotations.at(0)));
     for (const TransferResult* result : {&along_edges, &free})
         EXPECT_EQ(result->annotations.annotations[0].information, set.annotations[0].information);
     EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
     options.outlines = TransferOptions::Outlines::edges;
-    EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
+    EXPECT_FALSE(is_free(transfer({fine, free.annotations}, on_fine, options).annotations.annotations.at(0)));
 }
 
 TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
@@ -144,7 +144,7 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
     TransferOptions options;
     options.overlap = false;
     const auto worst_perimeter = [&] {
-        const TransferResult moved = transfer(fine, set, on_coarse, options);
+        const TransferResult moved = transfer({fine, set}, on_coarse, options);
         double worst = 0;
         for (std::size_t i = 0; i < set.annotations.size(); ++i) {
             const double before = measure_region(fine, set.annotations[i]).perimeter;
@@ -152,22 +152,22 @@ TEST(ProjectCurves, LabelsOfAPartitionBecomeFree) {
         }
         return worst;
     };
-    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+    for (const Annotation& annotation : transfer({fine, set}, on_coarse, options).annotations.annotations)
         EXPECT_TRUE(is_free(annotation));
     const double free = worst_perimeter();
     EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
     // Other regions stay along edges: if requested, and if they leave a gap.
     options.outlines = TransferOptions::Outlines::kept;
-    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+    for (const Annotation& annotation : transfer({fine, set}, on_coarse, options).annotations.annotations)
         EXPECT_FALSE(is_free(annotation));
     EXPECT_GT(worst_perimeter(), 5 * free);
     options.outlines = TransferOptions::Outlines::partitions;
     options.cover = TransferOptions::Cover::enclosing;
-    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+    for (const Annotation& annotation : transfer({fine, set}, on_coarse, options).annotations.annotations)
         EXPECT_FALSE(is_free(annotation));
     options.cover = TransferOptions::Cover::overlapping;
     set.annotations.pop_back();
-    for (const Annotation& annotation : transfer(fine, set, on_coarse, options).annotations.annotations)
+    for (const Annotation& annotation : transfer({fine, set}, on_coarse, options).annotations.annotations)
         EXPECT_FALSE(is_free(annotation));
 }
 
@@ -190,8 +190,8 @@ TEST(ProjectCurves, FollowsSimplificationAndRefinement) {
     SimplifyOptions simplifying;
     simplifying.vertices = 3000;
     bound.simplify(simplifying);
-    check_annotations(*bound.annotations, bound.mesh, "simplified");
-    EXPECT_NEAR(area_sum(bound.mesh, *bound.annotations) / surface_area(bound.mesh), 1, 1e-6);
+    check_annotations({bound.mesh, *bound.annotations}, "simplified");
+    EXPECT_NEAR(area_sum({bound.mesh, *bound.annotations}) / surface_area(bound.mesh), 1, 1e-6);
     for (const Annotation& annotation : bound.annotations->annotations) {
         const RegionMeasures before = measure_region(mesh, *set.find(annotation.id)),
                              after = measure_region(bound.mesh, annotation);
@@ -207,7 +207,7 @@ TEST(ProjectCurves, SameToTheBitForAnyNumberOfThreads) {
     std::vector<std::vector<std::vector<SurfacePoint>>> curves;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
-        const TransferResult transferred = transfer(coarse, set, search);
+        const TransferResult transferred = transfer({coarse, set}, search);
         curves.emplace_back();
         for (const Annotation& annotation : transferred.annotations.annotations)
             for (const auto& curve : annotation.curves) curves.back().push_back(curve);
@@ -279,8 +279,8 @@ TEST(ProjectCurves, FoldsLeaveNoSpikesOnTheWayBack) {
     const SurfaceSearch on_fine(fine), on_coarse(coarse);
     TransferOptions options;
     options.force = true;
-    const TransferResult forward = transfer(coarse, set, on_fine, options);
-    const TransferResult back = transfer(fine, forward.annotations, on_coarse, options);
+    const TransferResult forward = transfer({coarse, set}, on_fine, options);
+    const TransferResult back = transfer({fine, forward.annotations}, on_coarse, options);
     ASSERT_EQ(back.annotations.annotations.size(), 1U);
     const Annotation& again = back.annotations.annotations[0];
     EXPECT_EQ(again.curves.size(), 1U);
@@ -297,10 +297,10 @@ TEST(ProjectCurves, APartitionWithJunctionsStaysAPartitionOnACoarserMesh) {
         options.outlines = TransferOptions::Outlines::free;
         options.overlap = false;
         const SurfaceSearch on_coarse(coarse);
-        const TransferResult transferred = transfer(fine, set, on_coarse, options);
-        check_annotations(transferred.annotations, coarse, "there");
-        EXPECT_NEAR(area_sum(coarse, transferred.annotations) / surface_area(coarse), 1, 1e-9) << object;
-        const CutMesh cut = cut_along_curves(coarse, transferred.annotations);
+        const TransferResult transferred = transfer({fine, set}, on_coarse, options);
+        check_annotations({coarse, transferred.annotations}, "there");
+        EXPECT_NEAR(area_sum({coarse, transferred.annotations}) / surface_area(coarse), 1, 1e-9) << object;
+        const CutMesh cut = cut_along_curves({coarse, transferred.annotations});
         std::vector<int> holders(cut.mesh.number_of_faces(), 0);
         for (const Annotation& annotation : cut.annotations.annotations)
             for (const Index f : annotation.faces) ++holders[f];
@@ -317,7 +317,7 @@ TEST(ProjectCurves, UnitPositionAndRoundingChangeNothing) {
     const auto measured = [&](double scale, const Vector& by, double noise) {
         const Mesh from = moved_and_scaled(coarse, scale, by, noise), to = moved_and_scaled(fine, scale, by, noise);
         const SurfaceSearch on_to(to), on_from(from);
-        const TransferResult forward = transfer(from, set, on_to), back = transfer(to, forward.annotations, on_from);
+        const TransferResult forward = transfer({from, set}, on_to), back = transfer({to, forward.annotations}, on_from);
         std::vector<double> values;
         for (const auto& [mesh, result] : {std::pair(&to, &forward), std::pair(&from, &back)})
             for (const Annotation& annotation : result->annotations.annotations) {
@@ -349,7 +349,7 @@ TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
     const SurfaceSearch search(target);
     TransferOptions options;
     options.force = true;
-    const TransferResult transferred = transfer(whole, set, search, options);
+    const TransferResult transferred = transfer({whole, set}, search, options);
     ASSERT_EQ(transferred.annotations.annotations.size(), 1U);
     EXPECT_EQ(transferred.annotations.annotations[0].curves.size(), 1U);
     EXPECT_EQ(transferred.scores.at(0).note, "2 outlines became 1");

@@ -23,7 +23,7 @@ protected:
         for (const Face f : source.faces())
             if (centroid(source, f).z() > 0.5) cap.faces.push_back(f);
         set.annotations.push_back(cap);
-        write_annotations(scratch / "s.ant.json", set, source, "s.ply", {});
+        write_annotations(scratch / "s.ant.json", {source, set}, "s.ply", {});
     }
     [[nodiscard]] std::string at(const std::string& name) const { return (scratch / name).string(); }
     [[nodiscard]] CommandResult transfer(const std::string& more, const std::string& target = "t.ply",
@@ -83,7 +83,7 @@ TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     set.annotations.push_back(part);
     write_mesh(scratch / "s.ply", hand.mesh);
     write_mesh(scratch / "t.ply", target);
-    write_annotations(scratch / "s.ant.json", set, hand.mesh, "s.ply", {});
+    write_annotations(scratch / "s.ant.json", {hand.mesh, set}, "s.ply", {});
     EXPECT_EQ(transfer("").code, 1);  // without a registration they are refused
     const CommandResult result = transfer("--register --json --back " + at("b.ant.json"));
     ASSERT_EQ(result.code, 0) << result.err;

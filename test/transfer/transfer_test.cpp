@@ -39,10 +39,9 @@ AnnotationSet set_of(std::vector<Annotation> annotations) {
 const auto cap = [](const Point& p) { return p.z() > 0.6; };
 const auto band = [](const Point& p) { return std::abs(p.x()) < 0.3; };
 
-TransferResult transfer_to(const Mesh& source, const AnnotationSet& set, const Mesh& target,
-                           const TransferOptions& options = {}) {
+TransferResult transfer_to(AnnotatedMeshView source, const Mesh& target, const TransferOptions& options = {}) {
     const SurfaceSearch search(target);
-    return transfer(source, set, search, options);
+    return transfer(source, search, options);
 }
 
 TriangleSoup rotated(TriangleSoup soup, double angle) {
@@ -71,7 +70,7 @@ TEST(Transfer, OntoItselfIsTheIdentity) {
         for (const char* metric : {"euclidean", "segment", "combined"}) {
             TransferOptions options;
             set_option(options, "metric", metric);
-            const TransferResult result = transfer_to(mesh, set, mesh, options);
+            const TransferResult result = transfer_to({mesh, set}, mesh, options);
             ASSERT_EQ(result.annotations.annotations.size(), 3U) << name;
             EXPECT_EQ(result.annotations.annotations[0].faces, set.annotations[0].faces) << name << " " << metric;
             EXPECT_EQ(result.annotations.annotations[1].polylines, line.polylines) << name;
@@ -92,7 +91,7 @@ TEST(Transfer, RegionsKeepTheirAreaAcrossResolutions) {
                 TransferOptions options;
                 set_option(options, "metric", metric);
                 set_option(options, "spikes", spikes);
-                const TransferResult result = transfer_to(*source, set, *target, options);
+                const TransferResult result = transfer_to({*source, set}, *target, options);
                 for (const TransferScore& score : result.scores) {
                     EXPECT_EQ(score.outcome, TransferOutcome::kept);
                     EXPECT_FALSE(score.voted);
@@ -111,7 +110,7 @@ TEST(Transfer, RefinedTargetHoldsTheOutlineExactly) {
         const AnnotationSet set = set_of({region(1, source, cap), region(2, source, band)});
         TransferOptions options;
         options.refine = true;
-        const TransferResult result = transfer_to(source, set, target, options);
+        const TransferResult result = transfer_to({source, set}, target, options);
         ASSERT_TRUE(result.refined);
         const Mesh& refined = result.refined->mesh;
         EXPECT_TRUE(refined.is_valid(false));
@@ -132,9 +131,9 @@ TEST(Transfer, EnclosingContainsTheFacesThatEnclosedOmits) {
     const AnnotationSet set = set_of({region(1, source, cap)});
     TransferOptions options;
     options.cover = TransferOptions::Cover::enclosing;
-    const auto outer = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
+    const auto outer = transfer_to({source, set}, target, options).annotations.annotations.at(0).faces;
     options.cover = TransferOptions::Cover::enclosed;
-    const auto inner = transfer_to(source, set, target, options).annotations.annotations.at(0).faces;
+    const auto inner = transfer_to({source, set}, target, options).annotations.annotations.at(0).faces;
     EXPECT_TRUE(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end()));
     // The true border of the source region lies where its faces end; allow for the height of a source face.
     const double slack = 1.5 * mean_edge_length(source);
@@ -155,7 +154,7 @@ TEST(Transfer, SmallRegionsBecomeAPointOrALineWithANote) {
     Annotation dot = region(1, source, [](const Point& p) { return p.z() > 0.995; });
     dot.tag = "dot";
     Annotation strip = region(2, source, [](const Point& p) { return std::abs(p.y() - 0.02) < 0.03 && p.x() > 0 && p.z() > 0; });
-    const TransferResult result = transfer_to(source, set_of({dot, strip}), target);
+    const TransferResult result = transfer_to({source, set_of({dot, strip})}, target);
     ASSERT_EQ(result.annotations.annotations.size(), 2U);
     EXPECT_EQ(result.annotations.annotations[0].type, AnnotationType::point);
     EXPECT_EQ(result.annotations.annotations[0].tag, "dot");
@@ -171,7 +170,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     line.type = AnnotationType::line;
     const Halfedge h = source.halfedge(Vertex(4));  // at a pole, which both meshes have
     line.polylines = {{source.source(h), source.target(h)}};
-    const TransferResult result = transfer_to(source, set_of({line}), target);
+    const TransferResult result = transfer_to({source, set_of({line})}, target);
     ASSERT_EQ(result.annotations.annotations.size(), 1U);
     EXPECT_EQ(result.annotations.annotations[0].type, AnnotationType::point);
     EXPECT_EQ(result.scores[0].outcome, TransferOutcome::became_point);
@@ -190,7 +189,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     cap_region.attributes = {ruler};
     TransferOptions force;
     force.force = true;
-    const auto carried = transfer_to(two_balls, set_of({cap_region}), single_ball, force).annotations.annotations;
+    const auto carried = transfer_to({two_balls, set_of({cap_region})}, single_ball, force).annotations.annotations;
     ASSERT_EQ(carried.size(), 1U);
     ASSERT_EQ(carried[0].attributes.size(), 1U);
     EXPECT_EQ(carried[0].attributes[0].type, AttributeType::descriptor);
@@ -201,7 +200,7 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
 TEST(Transfer, RegionWhoseSmallHoleVanishesCoversItsComponent) {
     const Mesh source = build_mesh(octahedron_sphere(5)), target = build_mesh(octahedron_sphere(2));
     const AnnotationSet set = set_of({region(1, source, [](const Point& p) { return p.z() < 0.998; })});
-    const TransferResult result = transfer_to(source, set, target);
+    const TransferResult result = transfer_to({source, set}, target);
     EXPECT_EQ(result.scores[0].outcome, TransferOutcome::kept);
     EXPECT_EQ(result.annotations.annotations.at(0).faces.size(), target.number_of_faces());
     EXPECT_FALSE(result.scores[0].hausdorff);
@@ -213,7 +212,7 @@ TEST(Transfer, SeveralOutlinesAndPatches) {
         {region(1, source, [](const Point& p) { return std::abs(p.x()) > 1.5; }),  // two patches
          region(2, source, [](const Point& p) { return p.x() > 0 && !(p.y() > -0.6 && p.y() < 0.6 && p.z() > 0.3); }),  // a hole
          region(3, source, [](const Point& p) { return p.z() > 0; })});  // an annulus around the axis
-    const TransferResult result = transfer_to(source, set, target);
+    const TransferResult result = transfer_to({source, set}, target);
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& faces = result.annotations.annotations[i].faces;
         EXPECT_EQ(extract_outlines(target, faces).size(), extract_outlines(source, set.annotations[i].faces).size()) << i;
@@ -230,7 +229,7 @@ TEST(Transfer, WholeComponentsAndTheWholeMesh) {
     Annotation all = region(0, source, [](const Point&) { return true; });
     all.all = true;
     const TransferResult result =
-        transfer_to(source, set_of({all, region(1, source, [](const Point& p) { return p.x() > 1.5; })}), target);
+        transfer_to({source, set_of({all, region(1, source, [](const Point& p) { return p.x() > 1.5; })})}, target);
     EXPECT_EQ(result.annotations.annotations[0].faces.size(), target.number_of_faces());
     for (const Face f : target.faces()) {
         const auto& faces = result.annotations.annotations[1].faces;
@@ -242,7 +241,7 @@ TEST(Transfer, BorderOfAnOpenMeshBoundsTheRegion) {
     const Mesh source = build_mesh(patch(20, 20)), target = build_mesh(patch(33, 29));
     const AnnotationSet set = set_of(
         {region(1, source, [](const Point& p) { return p.x() < 0.5; }), region(2, source, [](const Point&) { return true; })});
-    const TransferResult result = transfer_to(source, set, target);
+    const TransferResult result = transfer_to({source, set}, target);
     EXPECT_EQ(result.annotations.annotations[1].faces.size(), target.number_of_faces());
     EXPECT_NEAR(result.scores[0].target_area / result.scores[0].source_area, 1, 0.02);
     EXPECT_GT(*result.scores[0].overlap, 0.95);
@@ -261,7 +260,7 @@ TEST(Transfer, ThinWallDoesNotAttractTheOutlineOfTheOtherSide) {
     for (const bool refine : {false, true}) {
         TransferOptions options;
         options.refine = refine;
-        const TransferResult result = transfer_to(source, set, target, options);
+        const TransferResult result = transfer_to({source, set}, target, options);
         const Mesh& mesh = refine ? result.refined->mesh : target;
         for (const Index f : result.annotations.annotations.at(0).faces) EXPECT_GT(centroid(mesh, Face(f)).z(), 0.0099);
         EXPECT_GT(*result.scores[0].overlap, refine ? 0.999 : 0.85);
@@ -272,7 +271,7 @@ TEST(Transfer, SharedBorderStaysShared) {
     const Mesh source = build_mesh(octahedron_sphere(4)), target = build_mesh(rotated(octahedron_sphere(5), 0.3));
     const auto left = [](const Point& p) { return p.x() + 0.2 * p.y() < 0.1; };
     const AnnotationSet set = set_of({region(1, source, left), region(2, source, [&](const Point& p) { return !left(p); })});
-    const TransferResult result = transfer_to(source, set, target);
+    const TransferResult result = transfer_to({source, set}, target);
     std::vector<int> owners(target.number_of_faces(), 0);
     for (const Annotation& annotation : result.annotations.annotations)
         for (const Index f : annotation.faces) ++owners[f];
@@ -286,19 +285,19 @@ TEST(Transfer, SameForAnyNumberOfThreadsAndScale) {
     const Mesh source = at(4, 1, {0, 0, 0}), target = at(5, 1, {0, 0, 0});
     const AnnotationSet set = set_of({region(1, source, cap)});
     set_threads(1);
-    const TransferResult single_threaded = transfer_to(source, set, target);
+    const TransferResult single_threaded = transfer_to({source, set}, target);
     set_threads(2);
-    const TransferResult two_threaded = transfer_to(source, set, target);
+    const TransferResult two_threaded = transfer_to({source, set}, target);
     set_threads(0);
     EXPECT_EQ(single_threaded.annotations.annotations[0].faces, two_threaded.annotations.annotations[0].faces);
     EXPECT_EQ(*single_threaded.scores[0].overlap, *two_threaded.scores[0].overlap);
     for (const double scale : {1e-9, 1e9}) {
-        const TransferResult scaled = transfer_to(at(4, scale, {0, 0, 0}), set, at(5, scale, {0, 0, 0}));
+        const TransferResult scaled = transfer_to({at(4, scale, {0, 0, 0}), set}, at(5, scale, {0, 0, 0}));
         EXPECT_EQ(scaled.annotations.annotations[0].faces.size(), single_threaded.annotations.annotations[0].faces.size())
             << scale;
         EXPECT_NEAR(*scaled.scores[0].overlap, *single_threaded.scores[0].overlap, 1e-3);
     }
-    const TransferResult far = transfer_to(at(4, 1, {1e6, 0, 0}), set, at(5, 1, {1e6, 0, 0}));
+    const TransferResult far = transfer_to({at(4, 1, {1e6, 0, 0}), set}, at(5, 1, {1e6, 0, 0}));
     EXPECT_NEAR(*far.scores[0].overlap, *single_threaded.scores[0].overlap, 1e-3);
 }
 
@@ -308,7 +307,7 @@ TEST(Transfer, RoundingPutsLessOnTheWrongSideAndMeetsAreaAndPerimeter) {
     const auto scores = [&](const char* rounding) {
         TransferOptions options;
         set_option(options, "rounding", rounding);
-        return transfer_to(source, set, target, options).scores;
+        return transfer_to({source, set}, target, options).scores;
     };
     const auto path = scores("path"), area = scores("area"), balanced = scores("balanced");
     for (std::size_t i = 0; i < 2; ++i) {
@@ -333,7 +332,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
         set_option(options, "rounding", rounding);
         options.outlines = TransferOptions::Outlines::kept;
         std::vector<int> owners(target.number_of_faces(), 0);
-        for (const Annotation& annotation : transfer_to(source, set, target, options).annotations.annotations)
+        for (const Annotation& annotation : transfer_to({source, set}, target, options).annotations.annotations)
             for (const Index f : annotation.faces) ++owners[f];
         for (const int count : owners) EXPECT_EQ(count, 1) << rounding;
     }
@@ -355,7 +354,7 @@ TEST(Transfer, MeasuresMoveWithTheirPinsAndAreRecomputed) {
     area.type = AttributeType::descriptor;
     area.descriptor.values = {99.0};
     top.attributes = {ruler, area};
-    const Annotation moved = transfer_to(source, set_of({top}), target).annotations.annotations.at(0);
+    const Annotation moved = transfer_to({source, set_of({top})}, target).annotations.annotations.at(0);
     ASSERT_EQ(moved.attributes.size(), 2U);
     EXPECT_FALSE(moved.attributes[0].measure.stale);
     EXPECT_NEAR(moved.attributes[0].measure.value.value(), 2, 1e-9);
@@ -368,7 +367,7 @@ TEST(Survival, SmallerRegionsNeedMoreVertices) {
     const AnnotationSet set = set_of({region(1, mesh, [](const Point& p) { return p.z() > 0; }),
                                       region(2, mesh, [](const Point& p) { return p.z() > 0.8; }),
                                       region(3, mesh, [](const Point& p) { return p.z() > 0.99; })});
-    const auto survivals = smallest_resolutions(mesh, set);
+    const auto survivals = smallest_resolutions({mesh, set});
     ASSERT_EQ(survivals.size(), 3U);
     EXPECT_LE(survivals[0].vertices, survivals[1].vertices);
     EXPECT_LT(survivals[1].vertices, survivals[2].vertices);
@@ -379,7 +378,7 @@ TEST(Transfer, OtherUnitsAndPositionsAreRefusedWithTheirSize) {
     const Mesh source = build_mesh(torus(40, 20));
     const auto refusal = [&](const TriangleSoup& soup) {
         try {
-            transfer_to(source, set_of({}), build_mesh(soup));
+            transfer_to({source, set_of({})}, build_mesh(soup));
         } catch (const Error& error) {
             return std::string(error.what());
         }
@@ -402,8 +401,8 @@ TEST(Transfer, InsideOutAndMirroredTargetsAreRefused) {
     for (auto& t : flipped.triangles) std::swap(t[0], t[1]);
     for (auto& p : mirrored.points) p[0] = 0.3333 - p[0];
     for (auto& t : mirrored.triangles) std::swap(t[0], t[1]);
-    for (const TriangleSoup& soup : {flipped, mirrored}) EXPECT_THROW(transfer_to(source, set_of({}), build_mesh(soup)), Error);
-    EXPECT_NO_THROW(transfer_to(source, set_of({}), source));
+    for (const TriangleSoup& soup : {flipped, mirrored}) EXPECT_THROW(transfer_to({source, set_of({})}, build_mesh(soup)), Error);
+    EXPECT_NO_THROW(transfer_to({source, set_of({})}, source));
 }
 
 TEST(Transfer, AnnotationOfAnotherMeshIsRefused) {
@@ -411,5 +410,5 @@ TEST(Transfer, AnnotationOfAnotherMeshIsRefused) {
     Annotation wrong;
     wrong.type = AnnotationType::point;
     wrong.points = {100000};
-    EXPECT_THROW(transfer_to(mesh, set_of({wrong}), mesh), Error);
+    EXPECT_THROW(transfer_to({mesh, set_of({wrong})}, mesh), Error);
 }

@@ -239,7 +239,7 @@ TEST(Infer, TheCommand) {
         const MeshFile mesh = read_mesh(data + object + ".ply");
         const AnnotationSet set = read_annotations(out, mesh.mesh);
         EXPECT_TRUE(set.notes.empty());
-        EXPECT_TRUE(holds(to_text(annotations_to_json(set, mesh.mesh, "m.ply", {})), "\"origin\": \"rule '" + word));
+        EXPECT_TRUE(holds(to_text(annotations_to_json({mesh.mesh, set}, "m.ply", {})), "\"origin\": \"rule '" + word));
     }
     const std::string vase = data + "vase.ply " + data + "vase.ant.json ";
     EXPECT_EQ(run_command("annotation infer " + vase + words + " " + words).code, 2);

@@ -1,7 +1,7 @@
 // Annotation files (*.ant.json): the format of the thesis's Appendix B.1 with optional additions (doc/annotations.md).
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/core/options.h"
 #include "ostraka/files/provenance.h"
@@ -24,11 +24,10 @@ AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnn
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options = {});
 
-/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. Only the file name of `mesh_file` is
-/// stored, not its folder. Throws Error if a selection does not fit the mesh.
-void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
-                       const Provenance& provenance);
-Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
+/// Writes the annotations atomically; the same object, name and provenance give the same bytes. Only the file name of `mesh_file`
+/// is stored, not its folder. Throws Error if a selection does not fit the mesh.
+void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
+Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 
 /// Reads a list of attributes, which recipes contain as well. `list` must have been validated against a schema; pins are not
 /// checked. `pointer`: JSON pointer of the list in the document.
@@ -36,7 +35,7 @@ std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::st
 
 /// Applies the checks of the reader to a set in memory: ids, colours, indices, edges, pins. Throws Error (input) whose message
 /// begins with `where`.
-void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where);
+void check_annotations(AnnotatedMeshView object, const std::string& where);
 
 /// Reads the `information` of an annotation file. Throws Error (input) if anything other than a local file has a checksum.
 std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where, const std::string& pointer);
@@ -44,6 +43,6 @@ std::vector<Information> information_from_json(const JsonValue::ConstArray& list
 /// Checks the local files that annotations and their attributes refer to, relative to `folder`. Defects: a file is missing,
 /// lies outside the folder or does not match its checksum. Remarks: the checksum is unknown. The array (.npy) of an attribute
 /// must have one number per vertex or per face of `mesh`; an axis file (.json) must contain an axis.
-std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, const Path& folder);
+std::vector<Finding> check_files(AnnotatedMeshView object, const Path& folder);
 
 }  // namespace ostraka

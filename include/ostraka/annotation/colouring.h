@@ -1,7 +1,7 @@
 // Colours of annotations, and coloured meshes.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
@@ -14,7 +14,7 @@ bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 
 /// A colour for an annotation about to be added to the set: neutral if it covers nearly all of the mesh, else the first colour
 /// of the palette not used in the set.
-std::array<int, 3> fresh_colour(const Mesh& mesh, const AnnotationSet& set, const Annotation& joining);
+std::array<int, 3> fresh_colour(AnnotatedMeshView object, const Annotation& joining);
 
 /// Assigns colours to the regions of a set without common faces: distinct colours as long as the palette lasts, different hues
 /// for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
@@ -22,10 +22,10 @@ void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
 /// The regions of a set, by descending area; for equal areas, the later one in the set first. Painting them in this order
 /// leaves the smallest (then the earliest) region on top.
-std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, const AnnotationSet& set);
+std::vector<const Annotation*> regions_largest_first(AnnotatedMeshView object);
 
 /// Colours each face by the smallest region that covers it (grey: none), each vertex likewise, and then the vertices of
 /// poly-lines and points by their annotation. Linear in the size of the mesh and the selections.
-MeshExtras colour_by_annotation(const Mesh& mesh, const AnnotationSet& set);
+MeshExtras colour_by_annotation(AnnotatedMeshView object);
 
 }  // namespace ostraka

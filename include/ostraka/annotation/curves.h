@@ -1,7 +1,7 @@
 // Free annotations: outlines, poly-lines and points that need not follow the edges of the mesh.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/outline.h"
 #include "ostraka/geom/curve_filling.h"
 
@@ -41,10 +41,9 @@ double length_of(const Mesh& mesh, const Annotation& annotation);
 /// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation);
 
-/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
-struct CutMesh {
-    Mesh mesh;                         ///< old vertices first, with unchanged indices
-    AnnotationSet annotations;         ///< without curves; measures keep their pins
+/// A mesh cut along the free curves of its annotations, so that all curves follow edges. The surface is unchanged. The old
+/// vertices come first and keep their indices; the annotations have no curves, and their measures keep the pins.
+struct CutMesh : AnnotatedMesh {
     std::vector<Index> face_origin;    ///< new face -> old face, ascending
     std::vector<SurfacePoint> points;  ///< for each new vertex, its place on the old mesh
     std::size_t old_vertices = 0;
@@ -61,24 +60,22 @@ struct CutMesh {
     }
 };
 
-/// Cuts along the curves of the set and along `more`. Linear in the size of the mesh plus O(k log k) per face with k nodes; if
-/// two outlines intersect, also in the sizes of both.
-CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::vector<SurfaceCurve>& more = {});
+/// Cuts along the curves of the annotations and along `more`. Linear in the size of the mesh plus O(k log k) per face with k
+/// nodes; if two outlines intersect, also in the sizes of both.
+CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
-/// Mesh and annotations in which all annotations follow edges, for read-only use: the given ones if no annotation is free, else
-/// cut ones. The arguments must outlive this object.
+/// An annotated mesh in which all annotations follow edges, for read-only use: the given one if no annotation is free, else the
+/// cut one. The argument must outlive this object.
 class AlongEdges {
 public:
-    AlongEdges(const Mesh& mesh, const AnnotationSet& set) : mesh_(&mesh), set_(&set) {
-        if (any_free(set)) cut_.emplace(cut_along_curves(mesh, set));
+    explicit AlongEdges(AnnotatedMeshView given) : given_(given) {
+        if (any_free(given.annotations)) cut_.emplace(cut_along_curves(given));
     }
-    [[nodiscard]] const Mesh& mesh() const { return cut_ ? cut_->mesh : *mesh_; }
-    [[nodiscard]] const AnnotationSet& annotations() const { return cut_ ? cut_->annotations : *set_; }
+    [[nodiscard]] AnnotatedMeshView object() const { return cut_ ? AnnotatedMeshView(*cut_) : given_; }
     [[nodiscard]] const std::optional<CutMesh>& cut() const { return cut_; }
 
 private:
-    const Mesh* mesh_;
-    const AnnotationSet* set_;
+    AnnotatedMeshView given_;
     std::optional<CutMesh> cut_;
 };
 

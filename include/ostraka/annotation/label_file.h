@@ -2,7 +2,7 @@
 // Conversion from and to regions.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/file.h"
 
 #include <map>
@@ -36,7 +36,7 @@ struct FaceLabels {
 };
 /// For each face, the id of the smallest region (by area, then by position in the set) that covers it, ignoring the whole
 /// object. A face that free outlines cut gets the id that covers most of its area.
-FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set);
-std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set);
+FaceLabels face_labels(AnnotatedMeshView object);
+std::vector<std::int32_t> labels_of(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -1,15 +1,14 @@
 // Annotated parts of a mesh as separate meshes.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/geom/submesh.h"
 
 namespace ostraka {
 
-/// A part cut out along its outlines, with its annotations.
-struct CutPart {
-    Mesh mesh;
-    AnnotationSet annotations;     ///< annotations that lie completely on the part; free outlines now follow its edges
+/// A part cut out along its outlines, with the annotations that lie completely on it; free outlines now follow its edges.
+struct CutPart : AnnotatedMesh {
     std::vector<Index> vertices;   ///< index in `whole` of each vertex
     std::vector<Index> faces;      ///< index in `whole` of each face; no_index for faces that close a cut
     std::size_t cuts = 0;          ///< number of borders that are not, or not entirely, borders of the object
@@ -20,7 +19,7 @@ struct CutPart {
 /// Cuts out the union of `regions` (indices into the set; empty: the whole mesh) without the regions in `left_out`. `close`:
 /// fills the borders created by the cut with triangles and annotates them as "cut". Throws Error (input) if an index does not
 /// refer to a region or if nothing is left.
-CutPart cut_out_part(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& regions,
+CutPart cut_out_part(AnnotatedMeshView object, const std::vector<std::size_t>& regions,
                      const std::vector<std::size_t>& left_out = {}, bool close = false);
 
 }  // namespace ostraka

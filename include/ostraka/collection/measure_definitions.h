@@ -1,7 +1,7 @@
 // Measures that are defined once, on annotations or landmarks, and taken on every object of a collection.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/collection/measure_table.h"
 #include "ostraka/collection/objects.h"
 #include "ostraka/vocabulary/tag_matcher.h"
@@ -66,8 +66,7 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
                              const TagMatcher* words = nullptr);
 
 /// The same for a mesh with annotations in memory.
-ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
-                             const TagMatcher* words = nullptr);
+ObjectMeasures take_measures(AnnotatedMeshView object, const MeasureDefinitions& definitions, const TagMatcher* words = nullptr);
 
 Json object_measures_to_json(const ObjectMeasures& measures);
 ObjectMeasures object_measures_from_json(const JsonValue& value);

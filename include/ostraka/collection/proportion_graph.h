@@ -29,8 +29,7 @@ struct Proposals {
 /// yet are taken and added. Notes report ratios that cannot be proposed: a measure does not have its own annotation (the whole
 /// object, descriptors, two measures of one annotation) or cannot be taken on the template. `existing` may be empty;
 /// constraints that it already contains are not repeated.
-Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, RelationGraph existing,
-                              const MeasureDefinitions& definitions, const ProportionStudy& study,
-                              const ProposalOptions& options = {});
+Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph existing, const MeasureDefinitions& definitions,
+                              const ProportionStudy& study, const ProposalOptions& options = {});
 
 }  // namespace ostraka

@@ -1,7 +1,7 @@
 // A scanned fragment of an object.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <cstdint>
@@ -15,10 +15,8 @@ namespace ostraka {
 enum class Facet : std::uint8_t { outer, inner, fracture };
 std::string to_string(Facet facet);
 
-struct Fragment {
+struct Fragment : AnnotatedMesh {
     std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;
     std::vector<Facet> facets;  ///< per face; empty: all outer
 };
 
@@ -27,7 +25,7 @@ std::optional<Facet> named_facet(const Annotation& annotation);
 
 /// Facets from annotations (`named_facet`); faces in none of them are `other`. Throws Error (input) if two such annotations
 /// share a face.
-std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet other = Facet::outer);
+std::vector<Facet> facets_of(AnnotatedMeshView object, Facet other = Facet::outer);
 
 /// The mesh moved, or scaled about the origin.
 Mesh moved(const Mesh& mesh, const Motion& motion);

@@ -32,7 +32,7 @@ public:
 };
 
 /// Checksum of annotations in memory: that of their file without its provenance.
-std::string checksum_of(const AnnotationSet& set, const Mesh& mesh);
+std::string checksum_of(AnnotatedMeshView object);
 
 /// Annotations; adds the option --force-mesh.
 class AnnotationsInput : public Slot {

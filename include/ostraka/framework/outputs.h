@@ -116,7 +116,7 @@ public:
     [[nodiscard]] Path path() const;
     /// Writes a file into the folder, with the provenance.
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras = {}, WriteOptions options = {}) const;
-    void write(const std::string& name, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_name) const;
+    void write(const std::string& name, AnnotatedMeshView object, const std::string& mesh_name) const;
     void write(const std::string& name, const JsonValue& document) const;
     void check() const override;
     [[nodiscard]] bool fills_folder(std::size_t /*i*/) const override { return true; }

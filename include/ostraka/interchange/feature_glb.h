@@ -1,7 +1,7 @@
 // Meshes with annotations as features: GLB with EXT_mesh_features and EXT_structural_metadata (3D Tiles Next).
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/provenance.h"
 #include "ostraka/interchange/landmarks.h"
 
@@ -17,7 +17,7 @@ namespace ostraka {
 /// original mesh, as in an annotation file (`original`, with its checksum); likewise if an annotation has additional
 /// information. `notes` reports rounded values. Throws Error (failure) for a mesh without triangles, coordinates beyond single
 /// precision, or a file beyond four gigabytes.
-std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
+std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes);
 
 /// Reads the annotations of such a file onto `mesh`. If the file contains the original annotations of this mesh (`original`, by

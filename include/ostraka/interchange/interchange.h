@@ -1,6 +1,7 @@
 // Annotations in other formats. doc/interchange.md states what each format keeps and loses.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/options.h"
 #include "ostraka/interchange/landmarks.h"
@@ -27,11 +28,10 @@ struct ExportedAnnotations {
     std::size_t annotations = 0;     ///< number of annotations in the file
 };
 
-/// Exports the set in the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an
-/// unknown format, Error (input) if the set does not fit the mesh.
-ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format,
-                                       const std::string& mesh_file, const Provenance& provenance,
-                                       const ExportOptions& options = {});
+/// Exports the annotations in the format. The same object, name and provenance give the same bytes. Throws Error (usage) for an
+/// unknown format, Error (input) if the annotations do not fit the mesh.
+ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::string& format, const std::string& mesh_file,
+                                       const Provenance& provenance, const ExportOptions& options = {});
 
 struct ImportOptions {
     LandmarkFileOptions landmarks;

@@ -2,7 +2,7 @@
 // format stores.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/files/provenance.h"
 
@@ -64,7 +64,7 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
 /// The points and poly-lines of a set: an annotation of one point becomes a landmark named by its tag, one of several points
 /// becomes "tag 1", "tag 2" ...; a poly-line becomes a curve. Not representable are regions, colours, attributes and, in
 /// formats other than mrk, poly-lines; notes give their numbers, for attributes those of the exported annotations.
-LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format = LandmarkFormat::mrk);
+LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format = LandmarkFormat::mrk);
 
 struct PlaceOptions {
     double tolerance = 0.02;

@@ -1,7 +1,7 @@
 // Annotations as linked data: W3C Web Annotation Data Model (Recommendation of 23 February 2017) in JSON-LD.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/provenance.h"
 #include "ostraka/interchange/landmarks.h"
 
@@ -14,8 +14,7 @@ namespace ostraka {
 ///   equivalent selectors: by indices, and by coordinates for other meshes.
 /// Identifiers are urn:uuid derived from checksum and annotation, hence reproducible. < > & are escaped, so that the text can
 /// be embedded in an HTML page. Throws Error (input) if the set does not fit the mesh.
-std::string web_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
-                            const Provenance& provenance);
+std::string web_annotations(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 
 /// Reads a collection, a page, a list of annotations or a single one. If the checksum of the target is that of `mesh`, the
 /// indices are used; otherwise the coordinates: points and lines are mapped to the nearest vertices, and the outlines of

@@ -1,7 +1,7 @@
 // Summarises a set of annotations and finds its defects.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/finding.h"
 
 namespace ostraka {
@@ -20,6 +20,6 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation);
 /// values with a relative difference of more than a millionth from recomputed ones; and remarks: regions with several
 /// components, outlines that touch themselves or each other, tags used more than once. The set must have passed
 /// `check_annotations`.
-std::vector<Finding> examine(const Mesh& mesh, const AnnotationSet& set);
+std::vector<Finding> examine(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -1,7 +1,7 @@
 // Measures by ruler, tape and bounding, and simple descriptors of an annotation (thesis, sections 2.2.3 and 5, Appendix A).
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 
 namespace ostraka {
 
@@ -51,7 +51,7 @@ bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& me
 
 /// Bounding measures that are extents on `before` get the pins of the extents on `after`: the same mesh with other points and a
 /// copy of its annotations, or another mesh to which these were transferred. Matches annotations and attributes by their ids.
-void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& after, AnnotationSet& to);
+void move_extents(AnnotatedMeshView before, const Mesh& after, AnnotationSet& to);
 
 /// The positions of the pins of a measure. A bounding measure goes from its first pin straight to the plane of the other.
 std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure);

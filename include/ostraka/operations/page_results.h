@@ -1,7 +1,7 @@
 // Converts results of other operations for a page: slices, constraints, tables of reports, maps of PLY files.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/page/page.h"
@@ -71,6 +71,6 @@ bool is_completed(const std::vector<PageMap>& maps);
 std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& face_values);
 
 /// Whether no vertex belongs to faces of two of these regions, so that the regions can be moved apart.
-bool are_apart(const Mesh& mesh, const AnnotationSet& regions);
+bool are_apart(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -161,6 +161,6 @@ private:
 };
 
 /// Table of the measures and sizes of the annotations of an object of the page.
-PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int object, const std::string& name);
+PageTable annotation_table(AnnotatedMeshView annotated, int object, const std::string& name);
 
 }  // namespace ostraka

@@ -2,7 +2,7 @@
 // there).
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
 
@@ -36,8 +36,7 @@ struct StatedMatch {
 /// attributes, the tags of their containers, and their position and extent under the pose of the fragment; the assignment is
 /// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller, not larger. `scaled` is the
 /// template in the target frame of the pose. Throws Error (input) for stated ids that do not exist.
-std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const AnnotationSet& of_template, const Mesh& fragment,
-                                               const AnnotationSet& of_fragment, const Motion& pose,
+std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, AnnotatedMeshView fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated = {},
                                                const AnnotationMatchOptions& options = {});
 

@@ -1,6 +1,7 @@
 // Deforms a template to fragments registered to it (thesis, equation 5.2, as an optimal-step non-rigid registration).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/reconstruction/annotation_matches.h"
@@ -76,7 +77,7 @@ class TemplateFitter {
 public:
     /// All arguments must outlive it unchanged; fits in cage space need a cage. Throws Error (input) for a mesh without faces,
     /// (usage) for coordinates with a normal term or of another mesh or cage.
-    TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage = nullptr);
+    TemplateFitter(AnnotatedMeshView template_object, const TemplateCage* cage = nullptr);
     ~TemplateFitter();
     TemplateFitter(TemplateFitter&&) noexcept;
 
@@ -102,7 +103,7 @@ private:
 /// shape), each vertex is matched to its own. Levels that are smooth relative to a mesh of 4000 vertices are solved on such a
 /// mesh (quadric error simplification); the template follows it and takes up the remaining deformation. `scaled` is the template
 /// at the scale of the placement.
-NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
+NonRigidFit fit_template(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options = {});
 
 }  // namespace ostraka

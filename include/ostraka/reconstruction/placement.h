@@ -2,7 +2,7 @@
 // template, for all fragments together; each fragment moves rigidly.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/rigid_fit.h"
 
@@ -21,8 +21,8 @@ struct LandmarkPair {
 
 /// Point annotations of one point with the same tag in both sets, if the tag is unique in either, ordered by tag. `notes` gets
 /// the tags that could not be used, with the reason.
-std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const AnnotationSet& of_template, const Mesh& fragment,
-                                           const AnnotationSet& of_fragment, std::vector<std::string>* notes = nullptr);
+std::vector<LandmarkPair> common_landmarks(AnnotatedMeshView template_object, AnnotatedMeshView fragment,
+                                           std::vector<std::string>* notes = nullptr);
 
 struct PlacementOptions {
     double outlier = 0.25;    ///< residual of a potential outlier, as a share of the spread of all landmarks

@@ -2,6 +2,7 @@
 // 5.3.1).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/reconstruction/complete.h"
 #include "ostraka/reconstruction/open_rotations.h"
@@ -89,10 +90,10 @@ public:
     /// All arguments but the options must outlive it unchanged; so must fragments while they are part of it. Throws Error
     /// (usage) for options out of range, and for cage space without a cage or with a prior; (input) for a template that is
     /// inside out, and as ShapePrior::check.
-    Reconstructor(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph, const ReconstructOptions& options = {},
+    Reconstructor(AnnotatedMeshView template_object, const RelationGraph& graph, const ReconstructOptions& options = {},
                   const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr);
     /// Stores references to its arguments.
-    Reconstructor(const Mesh& mesh, const AnnotationSet& set, RelationGraph&& graph, const ReconstructOptions& options = {},
+    Reconstructor(AnnotatedMeshView template_object, RelationGraph&& graph, const ReconstructOptions& options = {},
                   const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr) = delete;
     ~Reconstructor();
     Reconstructor(Reconstructor&&) noexcept;
@@ -124,13 +125,13 @@ private:
 /// and joins both into one surface. Fragments that cannot be placed are left out and reported. The verdict: incompatible if a
 /// constraint fails, or if a fragment's own scale or its landmarks contradict the others; undecided if no fragment is placed,
 /// or only one and there is no constraint. Throws Error (input) for a template that does not fit its annotations.
-Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+Reconstruction reconstruct(AnnotatedMeshView template_object, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
                            const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr,
                            const TemplateCage* cage = nullptr);
 
 /// The template's annotations transferred from the fitted template to the completed object; measures keep their earlier values
 /// (`refresh_measures`).
-AnnotationSet completed_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result);
+AnnotationSet completed_annotations(AnnotatedMeshView template_object, const Reconstruction& result);
 
 }  // namespace ostraka

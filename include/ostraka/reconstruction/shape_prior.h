@@ -1,6 +1,7 @@
 // Statistical shape model of a class, for the unobserved part: a mean shape and modes of variation.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/reconstruction/fit.h"
 
@@ -46,7 +47,7 @@ struct PriorFit {
 /// and scale of the shape and the coefficients: point to plane with Tukey's biweight, with the landmarks and the coefficients'
 /// Mahalanobis distance, against which the residuals are weighted by their number of independent samples. Starts at the mean
 /// registered to `scaled`. Throws Error as ShapePrior::check.
-PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
-                   const ShapePrior& prior, const PriorOptions& options = {});
+PriorFit fit_prior(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments, const ShapePrior& prior,
+                   const PriorOptions& options = {});
 
 }  // namespace ostraka

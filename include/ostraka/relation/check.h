@@ -1,6 +1,7 @@
 // Checks which relationships of a graph hold on a mesh, and measures the deviations of the others.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/graph.h"
 
@@ -27,7 +28,7 @@ struct RelationCheck {
 
 /// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only experts
 /// can decide, and types whose input is missing; `text` gives the reason. Throws Error (input) if the graph does not fit the set.
-std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+std::vector<RelationCheck> check_relations(AnnotatedMeshView object, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 
 }  // namespace ostraka

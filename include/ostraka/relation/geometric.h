@@ -1,6 +1,7 @@
 // Relationships determined by the geometry of the parts, each with its measured deviation and a tolerance.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"
@@ -10,11 +11,11 @@
 
 namespace ostraka {
 
-/// Measures relationships on one mesh. Data of a part (axis, samples, search tree) is computed once. Not thread-safe. Mesh and
-/// set must outlive it.
+/// Measures relationships on one object. Data of a part (axis, samples, search tree) is computed once. Not thread-safe. The
+/// object must outlive it.
 class RelationMeter {
 public:
-    RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options = {});
+    explicit RelationMeter(AnnotatedMeshView object, const RelationOptions& options = {});
     ~RelationMeter();
 
     /// Measures one relationship of a geometric type except containment, equal selections and adjacency. Tolerances stated in
@@ -45,7 +46,7 @@ struct ExtractedRelations {
 
 /// Extracts all relationships of these types (all if empty) that hold, and keeps those of `old` that were not extracted. Throws
 /// Error (usage) for a type that is not geometric.
-ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& old = {},
+ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGraph& old = {},
                                      const std::vector<std::string>& types = {}, const RelationOptions& options = {});
 
 /// The types in their canonical spelling. Throws Error (usage), with the most similar name, for a type that is not geometric.

@@ -1,6 +1,7 @@
 // Compares the part-whole relations of a vocabulary with the containment of the selections.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/finding.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/vocabulary/vocabulary.h"
@@ -23,7 +24,7 @@ std::vector<PartInVocabulary> parts_in_vocabulary(const ContainmentOrder& order,
                                                   const Vocabulary& vocabulary);
 
 /// Reports a defect for each part that is contained in none of its wholes.
-std::vector<Finding> check_parts(const Mesh& mesh, const AnnotationSet& set, const Vocabulary& vocabulary);
+std::vector<Finding> check_parts(AnnotatedMeshView object, const Vocabulary& vocabulary);
 /// A relationship for each part that is contained in one of its wholes; ids count up from `first_id`.
 std::vector<Relationship> part_relationships(const ContainmentOrder& order, const AnnotationSet& set,
                                              const Vocabulary& vocabulary, int first_id);

@@ -1,6 +1,7 @@
 // Queries on annotated objects, by parts, attributes and relationships.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/vocabulary/tag_matcher.h"
 
@@ -18,9 +19,7 @@ struct QueryReference {
 };
 
 /// The object that a query is evaluated on.
-struct QueriedObject {
-    const Mesh* mesh = nullptr;
-    const AnnotationSet* set = nullptr;
+struct QueriedObject : AnnotatedMeshView {
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
     const Vocabulary* vocabulary = nullptr;  ///< used to compare words and attribute names; may be null
     /// Values of the attribute in the other object, in the form of `values_of`.

@@ -1,6 +1,7 @@
 // Checks the rules of a class on annotations and their relationships.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 #include "ostraka/vocabulary/class_rules.h"
 
@@ -8,7 +9,7 @@ namespace ostraka {
 
 /// Every violated rule, as found by `check_class_rules`. Relationships are taken from the graph; without a graph, containment
 /// and adjacency are computed from the mesh. `where` names the file of the rules. Throws as `check_class_rules`.
-std::vector<RuleViolation> broken_rules(const Mesh& mesh, const AnnotationSet& set, const ClassRules& rules,
-                                        const Vocabulary* vocabulary, const RelationGraph* graph, const std::string& where);
+std::vector<RuleViolation> broken_rules(AnnotatedMeshView object, const ClassRules& rules, const Vocabulary* vocabulary,
+                                        const RelationGraph* graph, const std::string& where);
 
 }  // namespace ostraka

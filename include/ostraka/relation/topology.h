@@ -1,6 +1,7 @@
 // Relationships that follow from the selections alone: containment and adjacency of annotations (thesis, section 2.3).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/relation/graph.h"
 
 namespace ostraka {
@@ -29,7 +30,7 @@ struct Topology {
 
 /// Computes containment and adjacency. Faces with the same set of regions are processed together: O(faces x depth + mesh) for
 /// the grouping, then O(sets x depth x annotations / 64). Throws Error (input) for more than 30000 annotations.
-Topology topology(const Mesh& mesh, const AnnotationSet& set);
+Topology topology(AnnotatedMeshView object);
 
 /// The relationships of a topology: containment (transitive reduction), equal selections, and adjacency with the shared length.
 /// Ids count up from `first_id`. At most `most_of_kind` of containment and of adjacency each, the first ones.

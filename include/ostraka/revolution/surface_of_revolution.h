@@ -1,6 +1,7 @@
 // Template of a vessel from its sherds: the surface of revolution through their walls.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/options.h"
 #include "ostraka/fracture/fragment.h"
@@ -48,7 +49,8 @@ struct SherdOnProfile {
     double residual = 0;             ///< root mean square distance of its walls from the template
 };
 
-struct RevolutionTemplate {
+/// The mesh is closed, oriented outwards, in the frame of the sherds.
+struct RevolutionTemplate : AnnotatedMesh {
     Axis axis;                             ///< common axis of all sherds; its direction points up
     double direction_error = 0;            ///< standard error of the axis, degrees
     double place_error = 0;                ///< standard error of the axis's position, at the centroid of the sherds
@@ -56,8 +58,6 @@ struct RevolutionTemplate {
     bool base = false;                     ///< the sherds reach the axis at the bottom
     bool rim = false;                      ///< the top ends at the same height in all directions where it is preserved
     std::vector<double> present;           ///< degrees of wall at equal steps of the height
-    Mesh mesh;                             ///< closed, oriented outwards, in the frame of the sherds
-    AnnotationSet annotations;
     std::vector<SherdOnProfile> sherds;
     std::vector<std::string> notes;
 };

@@ -1,7 +1,7 @@
 // Vertex density of a cage from annotations, and the mirror plane of a symmetric cage.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/cage/cage.h"
 
 namespace ostraka {
@@ -10,8 +10,7 @@ namespace ostraka {
 /// factor of the regions, lines and points within a twentieth of the diagonal. Without factors it is 4 within this distance of
 /// an annotated point, a line, or the outline of a region other than the whole. Elsewhere it is 1. The result does not refer to
 /// the arguments.
-CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set,
-                               const std::vector<std::pair<int, double>>& factors = {});
+CageDensity annotation_density(AnnotatedMeshView object, const std::vector<std::pair<int, double>>& factors = {});
 
 /// The mirror plane of the whole object (relation/geometric.h). Throws Error (failure) that names `where` if the object is not
 /// mirror-symmetric.

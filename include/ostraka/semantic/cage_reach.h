@@ -1,6 +1,7 @@
 // Which constraints can be satisfied through the vertices of a cage (doc/cages.md, "What a cage can hold").
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/semantic/deform.h"
 
@@ -47,8 +48,8 @@ struct CageForConstraints {
 /// A cage that is denser around the parts of the constraints and, if necessary, closer to the mesh (down to a quarter of the
 /// offset) and with up to twice the target number of vertices. Four variants are tried; returns the first that satisfies all
 /// constraints, otherwise the one that satisfies most. Throws as make_cage and cage_reach do.
-CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const CageOptions& options, const std::optional<MirrorPlane>& mirror = {},
+CageForConstraints make_cage_for(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
+                                 const std::optional<MirrorPlane>& mirror = {},
                                  const RelationOptions& tolerances = deform_tolerances(),
                                  const std::string& graph_name = "graph");
 

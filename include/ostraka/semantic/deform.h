@@ -1,6 +1,7 @@
 // Deformation that preserves the semantics given by annotations and relations (thesis, chapters 4 and 5; doc/deformation.md).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/relation/check.h"
 #include "ostraka/semantic/edit.h"
@@ -143,15 +144,14 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
 /// positions, and the other vertices with the smoothest displacement that fades out over the spread.
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options = {});
 
-/// The same with given positions (of a fit, for example) instead of an edit: `held` vertices count as moved handles, the other
-/// vertices approach their positions. Constraints refer to `mesh` as the shape at rest. Throws Error (usage) if the numbers of
-/// positions, flags and vertices differ, and for cage space; (input) as deform.
-DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const std::vector<Point>& points, const std::vector<bool>& held,
-                                 const DeformOptions& options = {}, const RelationOptions& tolerances = {},
-                                 const std::string& graph_name = "graph");
+/// As `deform`, with given positions (of a fit, for example) instead of an edit: `held` vertices count as moved handles, the
+/// other vertices approach their positions. Constraints refer to `object` as the shape at rest. Throws Error (usage) if the
+/// numbers of positions, flags and vertices differ, and for cage space; (input) as deform.
+DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
+                                 const std::vector<bool>& held, const DeformOptions& options = {},
+                                 const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
 
 /// Throws as deform does if a relationship that is a constraint is invalid.
-void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relationship& relationship, const std::string& where);
+void check_constraint(AnnotatedMeshView object, const Relationship& relationship, const std::string& where);
 
 }  // namespace ostraka

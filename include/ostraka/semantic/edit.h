@@ -2,7 +2,7 @@
 // Files: doc/schema/edit.schema.json.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/files/json.h"
 
@@ -76,9 +76,7 @@ Edit edit_from_json(const JsonValue& document, const std::string& where);
 Eigen::Vector3d unit_direction(const Eigen::Vector3d& direction);
 
 /// The handles of a shape: the vertices of a cage with weights for the mesh, or without a cage the vertices of the mesh itself.
-struct HandleSpace {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct HandleSpace : AnnotatedMeshView {
     const Mesh* cage = nullptr;
     const Coordinates* coordinates = nullptr;  ///< coordinates of the mesh in the cage
 };

@@ -1,6 +1,7 @@
 // Measures how well the constraints of a graph hold on a given shape, without solving.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/semantic/deform.h"
 
 namespace ostraka {
@@ -9,7 +10,7 @@ namespace ostraka {
 /// `points` (one for each vertex of the mesh, which is the shape at rest); members that describe a solution are empty. A
 /// constraint of weight zero is ignored. Throws Error (usage) unless there is one point per vertex; Error (input) as `deform`
 /// for invalid constraints.
-std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+std::vector<ConstraintReport> measure_constraints(AnnotatedMeshView object, const RelationGraph& graph,
                                                   const std::vector<Point>& points, const RelationOptions& tolerances = {},
                                                   const std::string& graph_name = "graph");
 
@@ -18,13 +19,11 @@ std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const Annota
 /// tolerances. The verdict is unknown for a constraint that preserves a property of the shape at rest, and for one that cannot
 /// be evaluated on the shape (an axis that a part does not have); `text` gives the reason. Throws Error (input) if `rest` has
 /// other vertices or faces.
-std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                                const Mesh* rest = nullptr, const RelationOptions& tolerances = {},
-                                                const std::string& graph_name = "graph");
+std::vector<ConstraintReport> judge_constraints(AnnotatedMeshView object, const RelationGraph& graph, const Mesh* rest = nullptr,
+                                                const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
 
 /// All relationships of a graph, in its order: constraints as by `judge_constraints`, the others as by `check_relations`.
-std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                               const Mesh* rest = nullptr, const RelationOptions& tolerances = {},
-                                               const std::string& graph_name = "graph");
+std::vector<RelationCheck> judge_relationships(AnnotatedMeshView object, const RelationGraph& graph, const Mesh* rest = nullptr,
+                                               const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
 
 }  // namespace ostraka

@@ -1,6 +1,7 @@
 // Cages of annotated parts, which are nested in the cage of the whole (coords/nested.h; doc/cages.md).
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/relation/graph.h"
 
@@ -9,8 +10,8 @@ namespace ostraka {
 /// The mirror plane of these annotations, in any order: as stated in the graph or, if the graph gives no plane, as measured on
 /// this mesh. Nothing if the graph has no such relationship. Throws Error (input) if the graph states a symmetry that does not
 /// exist.
-std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                          std::vector<int> annotations, const std::string& graph_name);
+std::optional<MirrorPlane> symmetry_plane(AnnotatedMeshView object, const RelationGraph& graph, std::vector<int> annotations,
+                                          const std::string& graph_name);
 
 struct PartCage {
     CageResult made;
@@ -21,8 +22,8 @@ struct PartCage {
 /// options.vertices vertices and an offset relative to the part's own diagonal. For two regions in mirror symmetry one cage is
 /// made, around the part and the image of the other, and mirrored; a region that is symmetric itself gets a symmetric cage.
 /// Throws as cut_out_part and make_cage.
-std::vector<PartCage> make_part_cages(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& parts,
-                                      const CageOptions& options, const RelationGraph& graph, const std::string& graph_name);
+std::vector<PartCage> make_part_cages(AnnotatedMeshView object, const std::vector<std::size_t>& parts, const CageOptions& options,
+                                      const RelationGraph& graph, const std::string& graph_name);
 
 /// Joins cages in one mesh, in this order: a cage and those nested in it.
 Mesh together(const std::vector<const Mesh*>& cages);

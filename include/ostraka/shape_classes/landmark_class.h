@@ -9,14 +9,12 @@ namespace ostraka {
 /// Tests the extension: .mrk.json, .fcsv, .tps, .pp.
 bool is_landmark_file(const Path& file);
 
-/// A template made of landmarks: one vertex per landmark, no faces.
-struct LandmarkTemplate {
+/// A template made of landmarks: one vertex per landmark, no faces, no annotations.
+struct LandmarkTemplate : AnnotatedMesh {
     std::vector<std::string> names;
-    Mesh mesh;
     std::string unit;
-    AnnotationSet set;    ///< empty
     RelationGraph graph;  ///< empty
-    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
+    [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }
 };
 /// Throws Error (input), naming the file, for fewer than four landmarks or two landmarks of the same name.
 LandmarkTemplate read_landmark_template(const Path& file);

@@ -1,6 +1,7 @@
 // Registration of a template to a whole object of its class: vertex correspondence and residual distances.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/placement.h"
@@ -31,11 +32,9 @@ struct MemberFitOptions {
     void describe(OptionList& visit);
 };
 
-/// A whole object.
-struct WholeObject {
+/// A whole object; it may have no annotations.
+struct WholeObject : AnnotatedMesh {
     std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;  ///< may be empty
 };
 
 /// Differences between template and object after the fit. Lengths are relative to the box diagonal of the template at the
@@ -93,7 +92,7 @@ bool in_correspondence(const Mesh& mesh, const Mesh& member);
 /// area and aligned by trimmed iterative closest points in both directions (`align`, with free scale within `shrinkage`),
 /// started from the four orientations of the principal axes and from the given pose. The residuals are measured on the
 /// surfaces. Throws Error (input) for an object or a template without area.
-MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options = {});
+MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const MemberFitOptions& options = {});
 
 /// Fit of a member in correspondence: its own points.
 MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member);

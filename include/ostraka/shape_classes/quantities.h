@@ -31,9 +31,7 @@ struct ClassQuantity {
 };
 
 /// The template of a class. The referenced objects must outlive it.
-struct ClassTemplate {
-    const Mesh& mesh;
-    const AnnotationSet& set;
+struct ClassTemplate : AnnotatedMeshView {
     const RelationGraph& graph;
 };
 

@@ -1,6 +1,7 @@
 // A mesh with its annotations, colours and labels, which are preserved when its resolution changes.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/annotation/annotation_maps.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"
@@ -54,12 +55,6 @@ public:
     std::vector<Change> changes;  ///< in the order of the annotations at construction
 
 private:
-    /// Mesh and annotations before a step, kept if some annotations are free: their curves are projected onto the resulting
-    /// mesh.
-    struct Curved {
-        Mesh mesh;
-        AnnotationSet annotations;
-    };
     void keep_curved();
     AnnotationTable attach();
     /// Reads back the annotations attached by `attach`; `vertex_map` maps the vertices of the mesh at that time.
@@ -67,7 +62,8 @@ private:
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
     [[nodiscard]] Size size_of(const Annotation& annotation) const;
 
-    std::shared_ptr<const Curved> curved_;
+    /// The object before a step, kept if some annotations are free: their curves are projected onto the resulting mesh.
+    std::shared_ptr<const AnnotatedMesh> curved_;
 };
 
 }  // namespace ostraka

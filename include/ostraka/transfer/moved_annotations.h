@@ -1,7 +1,7 @@
 // Annotations of a mesh that is moved or converted to another unit.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/geom/rigid_fit.h"
 
 #include <string>
@@ -15,6 +15,6 @@ std::string unit_scaled(const std::string& unit, double scale);
 /// Rotates directions (up, those of bounding measures) with the mesh and sets the unit of the coordinates after the motion,
 /// `unit`, also for measures and computed descriptors (not for those entered manually). Values are not recomputed;
 /// `refresh_measures` does that.
-AnnotationSet moved_annotations(const Mesh& mesh, const AnnotationSet& set, const Motion& motion, const std::string& unit);
+AnnotationSet moved_annotations(AnnotatedMeshView object, const Motion& motion, const std::string& unit);
 
 }  // namespace ostraka

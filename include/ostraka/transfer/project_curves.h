@@ -1,7 +1,7 @@
 // Projection of curves from one mesh onto another, across the triangles of both.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/transfer/correspondence.h"
 
 #include <string>
@@ -30,9 +30,9 @@ struct ProjectedAnnotation {
 std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
                                                 const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
-/// Sets the curves of the free annotations of `to`, a set on the target with the same ids as `from` on `source`, by projection,
+/// Sets the curves of the free annotations of `to`, a set on the target with the same ids as `source`, by projection,
 /// and adds missing ones that have corresponding places. Returns notes.
-std::vector<std::string> project_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
-                                                  AnnotationSet& to, const CorrespondenceOptions& options = {});
+std::vector<std::string> project_free_annotations(AnnotatedMeshView source, const Mesh& target, AnnotationSet& to,
+                                                  const CorrespondenceOptions& options = {});
 
 }  // namespace ostraka

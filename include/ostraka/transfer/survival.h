@@ -1,6 +1,7 @@
 // The smallest resolution at which an annotation survives.
 #pragma once
 
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/transfer/transfer.h"
 
@@ -26,7 +27,6 @@ struct Survival {
 /// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while
 /// it keeps its type, none of its outlines or points vanishes and, for a region, its area error stays within the bound. The
 /// result is exact to one step of the ratio. Costs about 1 / (1 - ratio) times one simplification and one transfer.
-std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations,
-                                           const SurvivalOptions& options = {});
+std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const SurvivalOptions& options = {});
 
 }  // namespace ostraka

@@ -1,7 +1,7 @@
 // Transfer of annotations to another resolution of the same object (thesis, section 2.4).
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/shortest_path.h"
@@ -72,7 +72,6 @@ struct TransferResult {
 /// are projected by their curves (project_curves.h) and keep their type, however small: free annotations; with `outlines` = free,
 /// all annotations; with `outlines` = partitions, regions that partition the whole surface (unless `refine` or `cover` require
 /// edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
-TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
-                        const TransferOptions& options = {});
+TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options = {});
 
 }  // namespace ostraka

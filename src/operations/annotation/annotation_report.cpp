@@ -35,13 +35,13 @@ void declare_annotations(ReportLayout& layout) {
                  people("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
 }
 
-void report_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
-    context.notes("", set.notes);
-    report.set_unit(set.unit);
-    report("class", set.object_class)("unit", set.unit);
+void report_annotations(Context& context, Report& report, AnnotatedMeshView object) {
+    context.notes("", object.annotations.notes);
+    report.set_unit(object.annotations.unit);
+    report("class", object.annotations.object_class)("unit", object.annotations.unit);
     report.empty_table("annotations");
-    for (const Annotation& annotation : set.annotations) {
-        const AnnotationSummary summary = summarise(mesh, annotation);
+    for (const Annotation& annotation : object.annotations.annotations) {
+        const AnnotationSummary summary = summarise(object.mesh, annotation);
         Report::Row row = report.row("annotations");
         row("id", annotation.id)("tag", annotation.tag)("type", to_string(annotation.type))("elements", summary.elements)(
             "patches", summary.patches);

@@ -9,6 +9,6 @@ namespace ostraka {
 void declare_annotations(ReportLayout& layout);
 
 /// Reports the annotations of the set.
-void report_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set);
+void report_annotations(Context& context, Report& report, AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -45,8 +45,8 @@ struct AnnotationApply final : Operation {
         const AnnotationSet set = is_document(recipe) ? follow(context, file) : from_labels(context, file);
         if (allowed_words != nullptr) require_vocabulary(set, *allowed_words, recipe ? recipe.file() : mesh.file(), words);
         output.write(set, file.mesh, mesh.file());
-        pictures.write(file.mesh, set, report);
-        report_annotations(context, report, file.mesh, set);
+        pictures.write({file.mesh, set}, report);
+        report_annotations(context, report, {file.mesh, set});
     }
 
     static std::vector<std::int32_t> labels_in(const MeshFile& file) {

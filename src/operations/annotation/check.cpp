@@ -40,7 +40,7 @@ struct AnnotationCheck final : Operation {
         std::vector<Finding> findings;
         std::optional<AnnotationSet> set;
         try {
-            if (in_memory) check_annotations(*in_memory, surface, annotations.file());
+            if (in_memory) check_annotations({surface, *in_memory}, annotations.file());
             set = in_memory ? *annotations.annotations_on(surface)
                             : annotations_from_json(*document, surface, annotations.file(), reading);
         } catch (const Error& error) {
@@ -53,23 +53,22 @@ struct AnnotationCheck final : Operation {
             const auto append = [&](std::vector<Finding> further) {
                 findings.insert(findings.end(), further.begin(), further.end());
             };
-            append(examine(surface, *set));
-            if (!in_memory) append(check_files(*set, surface, Path(annotations.file()).parent_path()));
+            append(examine({surface, *set}));
+            if (!in_memory) append(check_files({surface, *set}, Path(annotations.file()).parent_path()));
             if (vocabulary_words != nullptr) append(check_against_vocabulary(*set, *vocabulary_words, words));
-            if (vocabulary_words != nullptr) append(check_parts(surface, *set, *vocabulary_words));
-            if (class_rules != nullptr) check_rules(*class_rules, vocabulary_words, surface, *set, findings);
+            if (vocabulary_words != nullptr) append(check_parts({surface, *set}, *vocabulary_words));
+            if (class_rules != nullptr) check_rules(*class_rules, vocabulary_words, {surface, *set}, findings);
         }
         report.findings(findings);
     }
 
-    void check_rules(const ClassRules& class_rules, const Vocabulary* vocabulary_words, const Mesh& surface,
-                     const AnnotationSet& set, std::vector<Finding>& findings) const {
-        const RelationGraph* relationships = graph ? &graph.on(set) : nullptr;
-        for (const RuleViolation& broken :
-             broken_rules(surface, set, class_rules, vocabulary_words, relationships, rules.file())) {
+    void check_rules(const ClassRules& class_rules, const Vocabulary* vocabulary_words, AnnotatedMeshView object,
+                     std::vector<Finding>& findings) const {
+        const RelationGraph* relationships = graph ? &graph.on(object.annotations) : nullptr;
+        for (const RuleViolation& broken : broken_rules(object, class_rules, vocabulary_words, relationships, rules.file())) {
             std::string where;
-            for (std::size_t i = 0; i < set.annotations.size(); ++i)
-                if (broken.annotation == set.annotations[i].id) where = "/annotations/" + std::to_string(i);
+            for (std::size_t i = 0; i < object.annotations.annotations.size(); ++i)
+                if (broken.annotation == object.annotations.annotations[i].id) where = "/annotations/" + std::to_string(i);
             findings.push_back({true, where, fmt::format("rule '{}': {}", broken.rule, broken.text)});
         }
     }

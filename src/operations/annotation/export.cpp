@@ -23,7 +23,7 @@ struct AnnotationExport final : AnnotatedMeshOperation {
         if (!format) format = guess_interchange_format(output.file());
         const AnnotationSet& annotation_set = set();
         const ExportedAnnotations exported =
-            export_annotations(mesh->mesh, annotation_set, *format, mesh.file(), context.provenance(), options);
+            export_annotations({mesh->mesh, annotation_set}, *format, mesh.file(), context.provenance(), options);
         report.notes(exported.notes);
         report("format", *format)("annotations", exported.annotations)("bytes", exported.bytes.size())("sha256",
                                                                                                        sha256(exported.bytes));

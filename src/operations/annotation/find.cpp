@@ -58,7 +58,7 @@ struct ReadObject {
         if (const Path beside = with_graph ? graph_beside(object) : Path(); !beside.empty()) graph = read_graph(beside, set);
     }
     [[nodiscard]] QueriedObject queried(const Vocabulary* vocabulary) const {
-        return {&file.mesh, &set, graph ? &*graph : nullptr, vocabulary, {}};
+        return {{file.mesh, set}, graph ? &*graph : nullptr, vocabulary, {}};
     }
 };
 

@@ -12,7 +12,7 @@ struct AnnotationList final : AnnotatedMeshOperation {
         declare_annotations(p.report);
     }
 
-    void run(Context& context, Report& report) override { report_annotations(context, report, mesh->mesh, set()); }
+    void run(Context& context, Report& report) override { report_annotations(context, report, object()); }
 };
 
 }  // namespace

@@ -19,10 +19,10 @@ struct AnnotationPictures {
         p.output_option("labels-out", Kind::labels, labels,
                         "label file to write: for each face the id of the smallest region on it, -1 for none");
     }
-    void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
-        if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
+    void write(AnnotatedMeshView object, Report& report) const {
+        if (coloured) coloured.write(object.mesh, colour_by_annotation(object));
         if (!labels) return;
-        const FaceLabels face_ids = face_labels(mesh, set);
+        const FaceLabels face_ids = face_labels(object);
         write_labels(labels.path(), face_ids.of_face);
         if (face_ids.lost > 0)
             report.note(number(100 * face_ids.lost, 3) +

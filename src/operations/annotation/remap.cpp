@@ -50,12 +50,12 @@ struct AnnotationRemap final : Operation {
             vertices = read_index_map(vertex_map.path(), "vertex", source.number_of_vertices(), target.number_of_vertices());
             if (face_map) faces = read_index_map(face_map.path(), "face", source.number_of_faces(), target.number_of_faces());
         });
-        AnnotationSet remapped = remap_annotations(source, set, target, vertices, faces);
-        for (auto& note : project_free_annotations(source, set, target, remapped)) remapped.notes.push_back(std::move(note));
+        AnnotationSet remapped = remap_annotations({source, set}, target, vertices, faces);
+        for (auto& note : project_free_annotations({source, set}, target, remapped)) remapped.notes.push_back(std::move(note));
         for (const auto& note : refresh_measures(target, remapped).notes) remapped.notes.push_back(note);
-        write_annotations(output.path(), remapped, target, after.file(), context.provenance());
-        pictures.write(target, remapped, report);
-        report_annotations(context, report, target, remapped);
+        write_annotations(output.path(), {target, remapped}, after.file(), context.provenance());
+        pictures.write({target, remapped}, report);
+        report_annotations(context, report, {target, remapped});
     }
 
     /// The old mesh may be defective: labels only need its number of faces.

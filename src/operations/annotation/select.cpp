@@ -72,7 +72,7 @@ struct AnnotationSelect final : Operation {
         AnnotationSet set;
         context.record([&] { set = follow_recipe(now, file.mesh, std::move(start), "selection"); });
         context.notes("", set.notes);
-        report_result(report, file.mesh, set, made["id"].GetInt());
+        report_result(report, {file.mesh, set}, made["id"].GetInt());
 
         const std::string text = to_text(steps);
         std::optional<Provenance> replay;
@@ -129,12 +129,12 @@ struct AnnotationSelect final : Operation {
         return hash != nullptr && hash->IsString() && sha256(bytes) == hash->GetString();
     }
 
-    void report_result(Report& report, const Mesh& on, const AnnotationSet& set, int id) const {
-        report.set_unit(set.unit);
+    void report_result(Report& report, AnnotatedMeshView object, int id) const {
+        report.set_unit(object.annotations.unit);
         report("id", id)("action", step.action);
-        const Annotation* chosen = set.find(id);
+        const Annotation* chosen = object.annotations.find(id);
         if (chosen == nullptr) return report.line("annotation " + std::to_string(id) + " deleted");
-        const AnnotationSummary summary = summarise(on, *chosen);
+        const AnnotationSummary summary = summarise(object.mesh, *chosen);
         const bool region = chosen->type == AnnotationType::region, point = chosen->type == AnnotationType::point;
         const auto area = region ? std::optional(summary.area) : std::nullopt;
         const auto length = point ? std::nullopt : std::optional(summary.length);

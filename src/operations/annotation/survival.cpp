@@ -18,7 +18,7 @@ struct AnnotationSurvival final : Operation {
 
     void run(Context&, Report& report) override {
         report.empty_table("annotations");
-        for (const Survival& survival : smallest_resolutions(mesh->mesh, annotations.on(mesh->mesh), options)) {
+        for (const Survival& survival : smallest_resolutions({mesh->mesh, annotations.on(mesh->mesh)}, options)) {
             Report::Row row = report.row("annotations")("id", survival.id)("tag", survival.tag)("vertices", survival.vertices);
             if (survival.end.empty()) row.shown("end", "survived every resolution tried");
             else row("end", survival.end);

@@ -79,31 +79,30 @@ struct AnnotationTransfer final : Operation {
     void run(Context&, Report& report) override {
         const Stopwatch reading;
         const Mesh& onto = target->mesh;
-        const AnnotationSet& given = annotations.on(source->mesh);
+        const AnnotatedMeshView given(source->mesh, annotations.on(source->mesh));
         report.run("reading", reading.seconds());
         const std::optional<RegisteredSource> registered = registers ? registered_source(report) : std::nullopt;
-        const Mesh& from = registered ? registered->mesh : source->mesh;
-        const AnnotationSet& set = registered ? registered->set : given;
+        const AnnotatedMeshView from = registered ? AnnotatedMeshView(*registered) : given;
         const Stopwatch tree;
         const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
         report.run("tree", tree.seconds());
-        TransferResult there = in_file(target.file(), [&] { return transfer(from, set, *search, options); });
-        const Misalignment apart = find_misalignment(from, *search);
+        TransferResult there = in_file(target.file(), [&] { return transfer(from, *search, options); });
+        const Misalignment apart = find_misalignment(from.mesh, *search);
         report("meanDistance", apart.distance);
-        if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(set.unit, 20)));
+        if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(from.annotations.unit, 20)));
         note_unused_options(there.annotations, report);
-        const Mesh& on = there.refined ? there.refined->mesh : onto;
+        const AnnotatedMeshView on(there.refined ? there.refined->mesh : onto, there.annotations);
         std::optional<TransferResult> again;
         if (back) {
-            const auto home = in_file(source.file(), [&] { return std::make_unique<SurfaceSearch>(from); });
+            const auto home = in_file(source.file(), [&] { return std::make_unique<SurfaceSearch>(from.mesh); });
             TransferOptions how = options;
             how.refine = false;
-            again = transfer(on, there.annotations, *home, how);
+            again = transfer(on, *home, how);
             if (registered) take_home(*registered, again->annotations);
         }
 
         // All work is done, so what is written now is complete.
-        if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
+        if (coloured) coloured.write(on.mesh, colour_by_annotation(on));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
         report.run("checks", there.times.checks);
         report.run("correspondence", there.times.correspondence);
@@ -117,14 +116,12 @@ struct AnnotationTransfer final : Operation {
             report_result(report, "back", again->scores);
             back.write(std::move(again->annotations), source->mesh, source.file());
         }
-        output.write(std::move(there.annotations), on, there.refined ? refined.file() : target.file());
+        output.write(std::move(there.annotations), on.mesh, there.refined ? refined.file() : target.file());
         if (refined) refined.write(std::move(there.refined->mesh));
     }
 
     /// The source, registered to the target.
-    struct RegisteredSource {
-        Mesh mesh;
-        AnnotationSet set;
+    struct RegisteredSource : AnnotatedMesh {
         Motion motion;
     };
     [[nodiscard]] std::optional<RegisteredSource> registered_source(Report& report) const {
@@ -138,23 +135,25 @@ struct AnnotationTransfer final : Operation {
             fail_input(source.file() + " onto " + target.file(), in_words(found, diagonal),
                        "or --force to go on with the best motion found");
         report.notes(remarks_on(found));
-        RegisteredSource registered{moved(from, found.motion),
-                                    moved_annotations(from, set, found.motion, unit_scaled(set.unit, found.motion.scale)),
-                                    found.motion};
+        RegisteredSource registered{
+            {moved(from, found.motion), moved_annotations({from, set}, found.motion, unit_scaled(set.unit, found.motion.scale))},
+            found.motion};
         report("registration", json_object(report.allocator(), "verdict", to_string(found.verdict), "matrix",
                                            pose_to_json(found.motion, report.allocator()), "scale", found.motion.scale, "rms",
                                            found.agreement.rms, "share", found.agreement.share));
         report.line("registered: turned by " + number(Eigen::AngleAxisd(found.motion.rotation).angle() / degree, 4) +
                     " degrees, scaled by " + number(found.motion.scale, 6) + "; " + in_words(found, diagonal));
-        if (registered.set.unit != set.unit)
+        if (registered.annotations.unit != set.unit)
             report.note("lengths were in " + printable(set.unit, 20) + " and are " +
-                        (registered.set.unit.empty() ? "in an unknown unit" : "in " + registered.set.unit) + " on the target");
+                        (registered.annotations.unit.empty() ? "in an unknown unit" : "in " + registered.annotations.unit) +
+                        " on the target");
         return registered;
     }
 
     /// Transforms annotations of the registered source back to the source, and measures there.
     void take_home(const RegisteredSource& registered, AnnotationSet& set) const {
-        AnnotationSet home = moved_annotations(source->mesh, set, registered.motion.inverse(), annotations.on(source->mesh).unit);
+        AnnotationSet home =
+            moved_annotations({source->mesh, set}, registered.motion.inverse(), annotations.on(source->mesh).unit);
         refresh_measures(source->mesh, home);
         set = std::move(home);
     }

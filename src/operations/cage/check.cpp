@@ -57,7 +57,7 @@ private:
         if (edit) given = edit_from_json(*edit, edit_name);
         Coordinates mean_value;
         if (!weights) mean_value = compute_coordinates("mean-value", cage->mesh, mesh->mesh);
-        const HandleSpace space{mesh->mesh, *set_, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &mean_value};
+        const HandleSpace space{{mesh->mesh, *set_}, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &mean_value};
         auto reaches =
             cage_reach(space, graph.on(*set_), given ? &*given : nullptr, edit_name, deform_tolerances(), graph.file());
         report_reach(report, reaches, *set_);

@@ -26,7 +26,7 @@ struct CageEdit final : Operation {
         refuse_annotations(steps);
         const AnnotationSet no_annotations;
         const Coordinates identity{"own", WeightMatrix::Identity(rest.number_of_vertices(), rest.number_of_vertices()), {}};
-        const auto states = follow_edit(steps, {rest, no_annotations, &rest, &identity}, edit.file());
+        const auto states = follow_edit(steps, {{rest, no_annotations}, &rest, &identity}, edit.file());
         Mesh moved = rest;
         std::size_t moved_count = 0;
         if (!states.empty()) {

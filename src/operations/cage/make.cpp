@@ -75,7 +75,7 @@ struct CageMake final : Operation {
         AnnotationSet set;
         if (annotations) set = annotations.on(object);
         CageDensity density;
-        if (annotations) density = annotation_density(object, set, factors(set));
+        if (annotations) density = annotation_density({object, set}, factors(set));
         report.set_unit(set.unit);
         const auto border =
             std::count_if(object.halfedges().begin(), object.halfedges().end(), [&](Halfedge h) { return object.is_border(h); });
@@ -87,10 +87,10 @@ struct CageMake final : Operation {
         const auto sizes = wanted();
         const RelationGraph no_relations;
         const RelationGraph& relations = graph ? graph.on(set) : no_relations;
-        const auto plane = mirror_of(object, set, relations, report);
+        const auto plane = mirror_of({object, set}, relations, report);
         const std::vector<std::size_t> regions = regions_of(set);
         auto results = in_file(mesh.file(), [&] {
-            return constraints ? for_constraints(object, set, plane, report)
+            return constraints ? for_constraints({object, set}, plane, report)
                                : make_nested_cages(object, sizes, options, density, plane);
         });
         bool reached = true;
@@ -123,7 +123,7 @@ struct CageMake final : Operation {
                                     left_out == 1 ? "vertex without faces is" : "vertices without faces are"));
         if (!reached || left_out > 0) report.answer_no();
         if (one_file || !regions.empty()) {
-            output.write(nested(object, set, relations, regions, results, report));
+            output.write(nested({object, set}, relations, regions, results, report));
             return;
         }
         for (std::size_t i = 0; i < results.size(); ++i)
@@ -132,14 +132,14 @@ struct CageMake final : Operation {
     }
 
     /// One cage fine enough to satisfy the constraints, as far as a cage can.
-    [[nodiscard]] std::vector<CageResult> for_constraints(const Mesh& object, const AnnotationSet& set,
-                                                          const std::optional<MirrorPlane>& plane, Report& report) const {
+    [[nodiscard]] std::vector<CageResult> for_constraints(AnnotatedMeshView object, const std::optional<MirrorPlane>& plane,
+                                                          Report& report) const {
         CageForConstraints cage_for =
-            make_cage_for(object, set, constraints.on(set), options, plane, deform_tolerances(), constraints.file());
-        report_reach(report, cage_for.reach, set);
+            make_cage_for(object, constraints.on(object.annotations), options, plane, deform_tolerances(), constraints.file());
+        report_reach(report, cage_for.reach, object.annotations);
         for (const ConstraintReach& reach : cage_for.reach) {
             if (reach.reached) continue;
-            report.note(ostraka::describe(reach, set) + "; 'deform --space auto' solves for it over the mesh");
+            report.note(ostraka::describe(reach, object.annotations) + "; 'deform --space auto' solves for it over the mesh");
             report.answer_no();
         }
         std::vector<CageResult> results;
@@ -148,17 +148,16 @@ struct CageMake final : Operation {
     }
 
     /// All levels and the cages of the parts in one mesh, the outermost first.
-    [[nodiscard]] Mesh nested(const Mesh& object, const AnnotationSet& set, const RelationGraph& relations,
-                              const std::vector<std::size_t>& regions, const std::vector<CageResult>& results,
-                              Report& report) const {
+    [[nodiscard]] Mesh nested(AnnotatedMeshView object, const RelationGraph& relations, const std::vector<std::size_t>& regions,
+                              const std::vector<CageResult>& results, Report& report) const {
         CageOptions part_options = options;
         part_options.vertices = part_vertices;
-        const std::vector<PartCage> inner = in_file(
-            annotations.file(), [&] { return make_part_cages(object, set, regions, part_options, relations, graph.file()); });
+        const std::vector<PartCage> inner =
+            in_file(annotations.file(), [&] { return make_part_cages(object, regions, part_options, relations, graph.file()); });
         for (std::size_t k = 0; k < inner.size(); ++k)
             if (inner[k].check.components > 1)
                 fail_input(annotations.file(),
-                           fmt::format("'{}' consists of {} that are not connected", tag_of(set, regions, k),
+                           fmt::format("'{}' consists of {} that are not connected", tag_of(object.annotations, regions, k),
                                        counted(inner[k].check.components, "piece")),
                            "annotate each piece separately: each gets a cage of its own");
         std::vector<const Mesh*> nested_cages;
@@ -171,7 +170,8 @@ struct CageMake final : Operation {
             const auto level = std::find_if(nested_levels.begin() + (k > 0 ? 1 : 0), nested_levels.end(),
                                             [&](const CageLevel& l) { return l.cage.vertices.front() == first; });
             const std::string cage_name =
-                k < results.size() ? "a level" : fmt::format("the cage of '{}'", tag_of(set, regions, k - results.size()));
+                k < results.size() ? "a level"
+                                   : fmt::format("the cage of '{}'", tag_of(object.annotations, regions, k - results.size()));
             if (level == nested_levels.end() || level->cage.vertices.size() != nested_cages[k]->number_of_vertices())
                 throw Error(ErrorKind::failure, "cage", cage_name + " does not lie inside the cage of the whole object",
                             "raise --offset, or raise --vertices of the whole object's cage");
@@ -179,9 +179,10 @@ struct CageMake final : Operation {
             if (k < results.size()) continue;
             const PartCage& part_cage = inner[k - results.size()];
             const std::string file = output.file().empty() ? output.name : output.file();
-            report.row("cages")("file", file,
-                                fmt::format("{}, {}", Path(file).filename().string(), tag_of(set, regions, k - results.size())))(
-                "level", level - nested_levels.begin())("part", tag_of(set, regions, k - results.size()))(
+            report.row("cages")(
+                "file", file,
+                fmt::format("{}, {}", Path(file).filename().string(), tag_of(object.annotations, regions, k - results.size())))(
+                "level", level - nested_levels.begin())("part", tag_of(object.annotations, regions, k - results.size()))(
                 "vertices", part_cage.made.cage.number_of_vertices())("faces", part_cage.made.cage.number_of_faces())(
                 "reached", part_cage.made.reached)("genus", part_cage.check.genus)("clearance", part_cage.check.clearance)(
                 "alpha", part_cage.made.alpha);
@@ -249,11 +250,11 @@ struct CageMake final : Operation {
         return {Point(n[0], n[1], n[2]), Vector(n[3], n[4], n[5])};
     }
 
-    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const Mesh& object, const AnnotationSet& set,
-                                                       const RelationGraph& relations, Report& report) const {
-        if (mirror.empty()) return mirror_of(relations, object, set);
+    [[nodiscard]] std::optional<MirrorPlane> mirror_of(AnnotatedMeshView object, const RelationGraph& relations,
+                                                       Report& report) const {
+        if (mirror.empty()) return mirror_of(relations, object);
         if (mirror != "auto") return plane_of(mirror);
-        const MirrorPlane plane = find_mirror_plane(object, set, mesh.file());
+        const MirrorPlane plane = find_mirror_plane(object.mesh, object.annotations, mesh.file());
         const auto coordinates_text = [](const auto& p) {
             return fmt::format("{},{},{}", number(p.x()), number(p.y()), number(p.z()));
         };
@@ -263,11 +264,10 @@ struct CageMake final : Operation {
     }
 
     /// Mirror plane of the whole object, from the graph. Mirror planes of parts are ignored.
-    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, const Mesh& object,
-                                                       const AnnotationSet& set) const {
-        for (const Annotation& annotation : set.annotations)
-            if (is_whole(object, annotation))
-                if (const auto plane = symmetry_plane(object, set, relations, {annotation.id}, graph.file())) return plane;
+    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, AnnotatedMeshView object) const {
+        for (const Annotation& annotation : object.annotations.annotations)
+            if (is_whole(object.mesh, annotation))
+                if (const auto plane = symmetry_plane(object, relations, {annotation.id}, graph.file())) return plane;
         return {};
     }
 

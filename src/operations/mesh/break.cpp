@@ -45,7 +45,7 @@ struct MeshBreak final : Operation {
         report.line(fmt::format("{}: {} vertices, {} faces", output.file().empty() ? "fragment" : printable(output.file()),
                                 piece.vertices.size(), piece.faces.size()));
         if (annotations_out) {
-            AnnotationSet piece_annotations = annotations_of_piece(surface, *set, piece.mesh, piece.vertices, piece.faces);
+            AnnotationSet piece_annotations = annotations_of_piece({surface, *set}, piece.mesh, piece.vertices, piece.faces);
             piece_annotations.up.reset();
             annotations_out.write(std::move(piece_annotations), piece.mesh, output.file_name());
         }

@@ -30,7 +30,6 @@ struct MeshExtract final : AnnotatedMeshOperation {
     }
 
     void run(Context&, Report& report) override {
-        const Mesh& surface = mesh->mesh;
         const TagMatcher words = vocabulary.words();
         std::vector<std::size_t> regions, left_out;
         const auto add_regions = [&](const std::string& name, std::vector<std::size_t>& target) {
@@ -44,7 +43,7 @@ struct MeshExtract final : AnnotatedMeshOperation {
         };
         for (const std::string& name : names) add_regions(name, regions);
         for (const std::string& name : without) add_regions(name, left_out);
-        CutPart part = in_file(annotations.file(), [&] { return cut_out_part(surface, set(), regions, left_out, closed); });
+        CutPart part = in_file(annotations.file(), [&] { return cut_out_part(object(), regions, left_out, closed); });
         const double area = surface_area(part.mesh);
         report.set_unit(part.annotations.unit);
         report("vertices", part.mesh.number_of_vertices())("faces", part.mesh.number_of_faces())("area", area)("cuts", part.cuts);
@@ -58,7 +57,7 @@ struct MeshExtract final : AnnotatedMeshOperation {
                 "{} cuts could not be closed by triangles between their vertices; try 'ostraka mesh repair --fill-holes'",
                 part.cuts - part.closed));
         MeshExtras extras = extras_of(part, report);
-        if (labels) extras.face_labels = face_labels(part.mesh, part.annotations).of_face;
+        if (labels) extras.face_labels = face_labels(part).of_face;
         if (annotations_out) annotations_out.write(std::move(part.annotations), part.mesh, output.file_name());
         output.write(std::move(part.mesh), std::move(extras));
     }

@@ -68,7 +68,7 @@ struct RelationAdd final : RelationOperation {
         for (const Relationship& relationship : added) {
             if (!relationship.is_constraint) continue;
             try {
-                check_constraint(mesh->mesh, set(), relationship, output.file());
+                check_constraint(object(), relationship, output.file());
             } catch (const Error& error) {
                 if (error.kind() == ErrorKind::cancelled) throw;
                 report.note(std::string("'deform' will refuse this as it is: ") + error.what());

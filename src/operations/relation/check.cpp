@@ -34,7 +34,7 @@ struct RelationCheckAll final : RelationOperation {
     void run(Context&, Report& report) override {
         const RelationGraph relations = read_relations();
         const std::vector<RelationCheck> checks = in_file(rest ? rest.file() : annotations.file(), [&] {
-            return judge_relationships(mesh->mesh, set(), relations, rest ? &rest->mesh : nullptr, tolerances, graph.file());
+            return judge_relationships(object(), relations, rest ? &rest->mesh : nullptr, tolerances, graph.file());
         });
         std::array<std::size_t, 3> counts{};
         report.empty_table("relationships");
@@ -58,7 +58,7 @@ struct RelationCheckAll final : RelationOperation {
     std::size_t report_rules(Report& report, const RelationGraph& relations) const {
         const ClassRules& kept = rules.load<ClassRules>(read_class_rules);
         const Vocabulary* words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
-        const std::vector<RuleViolation> broken = broken_rules(mesh->mesh, set(), kept, words, &relations, rules.file());
+        const std::vector<RuleViolation> broken = broken_rules(object(), kept, words, &relations, rules.file());
         report.empty_table("rules");
         std::set<std::string> names;
         for (const RuleViolation& one : broken) {

@@ -67,7 +67,7 @@ struct RelationEdit final : RelationOperation {
         changed.origin = "stated";
         *found = changed;
         check_graph(relations, set(), output.file());
-        if (changed.is_constraint) check_constraint(mesh->mesh, set(), changed, output.file());
+        if (changed.is_constraint) check_constraint(object(), changed, output.file());
         output.write(std::move(relations), set());
         report_result(report, std::vector<Relationship>{changed});
     }

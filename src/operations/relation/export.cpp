@@ -37,7 +37,7 @@ struct RelationExport final : RelationOperation {
     }
 
     [[nodiscard]] BracketGraph drawn(const RelationGraph& relations) {
-        const GraphLayout layout = layout_of(relations, set(), topology(mesh->mesh, set()).order);
+        const GraphLayout layout = layout_of(relations, set(), topology(object()).order);
         BracketGraph drawing;
         std::map<int, std::size_t> row_of;
         for (const TreeEntry& row : layout.rows) {

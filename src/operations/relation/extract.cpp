@@ -33,7 +33,7 @@ struct RelationExtract final : RelationOperation {
         types = geometric_types(types);
         const RelationGraph old = read_relations();
         ExtractedRelations found =
-            in_file(annotations.file(), [&] { return extract_relations(mesh->mesh, set(), old, types, tolerances); });
+            in_file(annotations.file(), [&] { return extract_relations(object(), old, types, tolerances); });
         for (const int id : found.stated) {
             const auto& list = found.graph.relationships;
             const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });

@@ -66,7 +66,7 @@ struct StudyMakeStatuettes : StudyMake {
                 extras.face_colours.push_back({red, green, blue, 255});
             }
         write(name, statuette.mesh, extras, provenance);
-        write_annotations(folder.in(name + ".ant.json"), annotate_statuette(statuette), statuette.mesh, name + ".ply",
+        write_annotations(folder.in(name + ".ant.json"), {statuette.mesh, annotate_statuette(statuette)}, name + ".ply",
                           provenance);
     }
 };

@@ -33,8 +33,9 @@ struct StudyMakeMoulds final : StudyMake {
             extras.face_labels = std::move(casts[i].face_labels);
             write(plan[i].name, casts[i].mesh, extras, provenance);
             if (cast.body)
-                write_annotations(folder.in(plan[i].name + ".ant.json"), annotate_head(casts[i], extras.face_labels),
-                                  casts[i].mesh, plan[i].name + ".ply", provenance);
+                write_annotations(folder.in(plan[i].name + ".ant.json"),
+                                  {casts[i].mesh, annotate_head(casts[i], extras.face_labels)}, plan[i].name + ".ply",
+                                  provenance);
             casts[i].mesh = {};
         });
         std::string truth = csv_row({"name", "label", "hair", "beard", "missing piece", "wear", "shrinkage", "seed"});
@@ -67,7 +68,7 @@ struct StudyMakeMoulds final : StudyMake {
         head.tag = "head";
         for (std::size_t f = 0; f < labels.size(); ++f)
             if (labels[f] < static_cast<std::int32_t>(HeadPart::stump)) head.faces.push_back(static_cast<Index>(f));
-        head.colour = fresh_colour(head_cast.mesh, set, head);
+        head.colour = fresh_colour({head_cast.mesh, set}, head);
         set.annotations.push_back(std::move(head));
         return set;
     }

@@ -230,7 +230,8 @@ struct StudyProportions final : StudyOperation {
         const AnnotationSet& set = annotations.on(mesh->mesh);
         RelationGraph graph_before;
         if (graph_in) graph_before.relationships = graph_in.on(set).relationships;
-        Proposals new_proposals = propose_proportions(mesh->mesh, set, std::move(graph_before), definitions(), study, proposals);
+        Proposals new_proposals =
+            propose_proportions({mesh->mesh, set}, std::move(graph_before), definitions(), study, proposals);
         report.notes(new_proposals.notes);
         notes.insert(notes.end(), new_proposals.notes.begin(), new_proposals.notes.end());
         report("proposed", new_proposals.proposed);

@@ -45,7 +45,7 @@ struct StudySegments final : Operation {
         set.up = {upward.x(), upward.y(), upward.z()};
         set.unit = unit.empty() && parts != nullptr ? parts->unit : unit;
         const auto agreement =
-            segment_agreement(segments, parts != nullptr ? labels_of(surface, *parts) : mesh->extras.face_labels);
+            segment_agreement(segments, parts != nullptr ? labels_of({surface, *parts}) : mesh->extras.face_labels);
 
         report.set_unit(set.unit);
         if (!set.unit.empty()) report("unit", set.unit);

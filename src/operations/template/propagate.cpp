@@ -75,8 +75,8 @@ struct TemplatePropagate final : Operation {
         const std::string fitted_name = member.name + ".fitted.ply";
         const Mesh fitted = with_points(template_input->mesh->mesh, result.fit.points);
         output.write(fitted_name, fitted);
-        output.write(member.name + ".fitted.ant.json", result.on_template, fitted, fitted_name);
-        output.write(member.name + ".ant.json", *result.on_member, member.mesh, file);
+        output.write(member.name + ".fitted.ant.json", {fitted, result.on_template}, fitted_name);
+        output.write(member.name + ".ant.json", {member.mesh, *result.on_member}, file);
     }
 
     static void report_result(Report& report, const std::string& name, const Propagated& result) {

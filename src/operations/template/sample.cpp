@@ -42,11 +42,11 @@ struct TemplateSample final : Operation {
         const ClassTemplate template_of_class = class_data.known();
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Mesh mesh = with_points(template_of_class.mesh, result.samples[i].points);
-            AnnotationSet set = template_of_class.set;
-            move_extents(template_of_class.mesh, template_of_class.set, mesh, set);
+            AnnotationSet set = template_of_class.annotations;
+            move_extents(template_of_class, mesh, set);
             static_cast<void>(refresh_measures(mesh, set));
             output.write(names[i] + ".ply", mesh);
-            output.write(names[i] + ".ant.json", set, mesh, names[i] + ".ply");
+            output.write(names[i] + ".ant.json", {mesh, set}, names[i] + ".ply");
         }
         const Json document = samples_document(class_data.learnt.name, result, names);
         report.values(document);

@@ -70,7 +70,7 @@ struct TemplateTurn final : Operation {
         };
         part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, vessel.mesh, {}, write_options); });
         part("annotations", "turned.ant.json",
-             [&](const Path& path) { write_annotations(path, vessel.annotations, vessel.mesh, "turned.ply", provenance); });
+             [&](const Path& path) { write_annotations(path, vessel, "turned.ply", provenance); });
         std::string csv = "radius,height\n";
         for (const auto& p : vessel.profile) csv += fmt::format("{},{}\n", digits(p.x(), 10), digits(p.y(), 10));
         write_file(output.in("profile.csv"), csv);
