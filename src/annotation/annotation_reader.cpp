@@ -391,7 +391,8 @@ AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnn
     return annotations_from_json(read_json(file), mesh, file.string(), options);
 }
 
-std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where, const std::string& pointer) {
+std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where,
+                                               const std::string& pointer) {
     std::vector<std::string> notes;
     return information_of(list, where, pointer, notes);
 }

@@ -1,4 +1,4 @@
-// Calls as command-line words.
+// Command-line words of a call.
 #pragma once
 
 #include "ostraka/operations/table.h"

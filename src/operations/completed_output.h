@@ -7,7 +7,8 @@
 
 namespace ostraka {
 
-/// Face labels: observed, interpolated or hypothesis; face values: fragment, distance, confidence.
+/// Writes the mesh of a completed object as `name`. Face labels: observed, interpolated or hypothesis; face values: index of the
+/// fragment, distance, confidence.
 void write_completed(const FolderOutput& folder, const std::string& name, const CompletedObject& object);
 
 }  // namespace ostraka

@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// Each deviation as text: "angle 3 (was 7, at most 5) degree".
+/// Text for each deviation of a constraint: "angle 3 (was 7, at most 5) degree".
 inline std::vector<std::string> deviation_texts(const ConstraintReport& constraint) {
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < constraint.deviations.size(); ++i) {

@@ -6,14 +6,14 @@
 
 namespace ostraka {
 
-/// Declares the values that `to_json` writes.
+/// Declares the report values that `to_json` writes for a diagnosis.
 void declare_diagnosis(ReportLayout& layout);
 
-/// Counts, topology, size and defects; lists (components, border loops) are truncated after one hundred entries, and marked as
-/// such.
+/// Counts, topology, size and defects of a mesh; lists (components, border loops) are truncated after one hundred entries, and
+/// marked as truncated.
 JsonValue to_json(const MeshDiagnosis& diagnosis, JsonAllocator& allocator);
 
-/// Pairs of quantity and value, for people.
+/// Pairs of quantity and value for the printed report of a diagnosis.
 std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& diagnosis);
 
 }  // namespace ostraka

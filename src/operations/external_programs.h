@@ -11,7 +11,8 @@
 
 namespace ostraka {
 
-/// The words of a program, quoted; words known only at run time are shown by their names.
+/// Command line of the external program of a step, with each word quoted; a word known only at run time is shown as
+/// "${STEP.OUTPUT}".
 inline std::string program_text(const StudyPlan& plan, const StudyInstance& instance) {
     std::string text;
     auto input = instance.inputs.begin();
@@ -26,7 +27,7 @@ inline std::string program_text(const StudyPlan& plan, const StudyInstance& inst
     return text;
 }
 
-/// Lists the external programs that steps start, before anything runs.
+/// Reports the external programs that the steps of a study start, before any step runs. `allowed`: the programs may be started.
 inline void show_programs(Context& context, Report& report, const StudyPlan& plan, bool allowed) {
     for (const StudyInstance& instance : plan.instances) {
         if (instance.program.empty() || is_own_program(instance.program.front())) continue;

@@ -1,4 +1,5 @@
-// Shared by the sources of operations: common slots, and text arguments such as lists of numbers, directions, annotation names.
+// Helpers shared by the sources of operations: common inputs and options, and text arguments such as lists of numbers,
+// directions, annotation names.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -28,7 +29,7 @@ struct AnnotatedMeshOperation : Operation {
     AnnotationsInput annotations;
 };
 
-/// {"format": "ostraka-KIND", "version": 1, members of `result`, "provenance"}.
+/// JSON document of an output file: {"format": "ostraka-KIND", "version": 1, the members of `result`, "provenance"}.
 inline Json document_of(std::string_view kind, const JsonValue& result, const Provenance& provenance) {
     Json document = json_document(kind);
     auto& allocator = document.GetAllocator();
@@ -37,31 +38,31 @@ inline Json document_of(std::string_view kind, const JsonValue& result, const Pr
     return document;
 }
 
-/// Parses the numbers of "12,88"; Error (usage) names the option.
+/// Parses a list of numbers such as "12,88"; Error (usage) names the option.
 template <class Number>
 std::vector<Number> numbers_of(const std::string& text, const std::string& option);
 extern template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
 extern template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
 
-/// Parses the direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
+/// Parses a direction such as "0,0,1", or an axis such as "z" or "-z"; Error (usage) names the option.
 std::array<double, 3> direction_of(const std::string& text, const std::string& option);
 
-/// Option rule for texts that `direction_of` accepts; `more`: further words that the operation accepts.
+/// Option rule for texts that `direction_of` accepts; `more`: additional words that the operation accepts.
 Words direction_words(const std::string& option, std::vector<std::string> more = {});
 
-/// --up: a direction in the form of `direction_of`, checked before any work starts.
+/// The option --up: a direction in the form that `direction_of` accepts, checked before any work starts.
 class DirectionOption {
 public:
     void describe(Parameters& p, const std::string& help);
     explicit operator bool() const { return !text_.empty(); }
-    /// The direction; empty if none was given.
+    /// Direction given by the user; empty if none was given.
     [[nodiscard]] std::optional<std::array<double, 3>> value() const;
 
 private:
     std::string text_;
 };
 
-/// --vocabulary: the vocabulary by which tags are compared.
+/// The option --vocabulary: the vocabulary by whose concepts tags are compared.
 class VocabularyOption {
 public:
     void describe(Parameters& p, const std::string& help) {
@@ -69,7 +70,7 @@ public:
     }
     explicit operator bool() const { return static_cast<bool>(file_); }
     [[nodiscard]] TagMatcher words() const { return file_ ? TagMatcher(&file_.load<Vocabulary>(read_vocabulary)) : TagMatcher(); }
-    /// Checksum of the file; empty if none was given.
+    /// SHA-256 of the vocabulary file; empty if none was given.
     [[nodiscard]] std::string checksum() const { return file_ ? sha256_of_file(file_.path()) : std::string(); }
 
 private:
@@ -78,10 +79,10 @@ private:
 inline constexpr const char* as_template_words =
     "by which tags of objects match those of the template: the same concept in any language, or a narrower one";
 
-/// The annotation with this id, or with this tag if it is unique. Throws Error (input) that names the file.
+/// The annotation with this id, or with this tag if only one annotation has it. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);
 
-/// Used by the table (table.cpp) to create operations; each operation is defined in the file of its name.
+/// Creates an operation, for the table of operations (table.cpp); each operation is defined in the source file of its name.
 template <class Work>
 std::unique_ptr<Operation> make() {
     return std::make_unique<Work>();

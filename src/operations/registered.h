@@ -1,4 +1,4 @@
-// Registers two meshes given to an operation.
+// Registers two meshes that are inputs of an operation.
 #pragma once
 
 #include "operations/operations.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// Registers `source` to `target`; errors about a mesh name its file.
+/// Registers `source` to `target`; errors about a mesh name the file of the mesh.
 inline MeshRegistration registered(const MeshInput& source, const MeshInput& target,
                                    const MeshRegistrationOptions& options = {}) {
     try {

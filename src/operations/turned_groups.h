@@ -10,15 +10,16 @@
 
 namespace ostraka {
 
-/// Adds the axis of group `g` to its entry as "axis", and to the entries of its joins whether the axes of the two fragments
-/// agree. Adds a line for people if the group is a revolved vessel or if joins contradict each other.
+/// Adds the axis of revolution of group `g` to the JSON entry `group` as "axis", and to each entry of `joins` whether the axes of
+/// the two joined fragments agree. Adds a row to the printed report if the group is a vessel of revolution or if joins contradict
+/// each other.
 GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragments, const Reassembly& result, int g,
                             JsonValue& group, JsonValue& joins, JsonAllocator& allocator);
 
-/// Axes of revolution of the fragments that are not joined; the other entries have `found` unset.
+/// For each fragment, its own axis of revolution if the fragment is not joined; `found` is false for joined fragments.
 std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result);
 
-/// Adds the axis of an unjoined fragment to its entry, if it has one.
+/// Adds the axis of revolution of an unjoined fragment to its JSON entry, if the axis was found.
 void report_own_axis(const GroupAxis& group_axis, JsonValue& entry, JsonAllocator& allocator);
 
 }  // namespace ostraka

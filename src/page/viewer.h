@@ -1,4 +1,4 @@
-// The HTML page without its data.
+// Inserts the data of a page into the HTML viewer.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@ namespace ostraka {
 
 /// The built web/report.html with the data (JSON, escaped for HTML) and the bytes (base64) inserted, and a content policy that
 /// allows only the viewer's own script. Throws Error (failure) unless the built page has each placeholder exactly once.
-/// `allow_self`: the page loads scripts and pictures from its own folder.
+/// `allow_self`: true if the page loads scripts and pictures from its own folder.
 std::string viewer_with(const std::string& data, const std::string& bytes, bool allow_self);
 
+/// The bytes in base64 encoding.
 std::string base64(std::string_view bytes);
 
 }  // namespace ostraka

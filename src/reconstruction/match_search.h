@@ -1,4 +1,4 @@
-// Matches of the template's vertices on the fragments.
+// Matches the template's vertices with points on the fragments.
 #pragma once
 
 #include "reconstruction/fragment_trees.h"
@@ -15,34 +15,35 @@
 
 namespace ostraka {
 
-/// Positional constraint on a template vertex from annotations: a landmark, or a point of an outline.
+/// Target position of a template vertex from annotations: a landmark, or a point of an outline.
 struct CorrespondenceConstraint {
     Index vertex = no_index;
-    Eigen::Vector3d place;
-    double length = 0;  ///< length of the outline that it represents; 0 for a landmark
-    int fragment = 0;
-    bool outline = false;  ///< a place along the outline of a region
+    Eigen::Vector3d place;  ///< target position
+    double length = 0;      ///< length of the outline that the vertex represents; 0 for a landmark
+    int fragment = 0;       ///< index of the fragment
+    bool outline = false;   ///< true: the target is a point of the outline of a region
 };
 
-/// A sample of a fragment's outer surface, each representing the same area.
+/// A sample of a fragment's outer surface; all samples represent the same area.
 struct FragmentSample {
     Eigen::Vector3d place, normal;
-    int label = -1;  ///< label of the template's faces that contain its counterpart
+    int label = -1;  ///< label of the template's faces among which the counterpart of the sample lies; -1: no annotation
 };
 
-/// Directions in which a vertex may slide from its match: x is allowed if x - place is in the image of `free`.
+/// Directions in which a vertex may slide from its match at `place`: a position x is allowed if x - place is in the image of
+/// `free`.
 struct Slide {
     Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
-    bool on_curve = false;
+    bool on_curve = false;  ///< true: the match is on a curve where two annotations meet
 };
 
-/// Matches within corresponding annotations: vertices in a matched annotation to the faces of its counterpart, all others to
-/// faces in none.
+/// Finds matches within corresponding annotations: vertices in a matched annotation on the faces of its counterpart, all other
+/// vertices on faces outside matched annotations.
 class MatchSearch {
 public:
-    /// The unit of the template is `scale` times that of the placed fragments: all that is queried and returned is in
-    /// the template's. Trees are those of the fragments, in their own coordinates, where they bring them along. What
-    /// correspondences there are: of landmarks alone, or of places along matched lines and outlines, too.
+    /// The unit of the template. Its unit is `scale` times the unit of the placed fragments; all positions and lengths in calls
+    /// and results are in the template's unit. The search trees that fragments bring along are in the fragments' own coordinates.
+    /// `Guides`: correspondences from landmarks alone, or also from points along matched lines and outlines.
     enum class Guides { landmarks, paths };
     MatchSearch(AnnotatedMeshView template_object, const std::vector<PlacedFragment>& fragments, double scale = 1,
                 Guides guides = Guides::landmarks);
@@ -50,67 +51,72 @@ public:
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
 
-    /// Labels of the faces, and of each vertex by its adjacent faces, among which matches are searched.
+    /// Labels that restrict matches: label of each face, and labels of the faces around each vertex.
     struct Labels {
-        std::vector<int> of_face;
-        std::vector<std::vector<int>> of_vertex;
-        /// Position of a vertex on a fragment whose faces are the template's; fragment -1: on none.
+        std::vector<int> of_face;                 ///< label of each face
+        std::vector<std::vector<int>> of_vertex;  ///< for each vertex, the labels of its adjacent faces
+        /// For each vertex, its position on a fragment that has the template's own faces; fragment -1: no such fragment.
         std::vector<VertexMatch> shared;
     };
-    /// Labels of a mesh derived from the template: its faces come from the template's faces `face_origin`, and `vertex_map`
-    /// maps the template's vertices to its vertices (both empty: the template itself).
+    /// Labels of a mesh derived from the template. `face_origin`: for each face of `mesh`, its face of the template;
+    /// `vertex_map`: for each vertex of the template, its vertex of `mesh` (both empty: `mesh` is the template).
     [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin,
                                 const std::vector<Index>& vertex_map = {}) const;
-    /// Enables the detection of fragments whose faces are the template's: their vertices are identified with the template's,
-    /// and their landmarks, which would count twice, are no correspondences.
+    /// Enables the detection of fragments that have the template's own faces: their vertices are identified with the template's
+    /// vertices, and their landmarks, which would count twice, are not used as correspondences.
     void recognise_shared_faces();
-    /// The nearest match on all fragments for each vertex at `current`; fragment -1 if there is none within `search_radius` with
-    /// a compatible normal that is not at a border.
+    /// For each vertex at its position in `current`, the nearest match on all fragments; fragment -1 if no point within
+    /// `search_radius` has a compatible normal and is not at a border.
     [[nodiscard]] std::vector<VertexMatch> matches(const Points& current, const Mesh& connectivity, const Labels& labels,
                                                    double search_radius, double min_cosine) const;
-    /// As `matches`, with a projection per vertex onto the directions in which it may slide from there: those of the surface;
-    /// for vertices where two labels meet on the template, those of the curve where they meet; none at the vertices of a
-    /// fragment whose faces are the template's.
+    /// Matches as `matches` returns them, and in `slides` for each vertex the directions in which it may slide from its match:
+    /// along the surface; for vertices where two labels meet on the template, along the curve where the labels meet on the
+    /// fragment; no direction on a fragment that has the template's own faces.
     [[nodiscard]] std::vector<VertexMatch> sliding_matches(const Points& current, const Mesh& connectivity, const Labels& labels,
                                                            double search_radius, double min_cosine,
                                                            std::vector<Slide>& slides) const;
-    /// Replaces the matches of vertices in matched annotations by the counterparts of equation 5.1, as set in the options; none
-    /// if the counterpart is at the end of the fragment.
+    /// Replaces the matches of vertices in matched annotations by the counterparts of equation 5.1, with these options; removes
+    /// the match if the counterpart is at the end of the fragment.
     void assign(const Points& current, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
                 std::vector<VertexMatch>& matches) const;
-    /// Unit normal of the matched face of the fragment.
+    /// Unit normal of the fragment's face at the match.
     [[nodiscard]] Eigen::Vector3d normal(const VertexMatch& match) const;
-    /// About this number of samples on all fragments together.
+    /// Samples of all fragments together, about `count`.
     [[nodiscard]] std::vector<FragmentSample> samples(int count) const;
-    /// Landmarks of matched point annotations, then points along outlines and lines.
+    /// Target positions from landmarks of matched point annotations, followed by points along matched outlines and lines.
     [[nodiscard]] std::vector<CorrespondenceConstraint> correspondences() const { return correspondences_; }
 
 private:
-    /// The faces of one fragment with one label.
+    /// The faces of one fragment that have one label.
     struct Part {
         int fragment = 0;
         const FragmentPart* part = nullptr;
     };
-    std::map<int, std::vector<Part>> parts_;             ///< by label: the id of the template's annotation, -1 for none
-    std::vector<std::shared_ptr<FragmentTrees>> trees_;  ///< per fragment
-    std::vector<Motion> to_template_, to_fragment_;      ///< per fragment: from the coordinates of its trees, and back
+    /// From a label (id of the template's annotation, -1 for none) to the faces of the fragments.
+    std::map<int, std::vector<Part>> parts_;
+    std::vector<std::shared_ptr<FragmentTrees>> trees_;  ///< trees of each fragment
+    /// For each fragment: motion from the coordinates of its trees to the template, and back.
+    std::vector<Motion> to_template_, to_fragment_;
+    /// Ratio of the template's unit to the fragments' unit.
     double scale_;
-    /// A region of a fragment and its counterpart's label.
+    /// A region of a fragment and the label of its counterpart.
     struct Counterpart {
-        int fragment = 0, label = 0;
-        Annotation region;  ///< its faces with the label
+        int fragment = 0, label = 0;  ///< index of the fragment; label of the template's annotation
+        Annotation region;            ///< faces of the fragment with the label
     };
     void add_path_correspondences(const AnnotationSet& set);
     [[nodiscard]] std::vector<VertexMatch> shared_matches(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
 
     const Mesh& template_;
     const std::vector<PlacedFragment>& fragments_;
-    std::vector<std::vector<Index>> shared_;  ///< per fragment and vertex, the template's vertex, if the faces are shared
+    /// For each fragment, the template's vertex of each of its vertices; empty if the faces are not shared.
+    std::vector<std::vector<Index>> shared_;
     JointCurves joints_;
     std::vector<Counterpart> counterparts_;
-    std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as correspondences_
-    std::vector<int> landmark_fragment_;
-    std::vector<int> face_labels_;  ///< of the template
+    /// Vertices of the template and of the fragment, in the order of `correspondences_`.
+    std::vector<std::pair<Index, Index>> landmarks_;
+    std::vector<int> landmark_fragment_;  ///< for each landmark, the index of its fragment
+    std::vector<int> face_labels_;        ///< label of each face of the template
     std::vector<CorrespondenceConstraint> correspondences_;
 };
 

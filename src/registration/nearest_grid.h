@@ -7,13 +7,15 @@
 
 namespace ostraka::detail {
 
-/// Each cell within `search_radius` of a point stores the point nearest to its centre, and the nearest point with a different
-/// normal direction: on a thin wall, the other side.
+/// Grid whose cells within `search_radius` of a surface point store the point nearest to the cell's centre, and the nearest point
+/// with a different normal direction: on a thin wall, the point on the other side.
 class NearestGrid {
 public:
+    /// `points` must outlive the grid.
     NearestGrid(const SurfacePoints& points, double search_radius);
 
-    /// The nearest point of the surface whose normal has a cosine of more than 0.3 with `normal`; -1 if there is none near.
+    /// Index of the surface point nearest to `place` whose normal has a cosine of more than 0.3 with `normal`; -1 if there is
+    /// none within the search radius.
     [[nodiscard]] int find(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const {
         const Eigen::Vector3d cell_place = (place - low_) / side_;
         if (!(cell_place.minCoeff() >= 0 && cell_place.x() < count_[0] && cell_place.y() < count_[1] &&
@@ -35,12 +37,14 @@ private:
                static_cast<std::size_t>(z);
     }
     template <class Visit>
+    /// Calls visit(cell, squared distance) for each cell within the search radius of a point.
     void around(std::size_t point, Visit&& visit) const;
 
     const SurfacePoints& points_;
-    double search_radius_, side_ = 0;
-    Eigen::Vector3d low_;
-    Eigen::Vector3i count_;
+    double search_radius_, side_ = 0;  ///< side_: side of a cell
+    Eigen::Vector3d low_;              ///< lowest corner of the grid
+    Eigen::Vector3i count_;            ///< number of cells along each axis
+    /// For each cell, index of the nearest point, and of the nearest point with a different normal; -1: none.
     std::vector<int> nearest_, opposite_;
 };
 

@@ -1,4 +1,4 @@
-// Trimmed ICP, point to plane: the part that does not depend on how points are paired.
+// Trimmed ICP, point to plane: the part of the algorithm that does not depend on how points are paired.
 #pragma once
 
 #include "ostraka/geom/plane_motion.h"
@@ -8,23 +8,24 @@
 
 namespace ostraka::detail {
 
-/// A moved point and the tangent plane at its partner.
+/// A moved point, its partner `place` on the other surface, and the normal of the tangent plane at the partner.
 struct PlanePair {
     Eigen::Vector3d point, place, normal;
-    double squared = 0;  ///< squared distance of the two points
+    double squared = 0;  ///< squared distance of the point from its partner
 };
 
-/// Quality of a pose.
+/// Quality of a pose: value of the minimised objective, residual of the kept pairs, share of the samples that have a pair.
 struct PoseFit {
     double minimised = 0, residual = 0, overlap = 0;
 };
 
+/// The point pairs of one ICP step.
 class PlanePairs {
 public:
     std::vector<PlanePair> pairs;
 
-    /// Keeps the nearest pairs, at most `share` of `samples` and at least one; returns the number if every sample had a
-    /// partner.
+    /// Keeps the pairs of smallest distance, at most `share` of `samples` and at least one; returns the number of pairs that
+    /// would be kept if every sample had a partner.
     std::size_t trim(double share, std::size_t samples) {
         const auto kept_count = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples)));
         std::stable_sort(pairs.begin(), pairs.end(),
@@ -32,7 +33,7 @@ public:
         if (pairs.size() > kept_count) pairs.resize(kept_count);
         return kept_count;
     }
-    /// Sum of the squared distances from the planes.
+    /// Sum of the squared distances of the points from their planes.
     [[nodiscard]] double squares() const {
         double sum = 0;
         for (const PlanePair& pair : pairs) {
@@ -41,7 +42,8 @@ public:
         }
         return sum;
     }
-    /// Linearised motion of the points onto the planes, about the centre of the pairs.
+    /// Linearised motion of the points onto their planes, about the centre of the points; `unit`: length by which lengths are
+    /// divided.
     [[nodiscard]] PlaneMotion planes(double unit) const {
         Eigen::Vector3d centre = Eigen::Vector3d::Zero();
         for (const PlanePair& pair : pairs) centre += pair.point / static_cast<double>(pairs.size());
@@ -51,16 +53,17 @@ public:
     }
 };
 
+/// Result of `register_from`.
 struct Registration {
     Motion pose;
     PoseFit fit;
     int iterations = 0;
-    bool settled = false;  ///< the last step changed nothing
+    bool settled = false;  ///< true: the last steps did not improve the pose
 };
 
-/// From `start`: measure(pose) fills `pairs` and returns the fit, step(pose) returns the next pose. As the pairs change from
-/// step to step, the objective may rise for a while: the best pose encountered is kept. Stops after several steps without a
-/// gain of `min_gain`.
+/// ICP from the pose `start`: measure(pose) fills `pairs` and returns the fit, step(pose) returns the next pose. As the pairs
+/// change from step to step, the objective may rise for a while: the best pose encountered is returned. Stops after several steps
+/// that decrease the objective by less than the share `min_gain`.
 template <class Measure, class Step>
 Registration register_from(const Motion& start, int iterations, double min_gain, const PlanePairs& pairs, Measure&& measure,
                            Step&& step) {

@@ -17,17 +17,22 @@ public:
     [[nodiscard]] bool test(std::size_t r, std::size_t c) const { return (row(r)[c / 64] >> (c % 64) & 1U) != 0; }
     void set(std::size_t r, std::size_t c) { row(r)[c / 64] |= std::uint64_t{1} << (c % 64); }
     void clear(std::size_t r, std::size_t c) { row(r)[c / 64] &= ~(std::uint64_t{1} << (c % 64)); }
+    /// Sets all bits of a row.
     void fill(std::size_t r) { std::fill_n(row(r), words_, ~std::uint64_t{0}); }
+    /// Clears all bits of a row.
     void zero(std::size_t r) { std::fill_n(row(r), words_, 0); }
+    /// Clears the bits of a row that are not set in the mask; `first`, `last`: range of 64-bit words.
     void keep(std::size_t r, const std::vector<std::uint64_t>& mask) { keep(r, mask, 0, words_); }
     void keep(std::size_t r, const std::vector<std::uint64_t>& mask, std::size_t first, std::size_t last) {
         for (std::size_t w = first; w < last; ++w) row(r)[w] &= mask[w];
     }
+    /// Sets the bits of a row that are set in the mask; `first`, `last`: range of 64-bit words.
     void add(std::size_t r, const std::uint64_t* mask) { add(r, mask, 0, words_); }
     void add(std::size_t r, const std::uint64_t* mask, std::size_t first, std::size_t last) {
         for (std::size_t w = first; w < last; ++w) row(r)[w] |= mask[w];
     }
-    [[nodiscard]] std::size_t words() const { return words_; }
+    [[nodiscard]] std::size_t words() const { return words_; }  ///< number of 64-bit words of a row
+    /// Calls visit(column) for each set bit of a row.
     template <class Visit>
     void each(std::size_t r, Visit&& visit) const {
         for (std::size_t w = 0; w < words_; ++w)

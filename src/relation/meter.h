@@ -1,4 +1,4 @@
-// The parts of a set and the contacts between them, computed on demand.
+// The annotated parts of a set and the contacts between the parts, computed on demand.
 #pragma once
 
 #include "relation/parts.h"
@@ -11,28 +11,29 @@
 
 namespace ostraka {
 
-/// For each pair of regions without a common face, the edges between them: midpoints, weighted by length.
+/// From the ids of two regions without a common face to the edges between them: midpoints, weighted by length.
 using Contacts = std::map<std::pair<int, int>, detail::Cloud>;
 
 namespace detail {
 
-/// Thrown if a relationship cannot be determined; not an error, since others can.
+/// Thrown if a relationship cannot be determined; not an error, since other relationships may be determined.
 struct Unknown {
     std::string text;
 };
 
-/// The measured quantities of one relationship with the applicable tolerances.
+/// The measured quantities of one relationship with the tolerances that apply.
 class Findings {
 public:
     Findings(const Relationship& stated, const RelationOptions& options, double diagonal, const std::string& unit,
              RelationParameters& parameters);
     /// Adds a length with a tolerance relative to the diagonal.
     void add_length(const std::string& quantity, double value) { add(quantity, value, options_.distance * diagonal_, unit_); }
+    /// Adds the height by which a part lies on the wrong side of a contact; the tolerance is 0.
     void add_height_below_0(double value) { add("height", value, 0, unit_); }
     void add_angle(double degrees) { add("angle", degrees, options_.angle, "degree"); }
     void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }
     void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.ratio, "%"); }
-    [[nodiscard]] bool holds() const { return holds_; }
+    [[nodiscard]] bool holds() const { return holds_; }  ///< whether all quantities are within their tolerances
 
     const Relationship& stated;
     RelationParameters& parameters;
@@ -50,26 +51,27 @@ private:
 
 struct RelationMeter::State : AnnotatedMeshView {
     RelationOptions options;
-    double diagonal = 0;
-    std::map<int, detail::Part> parts;
+    double diagonal = 0;                ///< diagonal of the mesh
+    std::map<int, detail::Part> parts;  ///< from the id of an annotation to its part
     std::optional<Contacts> contacts;
     bool contacts_left_out = false;  ///< true if the pairs with the shortest borders were omitted
-    std::list<int> recent;           ///< parts in use, most recently used last
-    std::unordered_map<int, std::list<int>::iterator> recent_place;
-    std::size_t recent_faces = 0;
+    std::list<int> recent;           ///< ids of the parts whose data are in memory, most recently used last
+    std::unordered_map<int, std::list<int>::iterator> recent_place;  ///< from the id of a part to its position in `recent`
+    std::size_t recent_faces = 0;                                    ///< total number of faces of the parts in `recent`
 
-    detail::Part& part(int id);
-    const detail::Cloud* contact(int a, int b);  ///< nullptr if not adjacent
-    /// The contacts of all pairs or, beyond the limits, of those with the longest shared borders.
+    detail::Part& part(int id);                  ///< part of the annotation with this id
+    const detail::Cloud* contact(int a, int b);  ///< edges between two regions; nullptr if they are not adjacent
+    /// The contacts of all pairs of regions or, beyond the limits, of the pairs with the longest shared borders.
     const Contacts& all_contacts();
-    /// Must be called before parts are measured: frees the memory of the least recently used parts, so that memory stays
-    /// bounded for many overlapping regions.
+    /// Marks parts as used and frees the memory of the least recently used parts, so that memory stays bounded for many
+    /// overlapping regions. Must be called before the parts with these ids are measured.
     void used(const std::vector<int>& ids);
-    /// The value of an attribute by name, followed by its unit; nothing if it is not a single number.
+    /// The numeric value of the attribute with this name (computed for measures and known descriptors); nothing if it is not a
+    /// single number.
     [[nodiscard]] std::optional<double> attribute(const Annotation& annotation, const std::string& name) const;
-    /// The values of the stated attribute. Throws Unknown.
+    /// The values that the members of the relationship have for its attribute. Throws Unknown.
     [[nodiscard]] std::vector<double> values(const Relationship& stated) const;
-    /// Measures a relationship of this type. Throws Unknown.
+    /// Measures a relationship of this geometric type. Throws Unknown.
     void measure(GeometricRelation kind, detail::Findings& findings);
 };
 

@@ -1,4 +1,4 @@
-// Geometric properties of an annotated part that relationships use.
+// Geometric properties of an annotated part that relationships compare.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -15,13 +15,13 @@ using Eigen::Vector3d;
 
 inline std::array<double, 3> array_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Weighted points: centroids of faces by area, midpoints of edges by length, or vertices.
+/// Weighted points of a part: centroids of faces by area, midpoints of edges by length, or vertices.
 struct Cloud {
     std::vector<Vector3d> points;
     std::vector<double> weights;
     [[nodiscard]] Vector3d mean() const;
-    /// Least-squares plane: unit normal and rms distance. `spread` is the middle standard deviation, 0 if the points lie on a
-    /// line.
+    /// Least-squares plane of the points: a point, the unit normal, and the root mean square distance of the points. `spread`:
+    /// middle standard deviation along the principal axes, 0 if the points lie on a line.
     struct Plane {
         Vector3d point, normal;
         double rms = 0, spread = 0;
@@ -29,13 +29,14 @@ struct Cloud {
     [[nodiscard]] Plane plane() const;
 };
 
-/// A straight axis, or the reason why there is none.
+/// The straight axis of a part, or the reason why there is none.
 struct PartAxis {
-    bool found = false;
-    std::string reason;
+    bool found = false;  ///< true: the part has an axis
+    std::string reason;  ///< why the part has no axis
     Vector3d point, direction;
 };
 
+/// Geometric properties of one annotated part, computed on demand.
 class Part {
 public:
     Part(const Mesh& mesh, const Annotation& annotation) : mesh_(mesh), annotation_(annotation) {}
@@ -43,16 +44,16 @@ public:
     [[nodiscard]] const Annotation& annotation() const { return annotation_; }
     [[nodiscard]] bool empty() const;
     const Cloud& cloud();                    ///< all points of the part
-    const std::vector<Vector3d>& samples();  ///< for regions: at most 500, distributed by area
+    const std::vector<Vector3d>& samples();  ///< points spread over a region by area, at most 500
     const Vector3d& centroid();
     double area();
-    /// The axis of slices if the part is longer than wide, otherwise of rotation; bent axes are rejected.
+    /// The axis of the part's slices if the part is longer than wide, otherwise its axis of rotation; a bent axis is rejected.
     const PartAxis& axis();
-    /// Distances between all pairs of samples, at 64 quantiles (D2 distribution, Osada et al. 2002).
+    /// Distances between all pairs of samples, at 64 quantiles (D2 shape distribution, Osada et al. 2002).
     const std::vector<double>& shape();
-    /// The closest point of the region.
+    /// The point of the region closest to `query`.
     Vector3d closest(const Vector3d& query);
-    /// Frees data whose memory is proportional to the region; it is computed again on demand.
+    /// Frees the data whose memory is proportional to the region; the data are computed again on demand.
     void forget();
 
 private:
@@ -64,14 +65,14 @@ private:
     std::optional<std::vector<Vector3d>> samples_;
     std::optional<std::vector<double>> shape_;
     std::optional<PartAxis> axis_;
-    std::unique_ptr<Mesh> own_;
+    std::unique_ptr<Mesh> own_;  ///< mesh of the region alone
     std::unique_ptr<SurfaceSearch> search_;
 };
 
-/// A reflection that maps part `a` to part `b` (which may be the same), refined from several initial planes.
+/// A reflection that maps part `a` to part `b` (which may be the same part), refined from several initial planes.
 struct Mirror {
-    Vector3d point, normal;
-    double rms = 0;  ///< rms distance from the reflected samples of each part to the other
+    Vector3d point, normal;  ///< point and normal of the mirror plane
+    double rms = 0;          ///< root mean square distance of the reflected samples of each part from the other part
 };
 Mirror find_mirror(Part& a, Part& b);
 

@@ -1,4 +1,4 @@
-// Collapses allowed by borders and marked parts, and the end that keeps its position.
+// Rules that borders and marked parts impose on collapses, and which vertex of a collapse keeps its position.
 #pragma once
 
 #include "remesh/metric.h"
@@ -8,40 +8,44 @@
 
 namespace ostraka {
 
+/// An allowed collapse.
 struct CollapsePlan {
-    Halfedge halfedge;    ///< its source is removed
-    bool pinned = false;  ///< its target keeps its point
+    Halfedge halfedge;    ///< halfedge whose source vertex is removed
+    bool pinned = false;  ///< true: the target vertex keeps its position
 };
 
-/// The marked edges form curves on the surface. While outlines are kept, a collapse must not merge two curves, close a curve
-/// up, or move a vertex off its curve. Ends and branch points of curves and marked vertices keep their position (link condition
-/// for embedded curves; compare Vivodtzev, Bonneau and Le Texier, "Topology preserving simplification of 2D non-manifold meshes
-/// with embedded structures", 2005).
+/// The marked edges form curves on the surface. While outlines are kept, a collapse must not merge two curves, contract a closed
+/// curve, or move a vertex off its curve. Ends and branch points of curves and marked vertices keep their position (link
+/// condition for embedded curves; compare Vivodtzev, Bonneau and Le Texier, "Topology preserving simplification of 2D
+/// non-manifold meshes with embedded structures", 2005).
 class CollapseRules {
 public:
+    /// `protect`: true if all vertices of marked curves keep their positions.
     CollapseRules(const Mesh& mesh, Marks& marks, bool protect);
 
+    /// Whether later collapses must preserve the curves.
     void keep_outlines(bool keep) { keep_ = keep; }
-    [[nodiscard]] bool any_marks() const { return any_; }
-    [[nodiscard]] bool broken() const { return broken_; }
+    [[nodiscard]] bool any_marks() const { return any_; }  ///< whether any edge or vertex is marked
+    [[nodiscard]] bool broken() const { return broken_; }  ///< whether curves were merged
 
-    /// None if the edge must not be collapsed.
+    /// The collapse of edge `e`; none if the edge must not be collapsed.
     [[nodiscard]] std::optional<CollapsePlan> plan(const Mesh& mesh, Edge e) const;
-    /// Merges the marks of the edges and vertices that are about to be merged.
+    /// Merges the marks of the edges and vertices that the collapse is about to merge.
     void before_collapse(const Mesh& mesh, Halfedge h);
+    /// Updates the roles around the remaining vertex after a collapse.
     void after_collapse(const Mesh& mesh, Vertex kept);
 
 private:
-    enum Role : std::uint8_t { free, on_curve, fixed };
+    enum Role : std::uint8_t { free, on_curve, fixed };  ///< relation of a vertex to the marked curves
     [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;
 
     Marks& marks_;
     bool protect_;
     bool keep_ = true;
-    bool any_ = false;
-    bool broken_ = false;
-    bool recompute_ = false;
-    std::vector<Role> role_;
+    bool any_ = false;        ///< whether any edge or vertex is marked
+    bool broken_ = false;     ///< whether curves were merged
+    bool recompute_ = false;  ///< whether the roles must be updated after the collapse
+    std::vector<Role> role_;  ///< role of each vertex
 };
 
 }  // namespace ostraka

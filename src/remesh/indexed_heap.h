@@ -1,4 +1,4 @@
-// A binary heap over the indices 0 .. n-1 with mutable keys; ties are in the order of the indices.
+// A binary min-heap over the indices 0 .. n-1 with mutable keys; ties are in the order of the indices.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -7,15 +7,16 @@
 
 namespace ostraka {
 
-/// 16 bytes per index. `set` and `remove` are O(log n).
+/// Min-heap of indices by key. Takes 16 bytes per index. `set` and `remove` are O(log n).
 class IndexedHeap {
 public:
     explicit IndexedHeap(std::size_t count) : key_(count, 0), place_(count, no_index) { heap_.reserve(count); }
 
     [[nodiscard]] bool empty() const { return heap_.empty(); }
     [[nodiscard]] bool contains(Index i) const { return place_[i] != no_index; }
-    [[nodiscard]] Index top() const { return heap_.front(); }
+    [[nodiscard]] Index top() const { return heap_.front(); }  ///< index with the smallest key
 
+    /// Sets the key of an index, and adds the index if the heap does not contain it.
     void set(Index i, double key) {
         key_[i] = key;
         if (!contains(i)) {
@@ -67,9 +68,9 @@ private:
         put(place, i);
     }
 
-    std::vector<double> key_;
-    std::vector<Index> place_;  ///< position of index i in the heap
-    std::vector<Index> heap_;
+    std::vector<double> key_;   ///< key of each index
+    std::vector<Index> place_;  ///< for each index, its position in `heap_`; no_index: not in the heap
+    std::vector<Index> heap_;   ///< indices in heap order
 };
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Cost of a collapse and position of its vertex.
+// Cost of a collapse and position of the remaining vertex.
 #pragma once
 
 #include "ostraka/remesh/simplify.h"
@@ -8,37 +8,39 @@
 
 namespace ostraka {
 
-/// Coordinates in which the bounding box of the mesh is centred and its diagonal has length one, so that results do not depend
-/// on the unit and position of the object.
+/// Coordinates in which the bounding box of the mesh is centred and its diagonal has length one, so that costs do not depend on
+/// the unit and position of the mesh.
 struct Frame {
-    Vector centre{0, 0, 0};
-    double size = 1;
+    Vector centre{0, 0, 0};  ///< centre of the bounding box
+    double size = 1;         ///< diagonal of the bounding box
     [[nodiscard]] Vector local(const Point& p) const { return (p - CGAL::ORIGIN - centre) / size; }
     [[nodiscard]] Point world(const Vector& x) const { return CGAL::ORIGIN + centre + size * x; }
 };
 Frame make_frame(const Mesh& mesh);
 
-/// Marks during the simplification; indices do not change before the garbage is collected.
+/// Marks of edges and vertices during the simplification; indices do not change before the garbage is collected.
 struct Marks {
-    std::vector<bool> edges;     ///< outlines and poly-lines
-    std::vector<bool> vertices;  ///< annotated points
+    std::vector<bool> edges;     ///< for each edge, whether it belongs to an outline or poly-line
+    std::vector<bool> vertices;  ///< for each vertex, whether it is an annotated point
 };
 
+/// Position of the vertex that remains after a collapse, and cost of the collapse.
 struct CollapsePlace {
-    Vector position{0, 0, 0};  ///< in the frame
+    Vector position{0, 0, 0};  ///< position in the coordinates of the frame
     double cost = 0;
 };
 
+/// Cost of collapses by one method.
 class CollapseMetric {
 public:
     virtual ~CollapseMetric() = default;
-    /// The best position for the vertex that replaces the ends of h, if it exists.
+    /// The position of least cost for the vertex that replaces the ends of `h`, if there is one.
     [[nodiscard]] virtual std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const = 0;
-    /// The cost of a given position.
+    /// The cost of collapsing `h` to a given position.
     [[nodiscard]] virtual double cost(const Mesh& mesh, Halfedge h, const Vector& position) const = 0;
-    /// Call it after `removed` was merged into `kept`.
+    /// Updates the metric; must be called after `removed` was merged into `kept`.
     virtual void merged(Vertex kept, Vertex removed) = 0;
-    /// Whether moving a vertex changes the cost of edges that touch only its neighbours.
+    /// Whether moving a vertex changes the cost of edges whose ends are only neighbours of the vertex.
     [[nodiscard]] virtual bool reaches_second_ring() const = 0;
 };
 

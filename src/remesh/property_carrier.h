@@ -1,4 +1,4 @@
-// Copies the values of an element, in every property map of a plain type, to an element cut from it.
+// Copies the values of an element, in every property map of a plain type, to an element that was cut from it.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -7,8 +7,8 @@
 
 namespace ostraka {
 
-/// For maps with key type Key and values of type Index, int, bool, double, float, std::uint8_t or arrays of four std::uint8_t
-/// (colours), under any name.
+/// Copies values in all property maps with key type Key and values of type Index, int, bool, double, float, std::uint8_t or
+/// arrays of four std::uint8_t (colours), under any name.
 template <class Key>
 class PropertyCarrier {
 public:
@@ -29,7 +29,7 @@ private:
         const auto [map, exists] = mesh.property_map<Key, Value>(name);
         if (exists) steps_.push_back([values = map](Key from, Key to) { values[to] = Value(values[from]); });
     }
-    std::vector<std::function<void(Key, Key)>> steps_;
+    std::vector<std::function<void(Key, Key)>> steps_;  ///< one copy function per property map
 };
 
 }  // namespace ostraka

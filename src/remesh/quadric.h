@@ -8,13 +8,13 @@
 
 namespace ostraka {
 
-/// Q(x) = x^T A x + 2 b^T x + c with symmetric A (Garland and Heckbert 1997, section 5).
+/// A quadratic function of a point: Q(x) = x^T A x + 2 b^T x + c with symmetric A (Garland and Heckbert 1997, section 5).
 struct Quadric {
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  // A
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< entries of A
     Vector b{0, 0, 0};
     double c = 0;
 
-    /// weight * (n . (x - p))^2, n of unit length
+    /// Adds weight * (n . (x - p))^2, the squared distance from the plane through p with unit normal n.
     void add_plane(const Vector& n, const Vector& p, double weight) {
         const double d = -(n * p);
         xx += weight * n.x() * n.x(), xy += weight * n.x() * n.y(), xz += weight * n.x() * n.z();
@@ -22,7 +22,7 @@ struct Quadric {
         b += (weight * d) * n;
         c += weight * d * d;
     }
-    /// weight * |x - p|^2
+    /// Adds weight * |x - p|^2, the squared distance from the point p.
     void add_point(const Vector& p, double weight) {
         xx += weight, yy += weight, zz += weight;
         b -= weight * p;
@@ -39,7 +39,7 @@ struct Quadric {
                         xz * x.x() + yz * x.y() + zz * x.z());
         return x * Ax + 2 * (b * x) + c;
     }
-    /// The minimiser of Q, by Cholesky; none if A is not safely positive definite.
+    /// The point where Q is minimal, by Cholesky; none if A is not safely positive definite.
     [[nodiscard]] std::optional<Vector> minimum() const {
         const double tolerance = 1e-10 * (xx + yy + zz);
         if (!(xx > tolerance)) return {};

@@ -1,4 +1,4 @@
-// Drawing and text, through cairo.
+// Draws shapes and text, through cairo.
 #pragma once
 
 #include "ostraka/render/picture.h"
@@ -11,11 +11,11 @@
 
 namespace ostraka::detail {
 
-/// Text that is safe to draw: removes control characters and bidirectional formatting characters, and replaces bytes that are
+/// The text made safe to draw: removes control characters and bidirectional formatting characters, and replaces bytes that are
 /// not UTF-8 by U+FFFD.
 std::string clean_text(const std::string& text);
 
-/// Write function for cairo that appends to a std::string.
+/// Write function for cairo; `bytes` points to the std::string to which the data are appended.
 cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length);
 
 class Canvas {
@@ -24,9 +24,10 @@ public:
     Canvas(int width, int height, PictureKind kind = PictureKind::pixels);
 
     void fill(const Rgb& colour);
-    /// Draws pixels (0xAARRGGBB, premultiplied) over the canvas: `columns` by `rows` pixels scaled to this width and height.
+    /// Draws an image over the canvas: `columns` by `rows` pixels (0xAARRGGBB, premultiplied), scaled to this width and height.
     void paint(const std::vector<std::uint32_t>& pixels, int columns, int rows, int left, int top, int width, int height);
 
+    /// Restricts drawing to a rectangle until `unclip`.
     void clip(double left, double top, double width, double height);
     void unclip();
 
@@ -40,27 +41,27 @@ public:
     void rectangle(double left, double top, double width, double height, const Rgb& colour);
 
     enum class Align { left, centre, right };
-    /// Draws text with the base line at `y`; `halo`, if given, is the colour of an outline around the letters.
+    /// Draws text with its base line at `y`; `halo`: colour of an outline around the letters, or null.
     void text(const std::string& words, double x, double y, double size, const Rgb& colour, Align align = Align::left,
               const Rgb* halo = nullptr);
-    /// Draws text upwards, centred at (x, y).
+    /// Draws text rotated to read upwards, centred at (x, y).
     void upward_text(const std::string& words, double x, double y, double size, const Rgb& colour);
     double text_width(const std::string& words, double size);
-    /// The text, shortened with an ellipsis to fit into `width`.
+    /// The text, shortened with an ellipsis to be at most `width` wide.
     std::string elide(const std::string& words, double size, double width);
 
     /// The finished picture of a pixel canvas. Throws Error (failure) if cairo reported an error.
     Picture picture();
-    /// The finished file of a document; the same drawing gives the same bytes. Throws the errors of `picture`. Nothing can be
-    /// drawn afterwards.
+    /// The finished file of an SVG or PDF canvas; the same drawing gives the same bytes. Throws the errors of `picture`. Nothing
+    /// can be drawn afterwards.
     std::string document();
 
 private:
-    void check() const;
+    void check() const;  ///< throws Error (failure) if cairo reported an error
     void colour(const Rgb& value);
-    void trace(const std::vector<Place>& places);
+    void trace(const std::vector<Place>& places);  ///< makes a poly-line the current path
     PictureKind kind_;
-    std::unique_ptr<std::string> bytes_;  ///< for documents: output buffer of cairo
+    std::unique_ptr<std::string> bytes_;  ///< output buffer of cairo for SVG and PDF
     std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
     std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };

@@ -7,12 +7,13 @@
 
 namespace ostraka::detail {
 
-/// Width of the label columns on both sides of a pane of this width.
+/// Width of each of the two label columns beside a pane of this width.
 double label_column(Canvas& canvas, const Scene& scene, double pane_width, const Style& style);
 
-/// Places the labels of visible parts in two columns of this width beside the pane. Each label goes to the side nearer to its
+/// Places the labels of visible parts in two columns of width `column` beside the pane. Each label goes to the side nearer to its
 /// part while there is room, in the vertical order of the parts; labels are moved apart if they overlap and exchanged if their
-/// lines cross. A region is labelled at its point farthest from its visible border. O(pixels / 16 + labels^2).
+/// leader lines cross. The leader line of a region ends at the region's point farthest from its visible border. O(pixels / 16 +
+/// labels^2).
 std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera,
                                     const PixelBox& pane, double column, const Style& style);
 

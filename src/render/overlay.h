@@ -11,9 +11,9 @@
 
 namespace ostraka::detail {
 
-/// Colours and sizes of the overlay.
+/// Colours of the overlay, and scale of its lines and letters.
 struct Style {
-    double size = 1;  ///< pixels per nominal pixel
+    double size = 1;  ///< pixels per nominal pixel; nominal pixels are those of a picture 900 pixels high
     Rgb ink{45, 45, 48};
     Rgb background{255, 255, 255};
 };
@@ -22,33 +22,34 @@ struct Style {
 struct Line {
     std::vector<Eigen::Vector3d> points;
     Rgb colour;
-    double width = 1;  ///< nominal pixels
-    bool cased = false, through = false;
-    /// For each point, the start of the ray to the viewer; empty: slightly above the point.
+    double width = 1;                     ///< width in nominal pixels
+    bool cased = false, through = false;  ///< drawn with a dark outline; hidden intervals are drawn dashed
+    /// For each point, the start of the ray to the viewer that decides visibility; empty: slightly above the point.
     std::vector<Eigen::Vector3d> sight = {};
 };
-/// Throws Error (input) for a coordinate that is not finite.
+/// The lines of a scene. Throws Error (input) for a coordinate that is not finite.
 std::vector<Line> lines_of(const Scene& scene, const Surface& surface);
 
-/// Whether the ray from the point, or from slightly above it, to the viewer is free.
+/// Whether the ray to the viewer from the point, or from slightly above the point, is unobstructed.
 bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point);
 
+/// How lines are drawn.
 struct LineDrawing {
     double size = 1;      ///< pixels per nominal pixel
-    double shortest = 0;  ///< minimum length of visible intervals, in pixels
-    double bridged = 0;   ///< hidden intervals between visible ones that are shorter than this, in pixels, are drawn
-    double thinning = 0;  ///< simplification tolerance, in pixels
+    double shortest = 0;  ///< min length of a visible interval that is drawn, in pixels
+    double bridged = 0;   ///< max length of a hidden interval between two visible intervals that is drawn nevertheless, in pixels
+    double thinning = 0;  ///< max deviation of the simplified line, in pixels
 };
-/// Draws the visible intervals of the lines, and, for lines with `through`, the hidden intervals dashed.
+/// Draws the visible intervals of the lines, and for lines with `through` the hidden intervals dashed.
 void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& surface, const Camera& camera,
                 const LineDrawing& drawing);
 /// Draws the visible markers and returns their number.
 std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const Style& style);
 
-/// Draws the directions of the mesh's axes in the lower right corner of this pane.
+/// Draws the directions of the mesh's axes in the lower right corner of the pane.
 void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const Style& style);
 
-/// Draws a bar of `pixels` on the line `y`, with its length above.
+/// Draws a scale bar of `pixels` pixels at the height `y`, with its length as text above.
 void draw_scale_bar(Canvas& canvas, double x, double y, double pixels, const std::string& text, const Style& style);
 
 /// The column beside the picture: legend above, colour bar below.
@@ -65,9 +66,9 @@ private:
 
     Canvas& canvas_;
     std::vector<LegendEntry> legend_;
-    std::size_t omitted_ = 0;  ///< number of entries without room
+    std::size_t omitted_ = 0;  ///< number of legend entries for which there is no room
     std::optional<ColourScale> scale_;
-    std::vector<double> ticks_;
+    std::vector<double> ticks_;  ///< values of the ticks of the colour bar
     std::vector<std::string> tick_texts_;
     Style style_;
     double width_ = 0, height_ = 0, font_ = 0, legend_height_ = 0, tick_width_ = 0;

@@ -12,44 +12,45 @@
 
 namespace ostraka::detail {
 
-/// Outline of the wall at positive radii, with the wall on its left: from axis to axis, or closed.
+/// Outline of the wall in the half-plane of positive radii, with the wall on its left: from axis to axis, or closed.
 struct Outline {
-    std::vector<Eigen::Vector2d> points;  ///< radius, height
-    bool closed = false;                  ///< the wall does not reach the axis
+    std::vector<Eigen::Vector2d> points;  ///< points (radius, height)
+    bool closed = false;                  ///< true: the wall does not reach the axis
 };
 
-/// Image with square cells: rows are heights, columns are radii.
+/// Image of the wall with square cells: rows are heights, columns are radii.
 struct ProfileImage {
-    double step = 0;
+    double step = 0;  ///< side of a cell
     std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;   ///< share of the informative rays that are inside the wall
-    std::vector<double> informative;  ///< number of informative rays: those that determine whether there is wall
-    std::vector<double> present;      ///< per row, number of rays that hit anything
+    std::vector<double> wall_share;  ///< for each cell, the share of its informative rays that are inside the wall
+    /// For each cell, the number of informative rays: rays that determine whether there is wall.
+    std::vector<double> informative;
+    std::vector<double> present;  ///< for each row, the number of rays that hit a wall
 
-    /// Adds to the cells of a row between two radii; `cells` is one of the two arrays above.
+    /// Adds to each cell of a row the share of the cell between two radii; `cells` is `wall_share` or `informative`.
     void add(std::vector<double>& cells, std::size_t row, double from, double to) const;
-    void clear(std::size_t row);
-    /// Whether the wall reaches the axis in a row from `first` to before `end`.
+    void clear(std::size_t row);  ///< removes the wall from a row
+    /// Whether the wall reaches the axis in one of the rows from `first` to before `end`.
     [[nodiscard]] bool reaches_axis(std::size_t first, std::size_t end) const;
-    /// Fills rows without wall between others by linear interpolation.
+    /// Fills rows without wall between rows with wall by linear interpolation; `notes` gets a remark for each gap.
     void bridge(std::vector<std::string>* notes);
-    /// Gaussian smoothing with a standard deviation in cells, mirrored at the axis.
+    /// Gaussian smoothing with this standard deviation in cells, mirrored at the axis.
     void smooth(double deviation);
-    /// The level line of one half of the largest component (marching squares).
+    /// The level line where half of the rays are inside the wall, for the largest component (marching squares).
     [[nodiscard]] Outline outline() const;
 
 private:
-    [[nodiscard]] double at(long row, long column) const;
+    [[nodiscard]] double at(long row, long column) const;  ///< wall share of a cell, mirrored at the axis; 0 outside the image
 };
 
-/// `count` points at equal distances along the curve (including both ends of an open curve).
+/// `count` points at equal distances along the curve `line` (including both ends of an open curve).
 std::vector<Eigen::Vector2d> resampled(const std::vector<Eigen::Vector2d>& line, bool closed, int count);
 
 }  // namespace ostraka::detail
 
 namespace ostraka {
 
-/// Frame of the axis: height along it, directions across it.
+/// Coordinate system of an axis: height along the axis, directions across it.
 struct AxisFrame {
     Eigen::Vector3d foot = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::UnitZ(), u = Eigen::Vector3d::UnitX(),
                     w = Eigen::Vector3d::UnitY();
@@ -60,66 +61,71 @@ struct AxisFrame {
 
 AxisFrame frame_of(const Axis& axis);
 
-/// A sherd with its state in the template construction.
+/// A sherd with its role in the construction of the template.
 struct PlacedSherd {
-    const Fragment* fragment = nullptr;
-    bool inside_out = false;   ///< its faces are oriented inwards
-    bool walls = true;         ///< it is closed, so that the inside of its wall is known
-    bool axis = true;          ///< its axis is used
-    bool contradicts = false;  ///< it was left out because its axis contradicts the others
-    Motion motion;             ///< to where its axis and height agree with the common ones
+    const Fragment* fragment = nullptr;  ///< fragment of the sherd, with its mesh and facets
+    bool inside_out = false;             ///< true: the faces are oriented inwards
+    bool walls = true;                   ///< true: the mesh is closed, so that the inside of the wall is known
+    bool axis = true;                    ///< true: the axis of the sherd is used
+    bool contradicts = false;            ///< true: the sherd was left out because its axis contradicts the others
+    Motion motion;                       ///< maps the sherd to where its axis and height agree with the common ones
 };
 
+/// One mesh of the moved sherds.
 struct JoinedSherds {
     Mesh mesh;
-    std::vector<std::vector<Index>> of_fragment;  ///< per sherd, its faces that are not fracture
+    std::vector<std::vector<Index>> of_fragment;  ///< for each sherd, its faces in `mesh` that are not fracture
     [[nodiscard]] std::vector<Index> faces() const;
-    [[nodiscard]] std::vector<bool> broken() const;  ///< per face of the mesh
+    [[nodiscard]] std::vector<bool> broken() const;  ///< for each face of `mesh`, whether it belongs to a fracture
 };
 
-/// The moved sherds for which `selected` is true; the others contribute no faces.
+/// Joins the moved sherds for which `selected` is true into one mesh; the other sherds contribute no faces.
 JoinedSherds joined(const std::vector<PlacedSherd>& sherds, const std::vector<bool>& selected);
 
-/// Estimates the axis of all sherds that are not left out, and the motion that aligns each sherd's own axis with it: fills in
-/// axis, errors and sherds of the template, and the motions. Leaves out sherds without information and those that contradict
-/// the others. Throws Error (input) if no sherd is left.
+/// Estimates the common axis of all sherds that are not left out, and the motion that aligns each sherd's own axis with the
+/// common axis: fills in axis, errors and sherds of `result`, and the motions of `sherds`. Leaves out sherds without information
+/// and sherds that contradict the others. Throws Error (input) if no sherd is left.
 void find_common_axis(std::vector<PlacedSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
 
+/// Marks a sherd as left out, with the reason and the remedy.
 void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::string& remedy = {});
-/// Error (input) that names each sherd and why it is left out.
+/// Throws Error (input) that names each sherd and why it is left out.
 [[noreturn]] void fail_all_left_out(const RevolutionTemplate& result);
 
+/// The wall in all directions around the axis.
 struct WallSection {
     detail::ProfileImage image;
-    std::vector<double> tops;  ///< per direction, height of the highest wall above the lowest row; none: -1
+    std::vector<double> tops;  ///< for each direction, height of the highest wall above the lowest row; -1: no wall
 
-    /// Clears heights with too little wall.
+    /// Removes the wall from heights with too little wall.
     void drop_rare(const RevolutionOptions& options);
-    /// Whether there is a rim: all wall near the top ends at one height.
+    /// Whether there is a rim: all wall near the top ends at one height, within a tolerance.
     [[nodiscard]] bool has_rim(const RevolutionOptions& options) const;
 };
 
-/// The share of rays from the axis that are inside the wall, by height and radius. A ray that enters or leaves the solid
-/// through a fracture (`broken` of its face, or a normal far from the plane through the axis) gives no information on the wall
-/// beyond.
+/// For each height and radius, the share of rays from the axis that are inside the wall. A ray that enters or leaves the solid
+/// through a fracture (`broken` is true for the face, or the normal is far from the plane through the axis) gives no information
+/// on the wall beyond. `low`, `high`: range of heights.
 WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
                          double high, double max_radius, const RevolutionOptions& options);
 
-/// Rings of vertices around the axis, with a vertex count proportional to their circumference, connected by triangles.
+/// Rings of vertices around the axis, connected by triangles; the number of vertices of a ring is proportional to its
+/// circumference.
 class ProfileSweep {
 public:
-    /// Heights are above `lowest`; the mean edge length is about `edge`.
+    /// `lowest`: height of the profile's lowest point in `frame`; `edge`: approximate mean edge length.
     ProfileSweep(const AxisFrame& frame, double lowest, double edge) : frame_(frame), lowest_(lowest), edge_(edge) {}
 
-    /// Adds a ring at this radius and height; a single vertex for radius 0.
+    /// Adds a ring at this radius and height above `lowest`; a single vertex if the radius is 0.
     void ring(const Eigen::Vector2d& point);
-    /// Connects two rings by triangles.
+    /// Connects the rings with indices `a` and `b` by triangles.
     void sew(std::size_t a, std::size_t b);
     [[nodiscard]] TriangleSoup soup() const;
 
+    /// Vertices of a ring.
     struct Ring {
         std::vector<Vertex> vertices;
-        bool pole = false;
+        bool pole = false;  ///< true: the ring is a single vertex on the axis
     };
     std::vector<Ring> rings;
 
@@ -127,18 +133,18 @@ private:
     void add(Vertex a, Vertex b, Vertex c) { triangles_.push_back({Index(a), Index(b), Index(c)}); }
     const AxisFrame& frame_;
     double lowest_, edge_;
-    Mesh mesh_;  ///< vertices only
+    Mesh mesh_;  ///< the vertices, without faces
     std::vector<std::array<Index, 3>> triangles_;
 };
 
-/// The rings of vertices of the template, one per point of its profile.
+/// The rings of vertices of the template, one ring per point of its profile.
 struct ProfileRings {
-    std::vector<std::vector<Vertex>> vertices;
-    std::vector<std::size_t> of_vertex;
+    std::vector<std::vector<Vertex>> vertices;  ///< vertices of each ring
+    std::vector<std::size_t> of_vertex;         ///< for each vertex, index of its ring
 };
 
-/// Regions "outer", "inner", "base", lines "rim" or "upper end", "widest girth", "foot", points "base centre", "floor centre",
-/// and the axis, whose foot is `lowest` above that of the frame.
+/// Annotates the template: regions "outer", "inner", "base", lines "rim" or "upper end", "widest girth", "foot", points "base
+/// centre", "floor centre", and the axis. `lowest`: height of the template's foot in `frame`.
 void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& profile_rings);
 
 }  // namespace ostraka

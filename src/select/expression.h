@@ -1,4 +1,4 @@
-// Selection expressions of recipes: one JSON object each, nested by set operations.
+// Selection expressions of recipes: each expression is a JSON object, and set operations contain further expressions.
 #pragma once
 
 #include "select/camera_reader.h"
@@ -18,77 +18,82 @@
 
 namespace ostraka {
 
-/// Coordinate frame of a recipe's coordinates: the mesh's own, or relative to its bounding box (0 to 1 along each axis; lengths
-/// in diagonals).
+/// Coordinate system of a recipe's coordinates.
 struct PlaceFrame {
+    /// True: coordinates relative to the mesh's bounding box (0 to 1 along each axis), lengths in diagonals; false: the mesh's
+    /// own.
     bool box = false;
 };
 
-/// Settings of a recipe for all its expressions.
+/// Settings of a recipe that all its expressions share.
 struct Surroundings {
-    const JsonValue* cameras = nullptr;  ///< named cameras
-    PlaceFrame frame;                    ///< frame of the cameras
-    std::array<double, 3> up{0, 0, 1};   ///< upward direction of cameras that give none
-    Path folder;                         ///< folder that file names in expressions are relative to
+    const JsonValue* cameras = nullptr;  ///< named cameras (JSON object); null: none
+    PlaceFrame frame;                    ///< coordinate system of the cameras
+    std::array<double, 3> up{0, 0, 1};   ///< upward direction for cameras that state none
+    Path folder;                         ///< folder to which file names in expressions are relative
 };
 
-/// Borders of a selection where they run through faces.
+/// Borders of a selection where they cross faces.
 struct SelectionBorders {
-    std::vector<SurfaceCurve> curves;                        ///< pieces in one face each, and legs of lassos
-    std::map<std::string, std::vector<std::size_t>> lassos;  ///< curves of each lasso, by its JSON pointer in the recipe
+    std::vector<SurfaceCurve> curves;  ///< curves across one face each, and legs of lassos
+    /// From the JSON pointer of each lasso in the recipe to the indices of its curves.
+    std::map<std::string, std::vector<std::size_t>> lassos;
 };
 
-/// A selection on the mesh cut along the selection's borders.
+/// A selection on the mesh that was cut along the selection's borders.
 struct CutSelection {
     CutMesh cut;
-    std::vector<bool> faces;  ///< selected faces of the cut mesh
+    std::vector<bool> faces;  ///< for each face of the cut mesh, whether it is selected
 };
 
-/// A scalar per vertex, and the level at which a selection has its border.
+/// A scalar field, and the level at which a selection has its border.
 struct SelectionLevel {
-    std::vector<double> values;
+    std::vector<double> values;  ///< value of each vertex
     double level = 0;
-    bool above = true;  ///< true: values inside are at least the level; false: at most
+    bool above = true;  ///< true: the selection is where values are at least the level; false: at most
 };
 
-/// Evaluates expressions on one object, whose annotations are those made so far. All errors name the file and the JSON pointer.
+/// Evaluates selection expressions on one object, whose annotations are those of earlier steps. Errors name the file and the JSON
+/// pointer.
 class ExpressionEvaluator {
 public:
     ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels, std::string where);
-    /// Sets the cameras and frames; `surroundings.cameras` must outlive the evaluator.
+    /// Sets the cameras and coordinate systems; `surroundings.cameras` must outlive the evaluator.
     void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
 
+    /// Selected faces, vertices or lines of an expression; `at`: JSON pointer of the expression.
     std::vector<bool> faces(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<Index> vertices(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<std::vector<Index>> polylines(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
-    /// The lines of an expression as geodesics.
+    /// The lines of an expression as geodesics on the surface.
     std::vector<std::vector<SurfacePoint>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
-    /// True if part of the selection's border is a level of a field, which runs through the faces: for volumes, shapes drawn in
-    /// pictures, thresholds on vertices, brushes, lassos along geodesics, growth by a distance, and regions with a free
-    /// outline. All other selections are sets of faces.
+    /// True if part of the selection's border is a level of a field, which crosses the faces: for volumes, shapes drawn in
+    /// pictures, thresholds on vertices, brushes, lassos along geodesics, growth by a distance, and regions with a free outline.
+    /// All other selections are sets of faces.
     bool ends_at_levels(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
-    /// Selects where borders of sets of faces run from now on: along the edges of the mesh, or (default) at isolines.
+    /// From now on selects where borders of sets of faces run: along the edges of the mesh, or (default) at isolines of the
+    /// selected share around each vertex.
     void keep_face_sets(bool along_edges) { face_sets_along_edges_ = along_edges; }
 
-    /// The faces of an expression on the mesh cut along the borders of the expression.
+    /// The selection of an expression on the mesh cut along the borders of the selection.
     CutSelection cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
-    /// Adds the curves along which the selection's borders cross faces: for volumes, pictures, thresholds, brushes and
-    /// `level_of` straight pieces between exact points on edges, for lassos geodesics. Other selections have borders along
-    /// edges and add nothing.
+    /// Adds the curves along which the selection's borders cross faces: for volumes, pictures, thresholds, brushes and `level_of`
+    /// straight pieces between exact points on edges, for lassos geodesics. Other selections have borders along edges, for which
+    /// no curve is added.
     void add_borders(const JsonValue& expression, PlaceFrame frame, const std::string& at, SelectionBorders& borders) const;
-    /// From now on evaluates on the mesh of `whole` cut along these borders: each face lies on one side of them. All three
-    /// arguments must outlive this object.
+    /// From now on evaluates expressions on the mesh of `whole` cut along these borders, so that each face lies on one side of
+    /// every border. All three arguments must outlive this object.
     void stand_on(const ExpressionEvaluator& whole, const CutMesh& cut, const SelectionBorders& borders) {
         whole_ = &whole, cut_ = &cut, borders_ = &borders;
     }
 
-    /// A vertex given by its index or as the nearest to a point.
+    /// Index of a vertex that is given by its index or as the vertex nearest to a point.
     Index vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
-    /// The frame that an object specifies, or else the surrounding one.
+    /// The coordinate system that a JSON object states, or else `around`.
     static PlaceFrame frame_of(const JsonValue& object, PlaceFrame around);
 
 private:
@@ -97,68 +102,75 @@ private:
     std::vector<Index> picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
     std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                              const std::string& at) const;
-    /// The camera of an expression or pick, by name or given inline.
+    /// The camera of an expression or pick, given by name or inline.
     [[nodiscard]] ScreenCamera camera(const JsonValue& owner, PlaceFrame frame, const std::string& at) const;
-    /// The surface point at a pick given by a pixel.
+    /// The surface point seen at the pixel of a pick.
     SurfaceHit seen(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
     ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
                            const std::string& at) const;
-    /// Built at the first use.
+    /// Search tree of the mesh, built at the first use.
     const SurfaceSearch& search(const std::string& at) const;
-    /// Selections computed from scalars and distances: brush, threshold, segments, grow and shrink.
+    /// Faces selected by scalars and distances: brush, threshold, segments, grow and shrink.
     [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                    const std::string& at) const;
+    /// Vertices selected by scalars and distances: brush, threshold, grow and shrink.
     [[nodiscard]] std::vector<Index> reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                        const std::string& at) const;
-    /// A length of the recipe in the mesh's unit.
+    /// Converts a length of the recipe to the mesh's unit.
     [[nodiscard]] double length(double value, PlaceFrame frame) const;
-    /// The picked vertices that have faces.
+    /// Indices of the picked vertices; each must have a face.
     std::vector<Index> surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
+    /// Vertices on which the brush is placed.
     std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// Whether the threshold applies to values of faces.
     bool on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const;
-    /// The field and level at which a selection has its border. If something is grown or shrunk by a distance: the exact
+    /// The field and level at which a selection has its border. If a selection is grown or shrunk by a distance: the exact
     /// geodesic distance from its border, negative inside. For selections face by face (segments, labels, thresholds on faces,
-    /// growth by rings), unless they keep to the edges: the selected share of the area around each vertex, with level one half,
-    /// if any vertex reaches it. Null otherwise and for other kinds. Cached by the position in the recipe.
+    /// growth by rings), unless borders run along edges: the selected share of the area around each vertex, with level one half,
+    /// if any vertex reaches one half. Null for all other selections. Cached by the JSON pointer.
     const SelectionLevel* level_of(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+    /// For each face of the cut mesh, the flag of the original face that contains it.
     std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
-    /// True if this lasso runs along the edges of the mesh, that is, has a metric.
+    /// True if this lasso runs along the edges of the mesh, that is, if it states a metric.
     bool keeps_to_edges(const JsonValue& lasso) const;
     std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
-    const ScalarMap& thickness_map() const;
+    const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use
     ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
     std::vector<bool> segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// Whether a growth is given by a distance instead of a number of rings.
     bool by_distance(const JsonValue& value, const std::string& at) const;
-    /// Calls `work` and adds the position in the recipe to its error messages about the mesh.
+    /// Calls `work`; adds the JSON pointer `at` to error messages about the mesh.
     void in_place(const std::string& at, const std::function<void()>& work) const;
+    /// The annotation of an earlier step with this id and type; throws Error (input) if there is none.
     const Annotation& earlier(const JsonValue& id, AnnotationType type, const std::string& at) const;
-    /// The kind of an expression and its value; fails for an expression with two kinds.
+    /// The kind of an expression and its value; throws Error (input) for an expression with two kinds.
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
     [[noreturn]] void fail(const std::string& at, const std::string& what, const std::string& remedy) const;
 
     bool face_sets_along_edges_ = false;
-    const ExpressionEvaluator* whole_ = nullptr;  ///< evaluator of the uncut mesh, if this one is on a cut mesh
-    const CutMesh* cut_ = nullptr;
-    const SelectionBorders* borders_ = nullptr;
-    mutable ScalarMap uncut_;  ///< last values requested, on the uncut mesh
+    /// Evaluator of the uncut mesh, if this evaluator works on a cut mesh; else null.
+    const ExpressionEvaluator* whole_ = nullptr;
+    const CutMesh* cut_ = nullptr;               ///< the cut mesh; null: not cut
+    const SelectionBorders* borders_ = nullptr;  ///< borders along which the mesh was cut
+    mutable ScalarMap uncut_;                    ///< last scalar values requested on the uncut mesh
     const Mesh& mesh_;
-    const std::vector<std::int32_t>& face_labels_;
+    const std::vector<std::int32_t>& face_labels_;  ///< label of each face
     const AnnotationSet& set_;
     std::string where_;
     CGAL::Bbox_3 bounds_;
     Surroundings surroundings_;
     mutable std::optional<SurfaceSearch> search_;
-    mutable std::map<std::string, ScreenCamera> cameras_;         ///< named cameras
-    mutable std::map<std::string, ScalarMap> maps_;               ///< computed maps
-    mutable std::map<std::string, std::vector<Index>> segments_;  ///< computed segments
-    mutable std::map<std::string, std::optional<SelectionLevel>> levels_;
+    mutable std::map<std::string, ScreenCamera> cameras_;                  ///< from a name to the camera
+    mutable std::map<std::string, ScalarMap> maps_;                        ///< from a JSON pointer to the computed scalar map
+    mutable std::map<std::string, std::vector<Index>> segments_;           ///< from a JSON pointer to the segment of each face
+    mutable std::map<std::string, std::optional<SelectionLevel>> levels_;  ///< from a JSON pointer to the result of `level_of`
 };
 
-/// The kind of an expression (its member that is not "frame") and its value.
+/// The kind of an expression (the name of its member that is not "frame") and the value of this member.
 std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression);
 
-/// The metric of a path or lasso.
+/// The metric that a path or lasso states.
 PathMetric metric_of(const JsonValue& value);
 
 }  // namespace ostraka

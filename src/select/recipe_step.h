@@ -9,35 +9,37 @@
 
 namespace ostraka {
 
-/// Where the outline of a selected region runs.
+/// Course of the outline of a selected region.
 enum class StepOutline {
-    drawn,  ///< free if part of the border is a level of a field; sets of faces end along the edges of the mesh
-    edges,
-    free,  ///< always free: sets of faces end at isolines
+    drawn,  ///< a free outline if part of the border is a level of a field; sets of faces end along the edges of the mesh
+    edges,  ///< along the edges of the mesh
+    free,   ///< always a free outline: sets of faces end at isolines
 };
 
 enum class StepAction { make, add_to, remove_from, replace, erase, retag };
-/// As in recipes: "make", "add to", "remove from", "replace", "delete", "retag".
+/// Name of an action in recipes: "make", "add to", "remove from", "replace", "delete", "retag".
 std::string to_string(StepAction action);
 
-/// What a step of a recipe makes of one annotation. The recipe must outlive it.
+/// What a step of a recipe does with one annotation. The recipe must outlive the step.
 struct RecipeStep {
     std::string at;  ///< JSON pointer of the step
-    int id = 0;
+    int id = 0;      ///< id of the annotation
     StepAction action = StepAction::make;
-    PlaceFrame frame;
+    PlaceFrame frame;  ///< coordinate system of the step
     StepOutline outline = StepOutline::drawn;
-    std::optional<std::string> tag;
+    std::optional<std::string> tag;  ///< tag, type and colour that the step states; empty: not stated
     std::optional<AnnotationType> type;
     std::optional<std::array<int, 3>> colour;
-    const JsonValue* select = nullptr;      ///< the selection expression
-    const JsonValue* attributes = nullptr;  ///< as in annotation files, but see doc/recipes.md
+    const JsonValue* select = nullptr;  ///< selection expression; null: the step selects nothing
+    /// Attributes in the form of annotation files, with the additions in doc/recipes.md; null: none.
+    const JsonValue* attributes = nullptr;
 
+    /// Whether the action has a selection expression.
     [[nodiscard]] bool selects() const { return action != StepAction::erase && action != StepAction::retag; }
 };
 
-/// Reads a step of a valid recipe (recipe.schema.json). `around`: the recipe's frame. Throws Error (input), with the file `where`
-/// and the JSON pointer, for members that the action lacks or does not use.
+/// Reads a step of a valid recipe (recipe.schema.json). `around`: the recipe's coordinate system. Throws Error (input), with the
+/// file `where` and the JSON pointer `at`, for members that the action lacks or does not use.
 RecipeStep recipe_step_from_json(const JsonValue& step, PlaceFrame around, const std::string& where, const std::string& at);
 
 }  // namespace ostraka

@@ -38,7 +38,8 @@ std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::st
 void check_annotations(AnnotatedMeshView object, const std::string& where);
 
 /// Reads the `information` of an annotation file. Throws Error (input) if anything other than a local file has a checksum.
-std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where, const std::string& pointer);
+std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where,
+                                               const std::string& pointer);
 
 /// Checks the local files that annotations and their attributes refer to, relative to `folder`. Defects: a file is missing,
 /// lies outside the folder or does not match its checksum. Remarks: the checksum is unknown. The array (.npy) of an attribute

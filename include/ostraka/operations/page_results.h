@@ -1,4 +1,4 @@
-// Converts results of other operations for a page: slices, constraints, tables of reports, maps of PLY files.
+// Converts results of other operations into the contents of a page: slices, constraints, tables of reports, maps of PLY files.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -13,64 +13,69 @@
 
 namespace ostraka {
 
-/// Reads the document of a slices file (slices.schema.json). Throws Error (input).
+/// Reads the document of a slices file (slices.schema.json); `where` names the file in errors. Throws Error (input).
 PageSlices page_slices(const JsonValue& document, const std::string& where);
 
-/// Verdicts on an object from the report of 'relation check': violated rules first, then relationships in the order of the
-/// graph.
+/// Verdicts on an object from `result`, the report of 'relation check': violated rules first, then relationships in the order
+/// of the graph. `set`: annotations of the object.
 std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set);
 
-/// Constraints and conflicts from the report of a deformation; their parts are named by the tags in the object's annotations.
+/// Constraints from `result`, the report of a deformation; `set` maps the tags that the report uses to annotations.
 std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set);
+/// Messages on conflicting constraints from the report of a deformation.
 std::vector<std::string> page_conflicts(const JsonValue& result);
 
-/// Tables from a report's result, or from a file of the same form: one per list of records, and one for the single values.
-/// Lists of numbers and deeper structures are omitted. `title`: prefix of the titles; `omitted`: members to omit.
+/// Tables from a report's result, or from a file of the same form: one table for each list of records, and one for all single
+/// values. Lists of numbers and deeper structures are omitted. `title`: prefix of the tables' titles; `omitted`: members of
+/// `result` to omit.
 std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title,
                                      const std::set<std::string>& omitted = {});
 
-/// Whether the name is that of a mesh file.
+/// Whether the extension of this file name is that of a mesh file.
 bool is_mesh_name(const std::string& name);
 
-/// Links rows of tables to objects and annotations of the page.
+/// Links rows of tables to objects and annotations of the page, by names and tags in the cells.
 class PageNames {
 public:
-    /// Adds the next object of the page, with its annotations if rows may refer to them.
+    /// Adds the next object of the page. `set`: annotations of the object to which rows may be linked; null: none.
     void add(const std::string& object, const AnnotationSet* set);
-    /// Links each row to the object whose name or file name is the first found among the row's texts; if there is none, to the
-    /// object whose annotation a text names, provided that its tag is unique.
+    /// Links each row to the object whose name or file name is the first found among the row's texts. A row without such a text
+    /// is linked to the object with the annotation whose tag is among the texts, provided that no other object has this tag.
     void link(PageTable& table) const;
 
 private:
-    [[nodiscard]] int object(const std::string& text) const;
+    [[nodiscard]] int object(const std::string& text) const;  ///< index of the object with this name or file name; -1: none
 
-    int count_ = 0;
-    std::unordered_map<std::string, int> objects_;
+    int count_ = 0;                                 ///< number of objects added
+    std::unordered_map<std::string, int> objects_;  ///< from the name of an object to its index in the page
+    /// From a tag to the indices of its object and annotation.
     std::unordered_map<std::string, std::pair<int, int>> annotations_;
 };
 
-/// A text or a number as a cell of a table.
+/// Table cell that holds a text or a number.
 Json cell_of(const auto& value) {
     Json cell;
     static_cast<JsonValue&>(cell) = json_value(value, cell.GetAllocator());
     return cell;
 }
 
-/// Reads a CSV file whose first row holds the column titles. Throws Error (input).
+/// Reads a CSV file whose first row holds the column titles; `name` is used for the table's title and in errors. Throws Error
+/// (input).
 PageTable csv_table(const Path& file, const std::string& name);
 
-/// Maps of the vertices from the additional numeric properties of a PLY file; for a completed object also the map of observed,
-/// interpolated and hypothetical surface.
+/// Maps of an object from the additional numeric vertex properties of its PLY file; for a completed object also the map of
+/// observed, interpolated and hypothetical surface.
 std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh);
-/// The map on a simplified mesh; `new_index`: of each vertex, `no_index` if removed.
+/// Transfers a map to a simplified mesh. `new_index`: for each vertex of the original mesh, its index in the simplified mesh
+/// (`no_index` if removed); `vertices`: number of vertices of the simplified mesh.
 PageMap simplified_map(const PageMap& map, const std::vector<Index>& new_index, std::size_t vertices);
-/// Whether the face labels state the origin of the surface of a completed object, instead of parts.
+/// Whether one of the maps states the origin of the surface of a completed object (observed, interpolated or hypothetical).
 bool is_completed(const std::vector<PageMap>& maps);
 
-/// One number per vertex from one per face: the mean of the finite values of its faces, NaN if there are none.
+/// Vertex values from face values: for each vertex, the mean of the finite values of its adjacent faces; NaN if there are none.
 std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& face_values);
 
-/// Whether no vertex belongs to faces of two of these regions, so that the regions can be moved apart.
+/// Whether no vertex belongs to faces of two of these regions; such regions can be moved apart in the viewer.
 bool are_apart(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -10,94 +10,103 @@
 
 namespace ostraka {
 
-/// A number for each vertex of an object; none if it is not finite.
+/// A scalar map: one number for each vertex of an object; a number that is not finite means no value.
 struct PageMap {
     std::string name;
-    std::string label;  ///< name of the quantity, with its unit
-    std::vector<double> values;
+    std::string label;           ///< name of the quantity, with its unit
+    std::vector<double> values;  ///< value of each vertex
     struct Category {
         std::string text;
         std::array<int, 3> colour{};  ///< red, green, blue, 0 to 255
     };
-    std::vector<Category> categories = {};  ///< if not empty, the values are indices into this list
+    std::vector<Category> categories = {};  ///< if not empty, the values of the map are indices into this list
 };
 
 /// Slices of an object, by ascending height.
 struct PageSlices {
+    /// A descriptor of the slices: a column of the table beside the drawing.
     struct Column {
         std::string name, title, unit;
     };
+    /// A closed or open contour of a slice.
     struct Contour {
-        bool closed = true, hole = false;
-        std::vector<std::array<double, 2>> points;  ///< coordinates along u and v
+        bool closed = true, hole = false;           ///< hole: the contour bounds a hole of the cross-section
+        std::vector<std::array<double, 2>> points;  ///< coordinates along the axes `u` and `v` of the slice
     };
+    /// One slice: its plane and contours.
     struct Level {
-        double height = 0;
-        std::array<double, 3> origin{}, u{}, v{};
-        std::vector<std::optional<double>> values;  ///< one per column
+        double height = 0;                          ///< height of the slicing plane
+        std::array<double, 3> origin{}, u{}, v{};   ///< point of the slicing plane, and unit vectors of its axes
+        std::vector<std::optional<double>> values;  ///< descriptor values, one per column; empty: no value
         std::vector<Contour> contours;
     };
-    std::string unit;
+    std::string unit;  ///< unit of lengths
     std::vector<Column> columns;
     std::vector<Level> levels;
-    std::optional<std::array<double, 2>> tube;  ///< height range in which the object is tubular
+    /// Lowest and highest height between which the object is tubular; empty: not tubular.
+    std::optional<std::array<double, 2>> tube;
 };
 
-/// State of a constraint after a deformation.
+/// State of a constraint before and after a deformation.
 struct PageConstraint {
     struct Deviation {
         std::string quantity;
+        /// Value before and after the deformation, and max value that satisfies the constraint; empty: unknown.
         std::optional<double> before, value, tolerance;
         std::string unit;
     };
-    std::string type;
-    std::vector<std::size_t> members;  ///< indices into the annotation set
+    std::string type;                  ///< type of the constraint
+    std::vector<std::size_t> members;  ///< indices of the constrained annotations in the annotation set
     double weight = 1;
-    bool hard = false;
-    std::string before, verdict;  ///< descriptions
-    std::optional<bool> holds;    ///< none: undetermined
+    bool hard = false;            ///< true: the constraint is satisfied exactly, not by weight
+    std::string before, verdict;  ///< state before, and verdict after the deformation, as text
+    std::optional<bool> holds;    ///< whether the constraint is satisfied after the deformation; empty: undetermined
     std::string text;
     std::vector<Deviation> deviations;
-    std::optional<std::array<double, 2>> residual;  ///< mean and maximum
+    std::optional<std::array<double, 2>> residual;  ///< mean and maximum residual after the deformation
 };
 
 /// Result of 'relation check' for one rule, relation, constraint or canon (a proportion that is a constraint).
 struct PageVerdict {
     std::string kind;                  ///< "rule", "relation", "constraint" or "canon"
-    std::string name;                  ///< name of the rule, or the type
-    std::vector<std::size_t> members;  ///< indices into the annotation set
-    std::optional<bool> holds;         ///< none: undetermined
-    std::string text;                  ///< the measured value and the allowed range; the violation of a rule
+    std::string name;                  ///< name of the rule, or type of the relation, constraint or canon
+    std::vector<std::size_t> members;  ///< indices of the annotations concerned in the annotation set
+    std::optional<bool> holds;         ///< whether the rule or relation holds; empty: undetermined
+    std::string text;                  ///< measured value and allowed range, or how the rule is violated
 };
 
-/// Contents of one object of a page. The mesh and all other referenced data must live until the object is added.
+/// Contents of one object of a page. The mesh and all other data that this struct refers to must live until the object is added.
 struct PageObject {
     std::string name;
     const Mesh* mesh = nullptr;
-    const AnnotationSet* annotations = nullptr;  ///< null: none
-    const RelationGraph* graph = nullptr;        ///< null: none
-    std::vector<RelationCheck> checks = {};      ///< checks of the graph's relationships, or empty
-    const Mesh* cage = nullptr;                  ///< null: none
+    const AnnotationSet* annotations = nullptr;  ///< null: no annotations
+    const RelationGraph* graph = nullptr;        ///< null: no relationships
+    /// Checks of the graph's relationships, in the order of the graph; empty: not checked.
+    std::vector<RelationCheck> checks = {};
+    const Mesh* cage = nullptr;  ///< null: no cage
     std::vector<PageMap> maps = {};
-    const PageSlices* slices = nullptr;         ///< null: none
-    std::vector<PageVerdict> conformance = {};  ///< results of 'relation check', or empty
+    const PageSlices* slices = nullptr;         ///< null: no slices
+    std::vector<PageVerdict> conformance = {};  ///< results of 'relation check'; empty: not checked
     std::vector<PageConstraint> constraints = {};
     std::vector<std::string> conflicts = {};  ///< messages on conflicting constraints
-    std::vector<std::size_t> parts = {};      ///< indices of regions that can be moved separately: they share no vertex
-    std::string unit = {};                    ///< empty: unit of the annotations
-    std::array<double, 3> up = {0, 0, 1};     ///< used if the annotations give no up direction
-    /// The original object, if it has more vertices than the shown mesh.
+    /// Indices of the regions that can be moved apart in the viewer, since they share no vertex.
+    std::vector<std::size_t> parts = {};
+    std::string unit = {};                 ///< unit of the mesh; empty: unit of the annotations
+    std::array<double, 3> up = {0, 0, 1};  ///< upward direction, used if the annotations state none
+    /// Size of the original object, if it has more vertices than the shown mesh.
     struct Whole {
         std::size_t vertices = 0, faces = 0;
-        double deviation = 0;  ///< maximum distance of its vertices from the shown mesh
+        double deviation = 0;  ///< max distance of the original vertices from the shown mesh
     };
+    /// Empty if the shown mesh is the original object.
     std::optional<Whole> whole = {};
-    /// Exact instead of packed geometry: single precision relative to the box, with a key that identifies the shape. If
-    /// `sends_shape` is false only the key is included: the reader already has the shape.
+    /// Exact geometry instead of packed geometry: coordinates in single precision relative to the bounding box, with a key that
+    /// identifies the shape.
     struct Exact {
-        std::string key;
-        bool sends_shape = true;
+        std::string key;          ///< identifies the shape
+        bool sends_shape = true;  ///< false: only the key is sent, since the viewer already has the shape
     };
+    /// Empty: packed geometry.
     std::optional<Exact> exact = {};
 };
 
@@ -105,27 +114,27 @@ struct PageObject {
 struct PageTable {
     struct Row {
         std::vector<Json> cells;
-        /// Object and annotation that the row describes: indices into the page and into the object's set.
+        /// Index in the page of the object, and index in the object's set of the annotation, that the row describes; -1: none.
         int object = -1, annotation = -1;
     };
-    std::string title, note;
-    std::vector<std::string> columns;
+    std::string title, note;           ///< note: text below the table
+    std::vector<std::string> columns;  ///< titles of the columns
     std::vector<Row> rows;
 };
 
-/// An object of a collection, stored in a file beside the page.
+/// An object of a collection whose data are stored in a file beside the page.
 struct PageEntry {
     std::string name;
-    std::string file, thumbnail;  ///< relative to the page: the output of `Page::script`, and a PNG
+    std::string file, thumbnail;  ///< file names relative to the page: the output of `Page::script`, and a PNG
     std::size_t vertices = 0, faces = 0;
-    std::vector<std::string> tags;
+    std::vector<std::string> tags;  ///< tags of the object's annotations
 };
 
 class Page {
 public:
     explicit Page(std::string title);
 
-    /// Adds an entry to an index of objects that are loaded on demand, instead of objects embedded in the page.
+    /// Adds an object that the page loads on demand from a separate file, instead of an object embedded in the page.
     void add(const PageEntry& entry);
 
     /// Adds an object and returns its index in the page. Objects with the same triangles as an earlier object can be morphed
@@ -134,33 +143,38 @@ public:
     /// or a map of a different length.
     std::size_t add(const PageObject& object);
     void add(PageTable table);
-    /// `svg` is the text of an SVG file.
+    /// Adds a drawing; `svg` is the text of an SVG file.
     void add_drawing(const std::string& title, const std::string& svg);
+    /// Adds a remark that the page shows.
     void note(const std::string& text);
 
-    /// The whole file: the viewer, with the data embedded as JSON and deflated bytes. The same page gives the same bytes. It
-    /// loads nothing from elsewhere, and texts of annotations are escaped.
+    /// The text of the HTML file: the viewer, with the data embedded as JSON and deflated bytes. The same page gives the same
+    /// bytes. The HTML file loads nothing from elsewhere, and texts of annotations are escaped. `made_how`: provenance, shown on
+    /// the page.
     [[nodiscard]] std::string html(const std::string& made_how) const;
-    /// The same content as a script that the page of a collection loads from `file`, as named in an entry.
+    /// The content of this page as a script that the page of a collection loads; `file`: name of the script, as in
+    /// PageEntry::file.
     [[nodiscard]] std::string script(const std::string& file, const std::string& made_how) const;
-    /// The content alone, for a viewer that is already open: the page's data (JSON), and the bytes they refer to.
+    /// The content of a page for a viewer that is already open.
     struct Content {
-        std::string data, bytes;
+        std::string data, bytes;  ///< the page's data as JSON, and the binary data that the JSON refers to
     };
+    /// Content of this page without the viewer; `made_how`: provenance, shown on the page.
     [[nodiscard]] Content content(const std::string& made_how) const;
 
 private:
-    std::size_t add_bytes(std::string_view bytes);
-    [[nodiscard]] std::string data(const std::string& made_how) const;
+    std::size_t add_bytes(std::string_view bytes);                      ///< returns the offset of the bytes in `bytes_`
+    [[nodiscard]] std::string data(const std::string& made_how) const;  ///< JSON text of the page's data
 
     Json document_;
     JsonValue objects_{rapidjson::kArrayType}, tables_{rapidjson::kArrayType}, drawings_{rapidjson::kArrayType},
         notes_{rapidjson::kArrayType}, places_{rapidjson::kArrayType}, entries_{rapidjson::kArrayType};
     std::string bytes_;
-    std::vector<std::string> triangles_;  ///< checksums of the objects' triangles
+    /// Checksum of each object's triangles, to detect objects that can be morphed into each other.
+    std::vector<std::string> triangles_;
 };
 
-/// Table of the measures and sizes of the annotations of an object of the page.
+/// Table of the measures and sizes of the annotations of an object. `object`: index of the object in the page; `name`: its name.
 PageTable annotation_table(AnnotatedMeshView annotated, int object, const std::string& name);
 
 }  // namespace ostraka

@@ -14,41 +14,42 @@ namespace ostraka {
 struct PointCloud {
     std::vector<Point> points;
     std::vector<Vector> normals;     ///< empty, or one unit vector per point, pointing outwards
-    std::vector<std::string> notes;  ///< messages about contents of the file that are dropped
+    std::vector<std::string> notes;  ///< messages about contents of the file that were ignored
 };
 
-/// The points of a file without faces: PLY, OFF or OBJ, or text with x y z, or x y z nx ny nz, per line (.xyz, .pts, .asc,
-/// .txt; lines that begin with # are comments). Normals come from the PLY properties nx, ny, nz or from the text; if any of
-/// them has length zero, all are dropped. Nothing for a file with faces. Throws Error (input) for a file that cannot be read.
+/// Reads the points of a file without faces: PLY, OFF or OBJ, or text with x y z, or x y z nx ny nz, per line (.xyz, .pts, .asc,
+/// .txt; lines that begin with # are comments). Normals come from the PLY properties nx, ny, nz or from the text; if any normal
+/// has length zero, all normals are dropped. Returns nothing for a file with faces. Throws Error (input) for a file that cannot
+/// be read.
 std::optional<PointCloud> read_point_cloud(const Path& file);
 
 struct CloudOptions {
-    int neighbours = 18;     ///< number of neighbours for the normal of a point
+    int neighbours = 18;     ///< number of nearest neighbours from which the normal of a point is estimated
     double longest = 8;      ///< max edge length of the surface, in multiples of the point spacing
-    double close_holes = 1;  ///< max size of a hole that is filled, as a share of the diagonal
+    double close_holes = 1;  ///< max size of a hole that is filled, as a share of the bounding box diagonal
 
     void describe(OptionList& visit);
 };
 
-/// Unit normals: directions from quadrics through each point's neighbours (jets; Cazals and Pouget 2005), orientation by a
-/// minimum spanning tree (Hoppe et al. 1992); all are flipped together if they point inwards (sign of the mean over the points
-/// of normal times position relative to the centre, i.e. of the flux through the surface). Throws Error (input) for fewer than
-/// `neighbours` + 1 points.
+/// Estimates a unit normal for each point: the direction from a quadric through the point's neighbours (jets; Cazals and Pouget
+/// 2005), the orientation by a minimum spanning tree (Hoppe et al. 1992). All normals are flipped together if they point inwards
+/// (sign of the mean over the points of normal times position relative to the centre, i.e. of the flux through the surface).
+/// Throws Error (input) for fewer than `neighbours` + 1 points.
 std::vector<Vector> estimate_normals(const std::vector<Point>& points, const CloudOptions& options = {});
 
-/// Mean distance from each point to its sixth neighbour.
+/// Mean distance from each point to its sixth nearest neighbour.
 double point_spacing(const std::vector<Point>& points);
 
 struct CloudSurface {
-    Mesh mesh;                   ///< its vertices are the points with a face, in the order of the cloud
-    std::vector<Index> sources;  ///< per vertex, index of its point
-    std::size_t border_loops = 0;
+    Mesh mesh;                     ///< its vertices are the points that belong to a face, in the order of the cloud
+    std::vector<Index> sources;    ///< for each vertex, index of its point in the cloud
+    std::size_t border_loops = 0;  ///< number of border loops that remain
     std::vector<std::string> notes;
 };
 
-/// Surface reconstruction by advancing front (Cohen-Steiner and Da 2004), oriented by the normals (estimated if the cloud has
-/// none), repaired, with small holes filled (io/repair.h). Duplicate points count once. Throws Error (input) for points without
-/// a surface (too few, or collinear).
+/// Surface reconstruction by advancing front (Cohen-Steiner and Da 2004). The surface is oriented by the normals (estimated if
+/// the cloud has none) and repaired, and small holes are filled (io/repair.h). Duplicate points count once. Throws Error (input)
+/// for points without a surface (too few, or collinear).
 CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& options = {});
 
 }  // namespace ostraka

@@ -11,63 +11,66 @@
 namespace ostraka {
 
 struct ReassemblyOptions {
-    PairOptions pairs;
-    double min_join = 0.8;  ///< min probability of a join between two groups
-    int partners = 24;      ///< per fragment, number of best quick fits tried in full
-    int min_faces = 100;    ///< a fragment with fewer faces shows no relief
+    PairOptions pairs;      ///< options for registering two fragments
+    double min_join = 0.8;  ///< min probability at which two groups are joined
+    int partners = 24;      ///< for each fragment, number of partners with the best quick fit that are registered in full
+    int min_faces = 100;    ///< min number of faces of a fragment that is matched: a fragment with fewer shows no relief
 
     void describe(OptionList& visit);
 };
 
-/// All candidate poses of two fragments.
+/// All candidate poses of a pair of fragments.
 struct PairResult {
-    std::size_t first = 0, second = 0;
-    std::vector<PairCandidate> candidates;  ///< each maps the second fragment onto the first; most likely first
-    double confidence = 0;
+    std::size_t first = 0, second = 0;      ///< indices of the two fragments
+    std::vector<PairCandidate> candidates;  ///< each pose maps the second fragment onto the first; most likely candidate first
+    double confidence = 0;                  ///< probability that the most likely candidate is right
 };
 
 /// Two fragments that are joined.
 struct FragmentJoin {
-    std::size_t first = 0, second = 0;
-    Motion pose;            ///< maps the second fragment onto the first, as placed in the group
-    double pair = 0;        ///< probability from the two fragments alone
-    double confidence = 0;  ///< probability including the evidence of the rest of the group
-    std::size_t loops = 0;  ///< number of loops closed with a third fragment
-    JoinEvidence evidence;  ///< for the poses in the group
-    bool carries = false;   ///< edge of the spanning tree of the group
-    std::string reason;     ///< explanation as text
+    std::size_t first = 0, second = 0;  ///< indices of the two fragments
+    Motion pose;                        ///< maps the second fragment onto the first, as placed in the group
+    double pair = 0;                    ///< probability of the join from the two fragments alone
+    double confidence = 0;              ///< probability of the join including the evidence of the rest of the group
+    std::size_t loops = 0;              ///< number of loops of joins closed with a third fragment
+    JoinEvidence evidence;              ///< features of the join, for the poses in the group
+    bool carries = false;               ///< true if the join is an edge of the spanning tree of the group
+    std::string reason;                 ///< evidence for the join, as text
 };
 
 /// A pose that is likely from two fragments alone, but was rejected.
 struct RejectedJoin {
-    std::size_t first = 0, second = 0;
-    double pair = 0;
-    std::string reason;
+    std::size_t first = 0, second = 0;  ///< indices of the two fragments
+    double pair = 0;                    ///< probability of the pose from the two fragments alone
+    std::string reason;                 ///< why the pose was rejected, as text
 };
 
+/// Groups of joined fragments with their poses.
 struct Reassembly {
-    std::vector<Motion> poses;        ///< per fragment, into the frame of the largest fragment of its group
-    std::vector<int> group;           ///< per fragment, largest group first; -1: not joined
-    std::vector<std::string> alone;   ///< per fragment: why it is not joined; else empty
-    std::vector<FragmentJoin> joins;  ///< by group, most certain first
-    std::vector<RejectedJoin> undone;
-    std::size_t pairs_tried = 0;
-    std::size_t pairs_left = 0;  ///< with many fragments: number of pairs skipped for dissimilar fractures
-    [[nodiscard]] int groups() const;
+    std::vector<Motion> poses;         ///< for each fragment, the motion into the frame of the largest fragment of its group
+    std::vector<int> group;            ///< for each fragment, the index of its group (largest group first); -1: not joined
+    std::vector<std::string> alone;    ///< for each fragment, why it is not joined; empty if it is joined
+    std::vector<FragmentJoin> joins;   ///< ordered by group, then by descending confidence
+    std::vector<RejectedJoin> undone;  ///< likely poses that were rejected
+    std::size_t pairs_tried = 0;       ///< number of pairs of fragments that were registered
+    /// Number of pairs that were skipped for dissimilar fractures, which happens with many fragments only.
+    std::size_t pairs_left = 0;
+    [[nodiscard]] int groups() const;  ///< number of groups
 };
 
-/// Cache of pair results. `recall` returns the result for a pair of indices and these options, or nothing if the pair must be
-/// tried; `keep` stores the result of a pair. Called from several threads, one at a time.
+/// Cache of pair results. The functions are called from several threads, one call at a time.
 struct PairMemory {
+    /// Returns the stored result for two fragments (by index) and these options; empty: the pair must be registered.
     std::function<std::optional<PairResult>(std::size_t, std::size_t, const PairOptions&)> recall;
+    /// Stores the result of a pair.
     std::function<void(const PairResult&, const PairOptions&)> keep;
 };
 
-/// Each pair contributes all its candidates, not only the best. Candidates that close a loop with those of a third fragment
-/// gain probability, as three wrong poses rarely agree. Groups are joined in order of certainty if no fragment lies inside
-/// another; all other contacts of the join count as evidence for or against it. The poses of each group are refined together
-/// (Ceres: point to plane between all fractures and rims that meet). Unrelated fragments stay single. Deterministic. Throws
-/// Error (usage) without fragments.
+/// Reassembles fragments. Each pair of fragments contributes all its candidate poses, not only the most likely one. Candidates
+/// that close a loop with candidates of a third fragment gain probability, as three wrong poses rarely agree. Groups are joined
+/// in descending order of probability if no fragment lies inside another; all other contacts of the join count as evidence for or
+/// against the join. The poses of each group are refined together (Ceres: point to plane between all fractures and rims that
+/// meet). Unrelated fragments stay single. Deterministic. Throws Error (usage) if there are no fragments.
 Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOptions& options = {},
                       const PairMemory& memory = {});
 

@@ -6,14 +6,16 @@
 
 namespace ostraka {
 
-/// The result of a pair, exact to the bit; `pair_result_from_json` reads it. Throws Error (input) for any other JSON.
+/// JSON of the result of a pair, from which `pair_result_from_json` restores the result exact to the bit.
 JsonValue pair_result_to_json(const PairResult& pair, JsonAllocator& allocator);
+/// Reads the result of the pair of fragments `first` and `second`. Throws Error (input) for any other JSON.
 PairResult pair_result_from_json(const JsonValue& value, std::size_t first, std::size_t second);
 
-/// SHA-256 of the mesh and its facets: all that a pair result depends on besides the options.
+/// SHA-256 of a fragment's mesh and facets: with the options, all that the result of a pair depends on.
 std::string fragment_checksum(const Fragment& fragment);
 
-/// Members of doc/schema/reassembly.schema.json: groups, joins, rejected joins; `names` of the fragments.
+/// JSON of a reassembly (members of doc/schema/reassembly.schema.json): groups, joins, rejected joins. `names`: names of the
+/// fragments.
 JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::string>& names, JsonAllocator& allocator);
 
 }  // namespace ostraka

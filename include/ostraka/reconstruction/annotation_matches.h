@@ -1,5 +1,5 @@
-// Matches the annotations of a fragment with those of the template (thesis, section 5.4: "annotation correspondence", left open
-// there).
+// Matches the annotations of a fragment with the annotations of the template ("annotation correspondence", which section 5.4 of
+// the thesis leaves open).
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -12,30 +12,31 @@
 namespace ostraka {
 
 struct AnnotationMatchOptions {
-    double min_score = 0.4;
+    double min_score = 0.4;  ///< min score of a match, 0 to 1
 
     void describe(OptionList& visit);
 };
 
-/// An annotation of a fragment and its counterpart.
+/// An annotation of a fragment and its counterpart on the template.
 struct AnnotationMatch {
-    int of_fragment = 0, of_template = 0;  ///< ids
-    double score = 0;                      ///< 0 to 1
-    /// Terms of the score, each 0 to 1: common attributes, containers, position under the pose, extent.
+    int of_fragment = 0, of_template = 0;  ///< annotation ids
+    double score = 0;                      ///< agreement of the two annotations, 0 to 1
+    /// Terms of the score, each 0 to 1: agreement of attributes, of the tags of the containers, of position under the pose, and
+    /// of extent.
     double attributes = 1, containers = 1, place = 1, extent = 1;
     bool stated = false;  ///< stated by the user
 };
 
-/// A match stated by the user: the counterpart of a fragment's annotation, or (no template annotation) that it has none.
+/// A match stated by the user: the counterpart of a fragment's annotation, or that the annotation has no counterpart.
 struct StatedMatch {
-    int of_fragment = 0;
-    std::optional<int> of_template;
+    int of_fragment = 0;             ///< id of the fragment's annotation
+    std::optional<int> of_template;  ///< id of the template's annotation; empty: no counterpart
 };
 
-/// Annotations of the same type and tag are candidates. If several have a tag (two eyes), they are distinguished by their
+/// Matches annotations of the same type and tag. Several annotations with one tag (two eyes) are distinguished by their
 /// attributes, the tags of their containers, and their position and extent under the pose of the fragment; the assignment is
-/// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller, not larger. `scaled` is the
-/// template in the target frame of the pose. Throws Error (input) for stated ids that do not exist.
+/// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller than its counterpart, not larger.
+/// `scaled`: the template in the target frame of the pose. Throws Error (input) for ids in `stated` that do not exist.
 std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, AnnotatedMeshView fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated = {},
                                                const AnnotationMatchOptions& options = {});

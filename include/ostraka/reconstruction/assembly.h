@@ -5,26 +5,27 @@
 
 namespace ostraka {
 
-/// File names of the template and the fragments in the assembly.
+/// File names of the template and the fragments in an assembly file.
 struct AssemblyNames {
     std::string template_file;
-    std::vector<std::string> fragments;  ///< name of each
+    std::vector<std::string> fragments;  ///< file name of each fragment
 };
 
-/// The report of a reconstruction: scale, poses (4 x 4, from a fragment's file to the scaled template), residuals, matches of
+/// JSON of a reconstruction: scale, poses (4 x 4, from a fragment's file to the scaled template), residuals, matches of
 /// annotations, constraints, verdict.
 JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator);
 
-/// The matches stated by the user in an assembly for the fragment of this name: matches with "stated": true. `file` names the
-/// assembly in errors. Throws Error (input), with the JSON pointer, for a file that is no assembly, two entries of one name, a
+/// Matches stated by the user ("stated": true) in an assembly file for the fragment of this name. `file` names the assembly in
+/// errors. Throws Error (input), with the JSON pointer, for a file that is no assembly, two entries with one fragment name, a
 /// stated match without its annotation, and an annotation stated twice.
 std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment,
                                         const std::string& file = "assembly");
-/// As above; also checks that fragment and template have these annotations, each pair of one type.
+/// Matches stated by the user in an assembly file for this fragment; also checks that the fragment and the template have the
+/// stated annotations, and that matched annotations have one type. Throws Error (input).
 std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const Fragment& fragment, const AnnotationSet& of_template,
                                         const std::string& file);
 
-/// Names in an assembly that have stated matches but are not among `fragments`, in the order of the file.
+/// Fragment names in an assembly file that have stated matches but are not among `fragments`, in the order of the file.
 std::vector<std::string> unused_statements(const JsonValue& assembly, const std::vector<std::string>& fragments);
 
 }  // namespace ostraka

@@ -10,33 +10,35 @@ namespace ostraka {
 
 struct FragmentFileOptions {
     enum class FacetSource { either, annotated, automatic, none };
+    /// Source of the facets; either: annotations if there are any, else the shape if it is closed; none: all outer.
     FacetSource facets = FacetSource::either;
-    FacetOptions finding;
-    CloudOptions cloud;
+    FacetOptions finding;  ///< options for finding facets from the shape
+    CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
 
     void describe(OptionList& visit);
 };
 
+/// A fragment as read, and how it was obtained.
 struct FragmentFile {
     Fragment fragment;
-    std::string facets_from;   ///< "annotations", "shape", "shape and annotations" or "nowhere"
-    Facets found;              ///< facets from the shape, if they were computed
-    bool points = false;       ///< the file has no faces: the mesh is reconstructed from its points
+    std::string facets_from;   ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
+    Facets found;              ///< facets found from the shape, if they were computed
+    bool points = false;       ///< true: the file has no faces, and the mesh is reconstructed from its points
     std::vector<Path> inputs;  ///< files that were read
     std::vector<std::string> notes;
 };
 
-/// Reads a mesh and the annotations beside it (NAME.ant.json) if they exist, or points without faces (annotations beside them
-/// are not read; a note reports this); facets by the options. Fracture segments found from the shape count only if their
-/// confidence is above 0.5. Throws Error (input).
+/// Reads a mesh and, if present, the annotations beside the mesh (NAME.ant.json), or points without faces (annotations beside
+/// points are not read; a note reports this). The facets come from the source in the options. Fracture segments found from the
+/// shape count only if their confidence is above 0.5. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
-/// The facets as up to three regions "outer", "inner" and "fracture", with area and confidence.
+/// Annotations with the facets as up to three regions "outer", "inner" and "fracture", with area and confidence as attributes.
 AnnotationSet facet_annotations(const Facets& facets, const std::string& unit = {});
 
-/// Updates a set with the facets: its first region of each name (case-insensitive) keeps id, tag, colour and other attributes,
-/// and gets the faces, area and confidence of the facet; further regions of that name and those of missing facets are removed;
-/// other annotations are kept. Measures of a region whose faces change become stale.
+/// Updates a set with the facets. The first region named "outer", "inner" or "fracture" (case-insensitive) keeps id, tag, colour
+/// and other attributes, and gets the faces, area and confidence of this facet; further regions of that name and regions of
+/// missing facets are removed; other annotations are kept. Measures of a region whose faces change become stale.
 void update_facet_annotations(AnnotationSet& set, const Facets& facets);
 
 }  // namespace ostraka

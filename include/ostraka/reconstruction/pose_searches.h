@@ -12,31 +12,34 @@
 namespace ostraka {
 
 /// Results of pose searches by key. The key is a checksum of all inputs of a search: the version of the toolkit, the template's
-/// faces and vertices, the options, the range of scales, and the fragment's vertices, faces and facets. If any of these has
-/// changed, the search is repeated.
+/// faces and vertices, the options, the range of scales, and the fragment's vertices, faces and facets. If any input has changed,
+/// the search is repeated.
 class PoseSearches {
 public:
-    /// `mesh` is the template; it must outlive this object unchanged. The data for searching is built with the first search.
+    /// `mesh` is the template; it must outlive this object unchanged. The search data of the template are built with the first
+    /// search.
     PoseSearches(const Mesh& mesh, const PoseSearchOptions& options);
     ~PoseSearches();
     PoseSearches(PoseSearches&&) noexcept;
 
+    /// Searches the pose of a fragment on the template, with scales of the template in this range, or returns the cached result.
     /// Nothing if the whole fragment is fracture. Throws Error as PoseSearch::find.
     std::optional<PoseSearchResult> find(const Fragment& fragment, double min_scale, double max_scale);
 
     [[nodiscard]] std::size_t made() const { return made_; }      ///< number of searches that `find` ran
     [[nodiscard]] std::size_t reused() const { return reused_; }  ///< number of searches found in the cache
-    [[nodiscard]] bool empty() const { return stored_.empty(); }
+    [[nodiscard]] bool empty() const { return stored_.empty(); }  ///< whether the cache holds no results
 
-    /// doc/schema/searches.schema.json. Numbers are restored to the bit.
+    /// JSON of the cached results (doc/schema/searches.schema.json), from which `add` restores numbers to the bit.
     [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;
-    /// Adds the results of a file that belong to this template and these options. An entry that does not match its checksum was
-    /// edited or damaged: it is skipped. Returns the number of such entries. Throws Error (input) for a file of another kind.
+    /// Adds the cached results in a JSON document that belong to this template and these options; `file` names the document in
+    /// errors. An entry that does not match its checksum was edited or damaged, and is skipped. Returns the number of skipped
+    /// entries. Throws Error (input) for a document of another kind.
     std::size_t add(const JsonValue& document, const std::string& file);
 
 private:
     struct StoredSearch {
-        std::string fragment;  ///< name of the fragment, for the reader of the file
+        std::string fragment;  ///< name of the fragment, for people who read the file
         PoseSearchResult result;
     };
     struct TemplateSearch;
@@ -44,9 +47,10 @@ private:
 
     const Mesh& mesh_;
     PoseSearchOptions options_;
-    std::string template_key_;  ///< checksum of the part common to all keys
+    std::string template_key_;  ///< checksum of the inputs that all keys have in common
     std::unique_ptr<TemplateSearch> template_search_;
-    std::map<std::string, StoredSearch> stored_;  ///< by key
+    std::map<std::string, StoredSearch> stored_;  ///< from the key of a search to its result
+    /// Number of searches that `find` ran, and number found in the cache.
     std::size_t made_ = 0, reused_ = 0;
 };
 

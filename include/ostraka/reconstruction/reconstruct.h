@@ -1,5 +1,4 @@
-// Reconstructs the whole object from fragments: placement, non-rigid fit, constraints, completion, verdict (thesis, section
-// 5.3.1).
+// Reconstructs an object from fragments: placement, non-rigid fit, constraints, completion, verdict (thesis, section 5.3.1).
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -20,118 +19,127 @@ namespace ostraka {
 struct ReconstructOptions {
     PlacementOptions placement;
     SearchOptions search;
-    bool refine = true;  ///< refine poses on the surface, with the landmarks as anchors
+    bool refine = true;  ///< refine the poses on the surface, with the landmarks as anchors
     PartAlignmentOptions alignment;
     RotationMatchOptions rotations;
     AnnotationMatchOptions annotations;
     PriorOptions prior;
     NonRigidOptions fit;
-    CompleteOptions completion;   ///< its tolerance is `observed`
-    double observed = 0.02;       ///< max distance of an observed vertex from its match, as a share of the diagonal
+    CompleteOptions completion;   ///< the tolerance of the completion is replaced by `observed`
+    double observed = 0.02;       ///< max distance of an observed vertex from its match, as a share of the template's diagonal
     double scale_tolerance = 10;  ///< max deviation of a fragment's own scale from the common scale, per cent
-    double slack = 3;             ///< max deviation of a proportion or measure from its range, per cent
-    double residual = 0.25;       ///< max residual of landmarks, as a share of the spread of a fragment's landmarks; above it the
-                                  ///< fragment is rejected
-    double lying = 50;            ///< min per cent of a fragment's outer surface that lies on the fitted template
-    double overlap = 20;          ///< max per cent of it that lies where another fragment is observed
-    bool restore = true;          ///< solve constraints for the unobserved part
+    double slack = 3;             ///< max deviation of a proportion or measure from its allowed range, per cent
+    /// Max residual of a fragment's landmarks, as a share of the landmarks' spread; a fragment with a larger residual is
+    /// rejected.
+    double residual = 0.25;
+    double lying = 50;    ///< min share of a fragment's outer surface that lies on the fitted template, per cent
+    double overlap = 20;  ///< max share of a fragment's outer surface that lies where another fragment is observed, per cent
+    bool restore = true;  ///< solve the constraints for the unobserved part
 
     void describe(OptionList& visit);
 };
 
-/// In the order of cause and effect.
+/// Kinds of evidence, in the order from cause to effect.
 enum class ObjectionKind { placement, size, landmarks, surface, overlap, constraint };
 std::string to_string(ObjectionKind kind);
-/// Evidence against a fragment, or against all of them together.
+/// Evidence that a fragment, or all fragments together, do not form one object with the template.
 struct Objection {
     ObjectionKind kind = ObjectionKind::placement;
-    int fragment = -1;    ///< -1: no single fragment
-    int constraint = -1;  ///< id of a relationship of the graph; -1: geometry
-    double strain = 0;    ///< deviation as a multiple of the tolerance; 0: cannot be determined
-    std::string text;
+    int fragment = -1;    ///< index of the fragment; -1: no single fragment
+    int constraint = -1;  ///< id of the violated relationship of the graph; -1: geometric evidence
+    double strain = 0;    ///< deviation as a multiple of its tolerance; 0: cannot be determined
+    std::string text;     ///< the evidence as a sentence
 };
 
+/// Whether the fragments belong to one object.
 enum class Compatibility { compatible, incompatible, undecided };
 std::string to_string(Compatibility compatibility);
 
+/// Result of a reconstruction.
 struct Reconstruction {
-    CommonPlacement placement;
-    std::vector<std::optional<PoseSearchResult>> searched;  ///< per fragment, if its pose was searched
-    std::vector<PartAlignment> alignment;                   ///< per placed fragment, if poses were refined
-    std::optional<RotationMatch> rotations;                 ///< if rotations about the template's axis were open
-    std::vector<std::vector<AnnotationMatch>> annotations;  ///< per fragment
-    std::vector<std::vector<std::string>> notes;            ///< per fragment
-    std::optional<PriorFit> prior;                          ///< if a class was given
-    NonRigidFit fit;
+    CommonPlacement placement;  ///< scale of the template, and poses of the fragments
+    /// For each fragment, the result of its pose search; empty: not searched.
+    std::vector<std::optional<PoseSearchResult>> searched;
+    std::vector<PartAlignment> alignment;    ///< for each placed fragment, how its pose was refined; empty: not refined
+    std::optional<RotationMatch> rotations;  ///< rotations about the template's axis; empty: none was undetermined
+    std::vector<std::vector<AnnotationMatch>> annotations;  ///< for each fragment, the matches of its annotations
+    std::vector<std::vector<std::string>> notes;            ///< for each fragment, remarks
+    std::optional<PriorFit> prior;                          ///< the most probable shape of the class; empty: no class was given
+    NonRigidFit fit;                                        ///< deformation of the template to the fragments
     std::vector<Point> points;     ///< final positions of the template's vertices, in the unit of the fragments
-    std::vector<double> distance;  ///< distance of each from its fragment; -1: not observed
+    std::vector<double> distance;  ///< for each vertex of the template, its distance from the matched fragment; -1: not observed
     CompletedObject object;
-    std::vector<std::size_t> joined;  ///< per fragment, number of its faces in the object
-    double observed_share = 0;        ///< share of the completed object's area
-    std::size_t crossings = 0;  ///< intersecting pairs of faces of the object, without those within the template or a fragment
-    std::vector<ConstraintReport> constraints;
+    std::vector<std::size_t> joined;  ///< for each fragment, number of its faces in the completed object
+    double observed_share = 0;        ///< observed share of the completed object's area
+    /// Number of intersecting pairs of faces of the completed object, without pairs within the template or within one fragment.
+    std::size_t crossings = 0;
+    std::vector<ConstraintReport> constraints;  ///< state of the graph's constraints after the deformation
     std::vector<ConstraintConflict> conflicts;
-    double strain = 0;  ///< largest tested deviation, as a multiple of its tolerance: above 1 is evidence against the object
+    double strain = 0;  ///< largest tested deviation, as a multiple of its tolerance; above 1: evidence against a common object
     Compatibility verdict = Compatibility::undecided;
-    std::vector<Objection> objections;
-    std::string undecided;                  ///< reason for "undecided"
-    std::map<std::string, double> seconds;  ///< by phase
+    std::vector<Objection> objections;      ///< evidence against a common object
+    std::string undecided;                  ///< reason for the verdict "undecided"; empty for other verdicts
+    std::map<std::string, double> seconds;  ///< from each phase to its computing time in seconds
 };
 
 struct ReconstructionState;
 
-/// Fragments of one object on its template, which can be added and removed. Data that depends on the template alone (its
-/// simplified mesh, linear systems with their symbolic factorisation, the data for pose searches) or on the template and one
-/// fragment (common landmarks, pose searches, search trees) is computed once; data that also depends on the common scale
-/// (refined poses, matches of annotations) is reused if scale and pose are the same to the bit. The result is that of a new
-/// object with the same fragments in the same order, to the bit.
+/// Fragments of one object on its template, to which fragments can be added and from which they can be removed. Data that depend
+/// on the template alone (its simplified mesh, linear systems with their symbolic factorisation, the data for pose searches) or
+/// on the template and one fragment (common landmarks, pose searches, search trees) are computed once; data that also depend on
+/// the common scale (refined poses, matches of annotations) are reused if scale and pose are the same to the bit. The result
+/// equals, to the bit, the result of a new object with the same fragments in the same order.
 class Reconstructor {
 public:
-    /// All arguments but the options must outlive it unchanged; so must fragments while they are part of it. Throws Error
-    /// (usage) for options out of range, and for cage space without a cage or with a prior; (input) for a template that is
-    /// inside out, and as ShapePrior::check.
+    /// All arguments but the options must outlive the object unchanged, and so must each added fragment until it is removed.
+    /// Throws Error (usage) for options out of range, and for cage space without a cage or with a prior; (input) for a template
+    /// that is inside out, and as ShapePrior::check.
     Reconstructor(AnnotatedMeshView template_object, const RelationGraph& graph, const ReconstructOptions& options = {},
                   const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr);
-    /// Stores references to its arguments.
+    /// Deleted, since the object stores references to its arguments.
     Reconstructor(AnnotatedMeshView template_object, RelationGraph&& graph, const ReconstructOptions& options = {},
                   const ShapePrior* prior = nullptr, const TemplateCage* cage = nullptr) = delete;
     ~Reconstructor();
     Reconstructor(Reconstructor&&) noexcept;
 
-    /// Appends a fragment. Throws Error (input) if it is inside out.
+    /// Appends a fragment; `stated`: matches of its annotations stated by the user. Throws Error (input) if the fragment is
+    /// inside out.
     void add(const Fragment& fragment, std::vector<StatedMatch> stated = {});
-    /// Removes by position; the following ones move up. Throws Error (usage) for an invalid position.
+    /// Removes the fragment at this position; the following fragments move up by one position. Throws Error (usage) for an
+    /// invalid position.
     void remove(std::size_t position);
+    /// Number of fragments.
     [[nodiscard]] std::size_t size() const;
 
-    /// The pose searches, for saving to or loading from a file.
+    /// The cached pose searches, for saving to or loading from a file.
     [[nodiscard]] PoseSearches& searches();
 
-    /// See `reconstruct`. Throws Error (usage) without a fragment.
+    /// Reconstructs the object from the current fragments, as `reconstruct` does. Throws Error (usage) without a fragment.
     Reconstruction run();
 
 private:
     std::unique_ptr<ReconstructionState> known_;
 };
 
-/// With a `prior`, the template takes the most probable shape of its class before the free deformation, and the fragments are
-/// registered to that shape again, in two rounds: the unobserved part then follows the class's members that are similar in the
-/// observed part.
+/// Reconstructs an object. With a `prior`, the template takes the most probable shape of its class before the free deformation,
+/// and the fragments are registered to that shape again, in two rounds: the unobserved part then resembles the members of the
+/// class that are similar in the observed part.
 ///
-/// A proportion changes the less observed of its two parts, whichever the graph names first.
+/// A constraint on a proportion changes the less observed of the two parts, whichever part the graph names first.
 ///
-/// Places every fragment by the landmarks common with the template, refines the poses on the surface, matches annotations,
-/// deforms the scaled template to all placed fragments, fixes the observed part, solves the graph's constraints for the rest,
-/// and joins both into one surface. Fragments that cannot be placed are left out and reported. The verdict: incompatible if a
-/// constraint fails, or if a fragment's own scale or its landmarks contradict the others; undecided if no fragment is placed,
-/// or only one and there is no constraint. Throws Error (input) for a template that does not fit its annotations.
+/// Places every fragment by the landmarks that it has in common with the template, refines the poses on the surface, matches
+/// annotations, deforms the scaled template to all placed fragments, fixes the observed part, solves the graph's constraints for
+/// the rest, and joins fragments and template into one surface. Fragments that cannot be placed are left out and reported. The
+/// verdict is "incompatible" if a constraint fails, or if a fragment's own scale or its landmarks contradict the others;
+/// "undecided" if no fragment is placed, or if one is placed and there is no constraint. Throws Error (input) for a template that
+/// does not fit its annotations.
 Reconstruction reconstruct(AnnotatedMeshView template_object, const RelationGraph& graph,
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options = {},
                            const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr,
                            const TemplateCage* cage = nullptr);
 
-/// The template's annotations transferred from the fitted template to the completed object; measures keep their earlier values
-/// (`refresh_measures`).
+/// The template's annotations transferred from the fitted template to the completed object. Measures keep the values that they
+/// have on the template; `refresh_measures` updates them.
 AnnotationSet completed_annotations(AnnotatedMeshView template_object, const Reconstruction& result);
 
 }  // namespace ostraka

@@ -13,29 +13,31 @@ namespace ostraka {
 
 struct SearchOptions {
     enum class Search { automatic, always, never };
-    Search search = Search::automatic;  ///< automatic: for fragments with fewer than three landmarks
+    Search search = Search::automatic;  ///< which fragments are searched; automatic: those with fewer than three landmarks
     PoseSearchOptions poses;
 
     void describe(OptionList& visit);
 };
 
-/// Searches the poses of fragments with fewer than three landmarks (of all, with "always") on the template and writes them to
-/// `placed`; an undecided fragment keeps a `problem` with the reason. `scale` is that of the landmarks if they place any
-/// fragment; otherwise it is searched in the range of the options, set to the median of the decided fragments, and all are
-/// searched again with it. Fractures (`Facet::fracture`) are ignored. Returns one result per fragment: nothing if it was not
-/// searched. `searches` is the cache of the template with these options: cached searches are not repeated.
+/// Searches the poses of fragments with fewer than three landmarks (of all fragments, with "always") on the template and writes
+/// the poses to `placed`; an undecided fragment keeps a `problem` with the reason. `scale` of the template comes from the
+/// landmarks if they place any fragment; otherwise it is searched in the range of the options, set to the median of the decided
+/// fragments, and all fragments are searched again with this scale. Fractures (`Facet::fracture`) are ignored. Returns for each
+/// fragment the result of the search; empty: not searched. `searches`: cache for the template with these options; cached searches
+/// are not repeated.
 std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searches,
                                                              const std::vector<const Fragment*>& fragments,
                                                              const SearchOptions& options, double& scale,
                                                              std::vector<FragmentPlacement>& placed);
 
-/// Determines the motions that a found pose leaves open from the landmarks, even a single one: rotates about or translates
-/// along each slippable direction to minimise their squared distances from the template's. Returns false, and changes nothing,
-/// if nothing is open or if they remain farther apart than `limit`, a length. `scale` of the template.
+/// Determines the motions that a pose search left undetermined from the landmarks, even from a single landmark: rotates about or
+/// translates along each slippable direction to minimise the squared distances of the fragment's landmarks from the template's.
+/// Returns false, and changes nothing, if no motion is undetermined or if the landmarks remain farther apart than `limit`, a
+/// length. `scale`: scale of the template.
 bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
                           FragmentPlacement& placed);
 
-/// The same without a cache.
+/// Places fragments by pose searches without a cache; `mesh` is the template.
 std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, const std::vector<const Fragment*>& fragments,
                                                              const SearchOptions& options, double& scale,
                                                              std::vector<FragmentPlacement>& placed);

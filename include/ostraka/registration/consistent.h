@@ -1,4 +1,4 @@
-// Selects feature matches that are consistent with one motion.
+// Selects the feature matches of two surfaces that are consistent with one motion.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -8,21 +8,23 @@
 namespace ostraka {
 
 struct ConsistentOptions {
-    double tolerance = 0.02;  ///< max distance of a moved feature from its match, as a share of the size
-    double angle = 30;        ///< max angle between their normals, degrees
-    double shrinkage = 0;     ///< casts may differ in size by up to this share; 0: rigid
+    double tolerance = 0.02;  ///< max distance of a moved feature from its match, as a share of the size of the surfaces
+    double angle = 30;        ///< max angle between the normals of a moved feature and its match, degrees
+    double shrinkage = 0;     ///< max share by which the surfaces may differ in size; 0: rigid motion
 
     void describe(OptionList& visit);
 };
 
+/// Result of `consistent_matches`.
 struct ConsistentMatches {
     std::vector<FeatureMatch> matches;  ///< matches consistent with `motion`, at most one per salient point of either surface
-    Motion motion;                      ///< from the points of `a` to those of `b`
+    Motion motion;                      ///< maps the points of surface `a` to surface `b`
 };
 
-/// Each match defines a motion (point, normal and direction onto point, normal and direction). The motion that is consistent
-/// with most matches is fitted to those by least squares, repeatedly until their number stops growing. Tries all matches, hence
-/// deterministic; time is quadratic in their number. Empty without matches.
+/// Each match defines a motion (point, normal and direction of one feature onto point, normal and direction of the other). The
+/// motion that is consistent with the most matches is fitted to those matches by least squares, repeatedly until the number of
+/// consistent matches stops growing. All matches are tried, so that the result is deterministic; time is quadratic in the number
+/// of matches. Empty without matches.
 ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, const std::vector<FeatureMatch>& matches,
                                      const ConsistentOptions& options = {});
 

@@ -12,52 +12,56 @@
 namespace ostraka {
 
 struct MeshRegistrationOptions {
-    bool scale = true;     ///< estimate the scale, as for meshes in different units; else the meshes have the same size
-    double tolerance = 0;  ///< tolerance for equal surfaces, share of the target's diagonal; 0: from the resolution of the meshes
-    int samples = 4000;    ///< number of registration points on both meshes together, and number of evaluation points on each
+    bool scale = true;  ///< true: estimate the scale, as for meshes in different units; false: the meshes have the same unit
+    /// Max distance of equal surfaces, as a share of the target's diagonal; 0: derived from the resolution of the meshes.
+    double tolerance = 0;
+    int samples = 4000;  ///< number of points on both meshes together for registration, and on each mesh for evaluation
 
     void describe(OptionList& visit);
 };
 
+/// Whether two meshes show the same object.
 enum class RegistrationVerdict {
-    aligned,     ///< one surface, up to differences explained by the resolutions
-    mirrored,    ///< not by any motion, but by a reflection
+    aligned,     ///< the meshes are one surface, up to differences explained by the resolutions
+    mirrored,    ///< no motion makes the meshes one surface, but a reflection does
     inside_out,  ///< the faces of one mesh are flipped
-    different    ///< not the same object
+    different    ///< the meshes are not the same object
 };
 std::string to_string(RegistrationVerdict verdict);
 
-/// Distances between two surfaces, at points spread over both. Lengths are in the target's unit.
+/// Distances between two registered surfaces, at points spread over both. Lengths are in the target's unit.
 struct SurfaceAgreement {
-    double rms = 0;      ///< root mean square distance, both ways; points without a partner count with the search radius
-    double largest = 0;  ///< 99th percentile of the distances, the worse of both directions
-    double share = 0;    ///< share of the points within the tolerance, the worse of both directions
+    double rms = 0;  ///< root mean square distance, in both directions; a point without a partner counts with the search radius
+    double largest = 0;  ///< 99th percentile of the distances, in the direction where it is larger
+    double share = 0;    ///< share of the points within the tolerance, in the direction where it is smaller
     double close = 0;    ///< share of the points within a third of the tolerance
 };
 
+/// Result of `register_mesh`.
 struct MeshRegistration {
     RegistrationVerdict verdict = RegistrationVerdict::different;
-    Motion motion;               ///< maps the source onto the target: the best motion found, whatever the verdict
-    SurfaceAgreement agreement;  ///< under that motion
-    double tolerance = 0;        ///< in the target's unit: from the resolutions, or as given
-    SurfaceAgreement mirrored;   ///< under the best motion of the source's mirror image
-    std::vector<Motion> others;  ///< motions that fit as well, for a symmetric object; at most 7
-    SlippableMotions slippable;  ///< motions that the target's shape leaves open, in the target's frame: a vessel about its axis
+    Motion motion;               ///< maps the source onto the target; the best motion found, whatever the verdict
+    SurfaceAgreement agreement;  ///< distances between the surfaces under `motion`
+    double tolerance = 0;        ///< max distance of equal surfaces, in the target's unit
+    SurfaceAgreement mirrored;   ///< distances under the best motion of the source's mirror image
+    std::vector<Motion> others;  ///< other motions that fit as well, for a symmetric object; at most 7
+    /// Motions under which the target's shape does not change, in the target's frame: e.g. of a vessel about its axis.
+    SlippableMotions slippable;
 };
 
-/// Normalises both surfaces to one centre and size by the moments of their area. Scores all rotations (16384, evenly spread:
-/// super-Fibonacci spirals, Alexa 2022) by points on a grid, refines the best distinct ones there (point to plane), and the
-/// best of those on the faces, in both directions; the vertices of the coarser mesh get more weight, by the area of its faces,
-/// so that the offsets of the flat faces of both meshes from the curved surface cancel in the scale. The same is done for the
-/// source's mirror image. The meshes are one surface if nearly all of either lies within the tolerance of the other. Of poses
-/// that fit equally, the one that moves the source least is returned. Same result for any number of threads; O(n) besides a
-/// search of constant size. Throws Error (usage) for options out of range, (input) for a mesh without area, or for a flat mesh,
-/// which only its border would constrain.
+/// Registers `source` to `target`. Normalises both surfaces to one centre and size by the moments of their area. Scores all
+/// rotations (16384, evenly spread: super-Fibonacci spirals, Alexa 2022) by points on a grid, refines the best distinct rotations
+/// on the grid (point to plane), and the best of the refined motions on the faces, in both directions; a point on the coarser
+/// mesh has more weight, by the area of its faces, so that the offsets of the flat faces of both meshes from the curved surface
+/// cancel in the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
+/// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is returned.
+/// Same result for any number of threads; O(n) besides a search of constant size. Throws Error (usage) for options out of range,
+/// (input) for a mesh without area, or for a flat mesh, which only its border would constrain.
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
-/// The verdict and its reasons as one sentence; `diagonal`: of the target.
+/// The verdict and its reasons as one sentence; `diagonal`: diagonal of the target.
 std::string in_words(const MeshRegistration& registration, double diagonal);
-/// Remarks on an alignment: poses that fit equally, motions that the shape leaves open.
+/// Remarks on a registration: poses that fit equally, motions that the shape leaves undetermined.
 std::vector<std::string> remarks_on(const MeshRegistration& registration);
 
 }  // namespace ostraka

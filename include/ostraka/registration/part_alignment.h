@@ -10,12 +10,13 @@
 namespace ostraka {
 
 struct PartAlignmentOptions {
-    double trim = 0.8;  ///< share of the pairs that are kept, the nearest ones: excludes surface that is missing on the whole
+    /// Share of the pairs that are kept, those of smallest distance: excludes surface that is missing on the whole.
+    double trim = 0.8;
     double search_radius = 0.1;  ///< max distance of a pair, as a share of the whole's diagonal
     double angle = 60;           ///< max angle between the normals of a pair, degrees
-    double anchors = 1;          ///< weight of all anchors together relative to that of all pairs
-    int samples = 3000;          ///< number of points of the part that are registered to the whole, evenly spread
-    int iterations = 60;
+    double anchors = 1;          ///< weight of all anchors together, relative to the weight of all pairs together
+    int samples = 3000;          ///< number of points of the part, evenly spread, that are registered to the whole
+    int iterations = 60;         ///< max number of iterations
 
     void describe(OptionList& visit);
 };
@@ -26,19 +27,20 @@ struct Anchor {
     bool operator==(const Anchor&) const = default;
 };
 
+/// Result of `align_part`.
 struct PartAlignment {
-    Motion pose;          ///< rigid, maps the part onto the whole
-    double residual = 0;  ///< root mean square point-to-plane distance of the kept pairs, in the unit of the points
+    Motion pose;          ///< rigid motion from the part onto the whole
+    double residual = 0;  ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
     double overlap = 0;   ///< share of the samples that have a pair
     int iterations = 0;
-    bool settled = false;  ///< the last step changed nothing
+    bool settled = false;  ///< true: the last step changed nothing
 };
 
-/// Trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992), from `start`: samples of the
-/// faces marked in `of_part` (all if empty) are paired with the nearest point of the whole with a compatible normal, and the
-/// nearest `trim` of the pairs kept; anchors count as point pairs. Each step is a linear least squares problem for rotation and
-/// translation; motions that the pairs do not constrain (on a sphere, a plane, a cylinder) are left out of the step. Returns
-/// the best pose encountered. Throws Error (input) for a part without area.
+/// Registers a part to the whole by trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992),
+/// from the pose `start`: samples of the faces marked in `of_part` (all faces if empty) are paired with the nearest point of the
+/// whole that has a compatible normal, and the share `trim` of smallest distance is kept; anchors count as point pairs. Each step
+/// is a linear least squares problem for rotation and translation; motions that the pairs do not constrain (on a sphere, a plane,
+/// a cylinder) are left out of the step. Returns the best pose encountered. Throws Error (input) for a part without area.
 PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, const SurfaceSearch& whole, const Motion& start,
                          const std::vector<Anchor>& anchors = {}, const PartAlignmentOptions& options = {});
 

@@ -6,6 +6,7 @@
 
 namespace ostraka {
 
+/// Writes a pose as the rows of a 4 x 4 matrix.
 JsonValue pose_to_json(const Motion& pose, JsonAllocator& allocator);
 
 }  // namespace ostraka

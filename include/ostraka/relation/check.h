@@ -1,4 +1,4 @@
-// Checks which relationships of a graph hold on a mesh, and measures the deviations of the others.
+// Checks which relationships of a graph hold on a mesh, and measures how far the others deviate.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-/// Tolerances of relationships that do not have their own.
+/// Tolerances of relationships that do not state their own.
 struct RelationOptions {
-    double distance = 0.01;
-    double angle = 5;
-    double tilt = 20;
-    double ratio = 10;
+    double distance = 0.01;  ///< tolerance of distances and heights, as a share of the mesh's diagonal
+    double angle = 5;        ///< tolerance of angles between axes, degrees
+    double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
+    double ratio = 10;       ///< tolerance of areas, shapes and attribute values: relative difference, per cent
 
     void describe(OptionList& visit);
 };
@@ -20,14 +20,16 @@ struct RelationOptions {
 enum class Verdict { holds, fails, unknown };
 std::string to_string(Verdict verdict);
 
+/// Result of checking one relationship.
 struct RelationCheck {
     Verdict verdict = Verdict::unknown;
-    RelationParameters parameters;  ///< measured on this mesh, with the tolerances in effect
-    std::string text;               ///< why it fails or cannot be determined
+    RelationParameters parameters;  ///< deviations measured on this mesh, with the tolerances in effect
+    std::string text;               ///< why the relationship fails or cannot be determined; empty if it holds
 };
 
-/// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only experts
-/// can decide, and types whose input is missing; `text` gives the reason. Throws Error (input) if the graph does not fit the set.
+/// Checks each relationship of `graph`, in the order of the graph. The verdict is unknown for constraints (see
+/// judge_relationships), for types that only experts can decide, and for types whose input is missing; `text` gives the reason.
+/// Throws Error (input) if the graph does not fit the set.
 std::vector<RelationCheck> check_relations(AnnotatedMeshView object, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Relationships determined by the geometry of the parts, each with its measured deviation and a tolerance.
+// Relationships determined by the geometry of annotated parts, each with its measured deviation and a tolerance.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -11,20 +11,21 @@
 
 namespace ostraka {
 
-/// Measures relationships on one object. Data of a part (axis, samples, search tree) is computed once. Not thread-safe. The
-/// object must outlive it.
+/// Measures relationships on one object. Data of a part (axis, samples, search tree) are computed once. Not thread-safe. The
+/// annotation object must outlive the meter.
 class RelationMeter {
 public:
     explicit RelationMeter(AnnotatedMeshView object, const RelationOptions& options = {});
     ~RelationMeter();
 
-    /// Measures one relationship of a geometric type except containment, equal selections and adjacency. Tolerances stated in
-    /// the relationship override those of the options. doc/relations.md describes what each type measures.
+    /// Measures one relationship of a geometric type except containment, equal selections and adjacency. Tolerances stated in the
+    /// relationship override the tolerances of the options. doc/relations.md describes what each type measures.
     RelationCheck measure(const Relationship& relationship);
 
-    /// All relationships that hold between annotations of the set, except the root; doc/relations.md describes the candidates.
-    /// `types`: the requested types (all if empty). Ids count up from `first_id`. At most 10000 relationships of a type are
-    /// returned; of pairs that are expensive to measure only the most similar are measured, and `notes` reports that.
+    /// All geometric relationships that hold between annotations of the set, without the annotation of the whole object;
+    /// doc/relations.md describes the candidates. `types`: the requested types (all types if empty). Ids count up from
+    /// `first_id`. At most 10000 relationships of a type are returned; if a type is expensive to measure, only the most similar
+    /// pairs are measured, and `notes` reports the omission.
     std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id,
                                       std::vector<std::string>* notes = nullptr);
 
@@ -38,25 +39,25 @@ private:
 struct ExtractedRelations {
     RelationGraph graph;  ///< stated relationships, followed by the extracted ones with fresh ids
     ContainmentOrder order;
-    std::vector<int> stated;                  ///< ids of stated relationships that were also extracted, and not added again
-    std::vector<std::string> not_looked_for;  ///< types skipped because they need an upward direction, which the set does not
-                                              ///< have
-    std::vector<std::string> notes;           ///< reports what was omitted because of the limits on number
+    std::vector<int> stated;  ///< ids of stated relationships that were also extracted and therefore not added a second time
+    /// Types that were not extracted, since they need an upward direction and the set states none.
+    std::vector<std::string> not_looked_for;
+    std::vector<std::string> notes;  ///< what was omitted because of the limits on the number of relationships
 };
 
-/// Extracts all relationships of these types (all if empty) that hold, and keeps those of `old` that were not extracted. Throws
-/// Error (usage) for a type that is not geometric.
+/// Extracts all relationships of these types (all geometric types if `types` is empty) that hold, and keeps the relationships of
+/// `old` that were not extracted. Throws Error (usage) for a type that is not geometric.
 ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGraph& old = {},
                                      const std::vector<std::string>& types = {}, const RelationOptions& options = {});
 
-/// The types in their canonical spelling. Throws Error (usage), with the most similar name, for a type that is not geometric.
+/// The canonical spelling of each type name. Throws Error (usage), with the most similar name, for a type that is not geometric.
 std::vector<std::string> geometric_types(const std::vector<std::string>& names);
 
-/// The axis of a part used by relationships about axes: the axis of its slices if the part is longer than wide and not bent;
+/// The axis of a part for relationships between axes: the axis of its slices if the part is longer than wide and not bent;
 /// otherwise its axis of rotation, or the shortest principal axis of a flat round part.
 Axis axis_of_part(const Mesh& mesh, const Annotation& annotation);
 
-/// The quantities that a type measures, e.g. {"angle", "distance"}; empty for types that are not measured here.
+/// The quantities that RelationMeter measures for a type, e.g. {"angle", "distance"}; empty for types that it does not measure.
 std::vector<std::string> measured_quantities(const std::string& type);
 
 }  // namespace ostraka

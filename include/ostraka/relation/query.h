@@ -12,29 +12,30 @@
 
 namespace ostraka {
 
-/// A reference to an attribute of another object, as in `same(attribute, object)`.
+/// A reference to an attribute of another object, as in the query `same(attribute, object)`.
 struct QueryReference {
-    std::string attribute, object;
+    std::string attribute, object;  ///< name of the attribute; name of the object
     auto operator<=>(const QueryReference&) const = default;
 };
 
-/// The object that a query is evaluated on.
+/// The annotated object on which a query is evaluated.
 struct QueriedObject : AnnotatedMeshView {
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
-    const Vocabulary* vocabulary = nullptr;  ///< used to compare words and attribute names; may be null
-    /// Values of the attribute in the other object, in the form of `values_of`.
+    const Vocabulary* vocabulary = nullptr;  ///< vocabulary by which words and attribute names are compared; null: by spelling
+    /// Returns the values that an attribute has in another object, in the form that `values_of` returns.
     std::function<std::vector<std::string>(const QueryReference&)> values_elsewhere;
 };
 
+/// Result of a query on one object.
 struct QueryAnswer {
-    bool holds = false;
+    bool holds = false;                 ///< true: the object satisfies the query
     std::vector<int> annotations;       ///< ids of the annotations that satisfy the query, ascending
-    std::vector<std::string> problems;  ///< comparisons that could not be made, as text: incompatible units
+    std::vector<std::string> problems;  ///< comparisons that were impossible, as text: incompatible units
 };
 
 /// A query such as `2 arm and not handle`, `area(handle) >= area(body) / 3`, `related("same mould", 17)` (grammar:
-/// doc/annotation-find.md). A word denotes the same annotation throughout the query, one with this meaning (TagMatcher).
-/// The query holds if some assignment of annotations to words satisfies it.
+/// doc/annotation-find.md). A word stands for one annotation with this meaning (TagMatcher), the same annotation throughout the
+/// query. The query holds if some assignment of annotations to words satisfies it.
 class AnnotationQuery {
 public:
     /// Parses a query. Throws Error (usage) with the column, the error and the remedy.
@@ -42,13 +43,15 @@ public:
     ~AnnotationQuery();
     AnnotationQuery(AnnotationQuery&&) noexcept;
 
-    /// Words that stand for annotations, and names of attributes and quantities; in the order of the text, without duplicates.
+    /// Words of the query that stand for annotations, in the order of the text, without duplicates.
     [[nodiscard]] const std::vector<std::string>& words() const;
+    /// Names of attributes and quantities in the query, in the order of the text, without duplicates.
     [[nodiscard]] const std::vector<std::string>& names() const;
+    /// References to attributes of other objects.
     [[nodiscard]] const std::vector<QueryReference>& references() const;
 
-    /// Evaluates the query. Quantities that are not attributes (area, perimeter, length, volume ...) are computed from the
-    /// mesh. Throws Error (input) for more than a million assignments. Thread-safe.
+    /// Evaluates the query on an object. Quantities that are not attributes (area, perimeter, length, volume ...) are computed
+    /// from the mesh. Throws Error (input) for more than a million assignments. Thread-safe.
     [[nodiscard]] QueryAnswer ask(const QueriedObject& object) const;
 
     struct Node;
@@ -59,8 +62,8 @@ private:
     std::vector<QueryReference> references_;
 };
 
-/// All values that annotations of the set have for the attribute of that name (in any language of the vocabulary), as text that
-/// is equal for equal values; ascending, without duplicates.
+/// All values that annotations of the object have for the attribute of this name (in any language of the vocabulary), in a text
+/// form that is equal for equal values; ascending, without duplicates.
 std::vector<std::string> values_of(const QueriedObject& object, const std::string& attribute);
 
 }  // namespace ostraka

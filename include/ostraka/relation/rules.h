@@ -1,4 +1,4 @@
-// Checks the rules of a class on annotations and their relationships.
+// Checks the rules of a class of objects on annotations and their relationships.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -7,8 +7,9 @@
 
 namespace ostraka {
 
-/// Every violated rule, as found by `check_class_rules`. Relationships are taken from the graph; without a graph, containment
-/// and adjacency are computed from the mesh. `where` names the file of the rules. Throws as `check_class_rules`.
+/// All violations of the rules that `check_class_rules` finds. Relationships are taken from the graph; without a graph,
+/// containment and adjacency are computed from the mesh. `where` names the file of the rules in errors. Throws as
+/// `check_class_rules`.
 std::vector<RuleViolation> broken_rules(AnnotatedMeshView object, const ClassRules& rules, const Vocabulary* vocabulary,
                                         const RelationGraph* graph, const std::string& where);
 

@@ -6,43 +6,48 @@
 
 namespace ostraka {
 
-/// Containment (six rules) as a strict partial order. Annotations are referred to by their index in the set. Of two equal
-/// selections the container is the one that is the whole mesh (`all`), otherwise the one with the lower id. Empty selections
-/// are ignored.
+/// Containment of selections (six rules) as a strict partial order. Annotations are referred to by their index in the set. Among
+/// two equal selections the container is the whole mesh (`all`) if one of them is, otherwise the annotation with the lower id.
+/// Empty selections are ignored.
 struct ContainmentOrder {
-    std::vector<std::vector<std::size_t>> containers;  ///< for each annotation all that contain it, ascending
-    std::vector<std::vector<std::size_t>> direct;      ///< those with no other container in between (the transitive reduction)
-    std::vector<std::optional<std::size_t>> parent;    ///< the direct container of smallest area, then lowest id
-    std::vector<std::vector<std::size_t>> equal;       ///< groups of two or more equal selections
+    std::vector<std::vector<std::size_t>> containers;  ///< for each annotation, all annotations that contain it, ascending
+    /// For each annotation, its containers without another container in between (the transitive reduction).
+    std::vector<std::vector<std::size_t>> direct;
+    /// For each annotation, its direct container of smallest area, then lowest id; empty: none.
+    std::vector<std::optional<std::size_t>> parent;
+    std::vector<std::vector<std::size_t>> equal;  ///< groups of two or more annotations with equal selections
 };
 
 /// Two regions without common faces whose outlines share edges.
 struct AdjacentPair {
-    std::size_t a, b;  ///< indices in the set, a < b
-    double length;     ///< total length of the shared edges, in the mesh's unit
-    std::size_t edges = 0;
+    std::size_t a, b;       ///< indices in the set, a < b
+    double length;          ///< total length of the shared edges, in the mesh's unit
+    std::size_t edges = 0;  ///< number of shared edges
 };
 
+/// Containment and adjacency of annotations.
 struct Topology {
     ContainmentOrder order;
-    std::vector<AdjacentPair> adjacent;  ///< ascending
+    std::vector<AdjacentPair> adjacent;  ///< pairs in ascending order of their indices
 };
 
-/// Computes containment and adjacency. Faces with the same set of regions are processed together: O(faces x depth + mesh) for
-/// the grouping, then O(sets x depth x annotations / 64). Throws Error (input) for more than 30000 annotations.
+/// Computes containment and adjacency of the annotations. Faces with the same set of regions are processed together: O(faces x
+/// depth + mesh) for the grouping, then O(sets x depth x annotations / 64). Throws Error (input) for more than 30000 annotations.
 Topology topology(AnnotatedMeshView object);
 
 /// The relationships of a topology: containment (transitive reduction), equal selections, and adjacency with the shared length.
-/// Ids count up from `first_id`. At most `most_of_kind` of containment and of adjacency each, the first ones.
+/// Ids count up from `first_id`. Returns the first `most_of_kind` relationships of containment, and of adjacency, if there are
+/// more.
 std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
                                            std::size_t most_of_kind = std::numeric_limits<std::size_t>::max());
 
-/// The containment tree: annotations below their parents, depth first, children in the order of the set. The root of the graph,
-/// which stands for the whole shape, is not listed.
+/// An entry of the containment tree, which lists annotations below their parents, depth first, children in the order of the set.
+/// The root of the tree, which stands for the whole shape, is not listed.
 struct TreeEntry {
-    std::size_t annotation;
-    std::size_t depth;
+    std::size_t annotation;  ///< index of the annotation in the set
+    std::size_t depth;       ///< number of containers above the entry
 };
+/// Entries of the containment tree from top to bottom.
 std::vector<TreeEntry> containment_tree(const ContainmentOrder& order);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Refinement by splitting edges, with all attached data carried along.
+// Refinement of a mesh by splitting edges; all data attached to the mesh are carried along.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -11,28 +11,29 @@
 namespace ostraka {
 
 struct RefineOptions {
-    std::uint64_t vertices = 0;  ///< target number of vertices, or 0
-    int levels = 0;              ///< number of uniform subdivisions, or 0
+    std::uint64_t vertices = 0;  ///< target number of vertices; 0: `levels` is given instead
+    int levels = 0;              ///< number of uniform subdivisions; 0: `vertices` is given instead
+    /// Position of new vertices, and which edges are split.
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
     void describe(OptionList& visit);
 };
 
 struct RefineResult {
-    std::vector<Index> face_origin;  ///< new face -> old face
-    std::vector<Index> edge_origin;  ///< new edge -> old edge that contains it; no_index for edges inside old faces
-    /// Vertex old_vertices + i was inserted between these two vertices (of smaller index).
+    std::vector<Index> face_origin;  ///< for each new face, the old face that contains it
+    std::vector<Index> edge_origin;  ///< for each new edge, the old edge that contains it; no_index for edges inside old faces
+    /// For each new vertex old_vertices + i, the two vertices (of smaller index) between which it was inserted.
     std::vector<std::array<Index, 2>> parents;
-    std::size_t old_vertices = 0;  ///< vertices with a smaller index keep it
-    int levels = 0;                ///< number of uniform subdivisions
-    std::size_t bisections = 0;    ///< number of single edges halved afterwards
+    std::size_t old_vertices = 0;  ///< number of old vertices; they keep their indices
+    int levels = 0;                ///< number of uniform subdivisions that were made
+    std::size_t bisections = 0;    ///< number of single edges that were split after the subdivisions
 };
 
 /// Splits edges until the target number of vertices, or the requested number of levels, is reached; exactly one of the two must
-/// be given. Old vertices keep their index and, unless the scheme is loop, their position. Values in property maps of types
-/// Index, int, bool, double, float and std::uint8_t are carried along: halves of edges and parts of faces take the values of the
-/// element they were cut from; new vertices, and edges inside old faces, take the default of the map. Linear in the size of the
-/// result, except for sorting by length. Deterministic. Throws Error (usage) if the mesh has more vertices than requested, no
+/// be given. Old vertices keep their indices and, unless the scheme is loop, their positions. Values in property maps of types
+/// Index, int, bool, double, float and std::uint8_t are carried along: parts of an edge or face take the value of the edge or
+/// face from which they were cut; new vertices, and edges inside old faces, take the default of the map. Linear in the size of
+/// the result, except for sorting by length. Deterministic. Throws Error (usage) if the mesh has more vertices than requested, no
 /// edges to split, or if the result would be too large for 32-bit indices.
 ///
 /// Sources: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984 (halving

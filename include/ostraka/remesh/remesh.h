@@ -1,4 +1,4 @@
-// Isotropic remeshing: a new mesh of the same surface, without correspondence to the old vertices.
+// Isotropic remeshing: a new mesh of the same surface, whose vertices do not correspond to the old vertices.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,25 +10,25 @@ namespace ostraka {
 
 struct RemeshOptions {
     std::uint64_t vertices = 0;  ///< target number of vertices
-    int iterations = 3;          ///< rounds of splitting, collapsing, flipping, smoothing and projecting
-    double feature_angle = 0;    ///< degrees; edges with a larger angle between their face normals are kept; 0 = none
+    int iterations = 3;          ///< number of rounds of splitting, collapsing, flipping, smoothing and projecting
+    double feature_angle = 0;    ///< edges whose face normals differ by more than this angle (degrees) are kept; 0: none
 
     void describe(OptionList& visit);
 };
 
 struct RemeshResult {
     Mesh mesh;
-    double target_edge_length = 0;  ///< in the mesh's unit
-    std::size_t remeshed = 0;       ///< number of vertices before the adjustment
-    bool reached = false;           ///< whether the target number was reached exactly
-    double deviation = 0;           ///< maximum distance of the new vertices from the old surface, in the mesh's unit
+    double target_edge_length = 0;  ///< edge length aimed at, in the mesh's unit
+    std::size_t remeshed = 0;       ///< number of vertices before the final adjustment to the target number
+    bool reached = false;           ///< true: the mesh has exactly the target number of vertices
+    double deviation = 0;           ///< max distance of the new vertices from the old surface, in the mesh's unit
 };
 
-/// Isotropic remeshing (Botsch and Kobbelt, "A remeshing approach to multiresolution modeling", 2004; the CGAL implementation)
-/// to edges of equal length, projected onto the old surface, followed by a few collapses or halved edges to reach the number,
-/// and a final projection. No property, annotation or index is carried over. Isolated vertices are removed. Deterministic.
-/// Throws Error (input) for a mesh without area, or with triangles so thin that they would be split into too many pieces, Error
-/// (usage) for an impossible number.
+/// Isotropic remeshing to edges of equal length, projected onto the old surface (Botsch and Kobbelt, "A remeshing approach to
+/// multiresolution modeling", 2004; the CGAL implementation), followed by a few collapses or splits of edges to reach the target
+/// number of vertices, and a final projection. No property, annotation or index is carried over. Isolated vertices are removed.
+/// Deterministic. Throws Error (input) for a mesh without area, or with triangles so thin that they would be split into too many
+/// pieces, Error (usage) for an impossible number of vertices.
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options);
 
 }  // namespace ostraka

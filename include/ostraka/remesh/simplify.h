@@ -1,4 +1,4 @@
-// Simplification by edge collapses, with all attached data carried along.
+// Simplification of a mesh by edge collapses; all data attached to the mesh are carried along.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -12,24 +12,27 @@ namespace ostraka {
 
 struct SimplifyOptions {
     std::uint64_t vertices = 0;                                      ///< target number of vertices
-    enum class Method { qem, lindstrom_turk } method = Method::qem;  ///< cost of a collapse and position of its vertex
-    enum class Outlines { follow, protect, ignore } outlines = Outlines::follow;  ///< treatment of the marked edges
-    /// Maximum rotation of a face normal per collapse, degrees; relaxed if the number cannot be reached otherwise.
+    enum class Method { qem, lindstrom_turk } method = Method::qem;  ///< cost of a collapse, and position of the remaining vertex
+    /// What happens to marked edges: simplified along their curves, kept unchanged, or treated like other edges.
+    enum class Outlines { follow, protect, ignore } outlines = Outlines::follow;
+    /// Max rotation of a face normal by one collapse, degrees; relaxed if the target number cannot be reached otherwise.
     double max_normal_change = 60;
-    double outline_weight = 1;  ///< weight of the distance from marked edges, relative to the distance from faces (qem only)
-    double border_weight = 1;   ///< weight of the distance from border edges (qem only)
+    /// Weight of the distance from marked edges, relative to the weight of the distance from faces (method qem only).
+    double outline_weight = 1;
+    /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
+    double border_weight = 1;
 
     void describe(OptionList& visit);
 };
 
-/// Semantic parts of the mesh: outlines and poly-lines as edges, annotated points as vertices. Empty = none.
+/// Edges and vertices of annotations: outlines and poly-lines as edges, annotated points as vertices.
 struct MarkedParts {
-    std::vector<bool> edges;     ///< one flag per edge, or empty
-    std::vector<bool> vertices;  ///< one flag per vertex, or empty
+    std::vector<bool> edges;     ///< for each edge, whether it is marked; empty: none is marked
+    std::vector<bool> vertices;  ///< for each vertex, whether it is marked; empty: none is marked
 };
 
-/// Is called for every merge while both elements still exist, so that values bound to them can be merged. Faces need no
-/// merging: a face either stays, with its values in every property map, or is removed.
+/// Callbacks for every merge of two vertices or edges, called while both still exist, so that values bound to them can be merged.
+/// Faces need no callback: a face either stays, with its values in every property map, or is removed.
 class CollapseVisitor {
 public:
     virtual ~CollapseVisitor() = default;
@@ -38,22 +41,23 @@ public:
 };
 
 struct SimplifyResult {
-    /// Old vertex -> new vertex that represents it; no_index for isolated vertices, which are removed.
+    /// For each old vertex, the new vertex that represents it; no_index for isolated vertices, which are removed.
     std::vector<Index> vertex_map;
-    std::vector<Index> face_map;  ///< old face -> new face, or no_index if it was removed
-    std::size_t collapses = 0;
-    bool reached = false;          ///< whether the target number was reached exactly
-    std::string stop_reason;       ///< message: why the simplification stopped
-    bool outlines_broken = false;  ///< whether marked edges were merged to reach the number (never if protected)
-    std::size_t isolated_dropped = 0;
+    std::vector<Index> face_map;  ///< for each old face, its index in the new mesh; no_index if it was removed
+    std::size_t collapses = 0;    ///< number of collapses
+    bool reached = false;         ///< true: the mesh has exactly the target number of vertices
+    std::string stop_reason;      ///< why the simplification stopped, as a sentence
+    /// True: marked curves were merged to reach the target number (never if marked edges are protected).
+    bool outlines_broken = false;
+    std::size_t isolated_dropped = 0;  ///< number of isolated vertices that were removed
 };
 
-/// Collapses edges in the order of their cost until `options.vertices` are left. The mesh stays manifold and keeps its topology
-/// (genus, components, borders) and orientation; no face is flipped. Property maps of kept elements keep their values; the
-/// garbage is collected. Neighbouring vertices stay neighbours or are merged, so a poly-line mapped through `vertex_map` is a
-/// poly-line. O(n log n). Deterministic. Throws Error (usage) if the mesh has fewer vertices than requested or the number of
-/// flags does not match the mesh. If the number cannot be reached, the result gives the reason and contains the smallest mesh
-/// found.
+/// Collapses edges in ascending order of cost until `options.vertices` vertices are left. The mesh stays manifold and keeps its
+/// topology (genus, components, borders) and orientation; no face is flipped. Property maps of remaining elements keep their
+/// values; the garbage is collected. Neighbouring vertices stay neighbours or are merged, so that a poly-line mapped through
+/// `vertex_map` is a poly-line. O(n log n). Deterministic. Throws Error (usage) if the mesh has fewer vertices than requested or
+/// the number of flags does not match the mesh. If the target number cannot be reached, the result gives the reason and the mesh
+/// is the smallest that was found.
 ///
 /// Sources: Garland and Heckbert, "Surface simplification using quadric error metrics", 1997; Lindstrom and Turk, "Fast and
 /// memory efficient polygonal simplification", 1998; link conditions: Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving

@@ -1,4 +1,4 @@
-// Mapping between pixels of a picture and points, in the mesh's own coordinates.
+// Mapping between pixels of a picture and points in the mesh's own coordinates.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -14,39 +14,41 @@ struct PixelBox {
     double left = 0, top = 0, width = 0, height = 0;
 };
 
-/// A pinhole or parallel projection. right x up = toward, all of unit length.
+/// A pinhole camera or parallel projection. right x up = toward, all of unit length.
 struct PictureCamera {
-    Vector right{1, 0, 0}, up{0, 0, 1}, toward{0, -1, 0};  ///< `toward` points to the viewer
-    Point centre{0, 0, 0};                                 ///< the point shown in the middle of the picture
-    double scale = 1;                                      ///< pixels per unit; in perspective at the depth of the centre
-    double distance = 0;                                   ///< distance from the centre to the eye; 0 for parallel projection
-    double middle_x = 0, middle_y = 0;                     ///< pixel coordinates of the centre
+    Vector right{1, 0, 0}, up{0, 0, 1}, toward{0, -1, 0};  ///< `toward` points from the object to the viewer
+    Point centre{0, 0, 0};                                 ///< the point shown at (middle_x, middle_y)
+    double scale = 1;                                      ///< pixels per unit of length; in perspective at the depth of `centre`
+    double distance = 0;                                   ///< distance from `centre` to the eye; 0 for parallel projection
+    double middle_x = 0, middle_y = 0;                     ///< pixel coordinates of `centre`
 
+    /// Line of sight through a pixel.
     struct Ray {
-        Point origin;      ///< the eye, or for parallel projection the point in the plane through the centre
+        Point origin;      ///< the eye; for parallel projection the point in the plane through `centre`
         Vector direction;  ///< unit vector away from the viewer
     };
+    /// Line of sight through the pixel coordinates x, y.
     [[nodiscard]] Ray ray(double x, double y) const;
-    /// Pixel coordinates; none for points level with the eye or behind it.
+    /// Pixel coordinates of a point; none for points level with the eye or behind the eye.
     [[nodiscard]] std::optional<std::array<double, 2>> project(const Point& point) const;
-    /// The eye; none for parallel projection.
+    /// Position of the eye; none for parallel projection.
     [[nodiscard]] std::optional<Point> eye() const;
 };
 
 /// Camera settings of `render` for one object.
 struct CameraPlan {
     View view;
-    std::array<double, 3> up{0, 0, 1};  ///< unit length
+    std::array<double, 3> up{0, 0, 1};  ///< upward direction of the object, of unit length
     bool perspective = false;
-    double zoom = 1;
-    PixelBox pane;  ///< the part of the picture where the object is drawn
+    double zoom = 1;  ///< magnification; 1 shows the whole object
+    PixelBox pane;    ///< the part of the picture where the object is drawn
 };
 
-/// The camera that `render` uses for the mesh: the whole object fits the pane with a margin. Linear. Throws Error (input) for a
-/// mesh without vertices.
+/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Linear. Throws Error (input) for
+/// a mesh without vertices.
 PictureCamera fit_camera(const Mesh& mesh, const CameraPlan& plan);
 
-/// The pane of the object in a picture of this size with a single object, a scale bar, no legend and no title.
+/// The pane of a single object in a picture of this size, with a scale bar and without legend and title.
 PixelBox plain_pane(int width, int height);
 
 }  // namespace ostraka

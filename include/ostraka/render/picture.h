@@ -10,43 +10,44 @@
 
 namespace ostraka {
 
-/// An opaque colour, sRGB, 0 to 255.
+/// An opaque sRGB colour; each component is 0 to 255.
 struct Rgb {
     std::uint8_t red = 0, green = 0, blue = 0;
     friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// Rows from the top, each pixel 0xAARRGGBB with the colour premultiplied by alpha.
+/// Pixels of a picture, rows from the top; each pixel is 0xAARRGGBB with the colour premultiplied by alpha.
 struct Picture {
     int width = 0, height = 0;
-    std::vector<std::uint32_t> argb;
+    std::vector<std::uint32_t> argb;  ///< pixels, row by row
 
     [[nodiscard]] std::uint32_t at(int column, int row) const {
         return argb[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
     }
 };
 
-/// 16 bits per channel, not premultiplied: red, green, blue, alpha of each pixel, rows from the top.
+/// Picture with 16 bits per channel, not premultiplied; rows from the top.
 struct DeepPicture {
     int width = 0, height = 0;
-    std::vector<std::array<std::uint16_t, 4>> rgba;
+    std::vector<std::array<std::uint16_t, 4>> rgba;  ///< red, green, blue, alpha of each pixel
 };
 
 /// Output format: pixels, or a vector document whose lines and letters stay sharp at any size.
 enum class PictureKind { pixels, svg, pdf };
 
-/// Determined by the extension: .png, .svg, .pdf. Throws Error (usage) for any other extension.
+/// The format that the extension of a file name determines: .png, .svg, .pdf. Throws Error (usage) for any other extension.
 PictureKind picture_kind(const std::string& file);
 
-/// The SVG written by cairo with the numbers in its identifiers renumbered from 1: cairo counts over the whole process.
+/// The SVG text written by cairo, with the numbers in its identifiers renumbered from 1, since cairo numbers identifiers over the
+/// whole process.
 std::string stable_svg(const std::string& svg);
 
-/// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
+/// Parses a colour: "#rrggbb", "white", "black" or "grey". Throws Error (usage) for any other text.
 Rgb parse_colour(const std::string& text);
 
 /// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
-/// The same with 16 bits per channel.
+/// Writes a PNG file with 16 bits per channel atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const DeepPicture& picture);
 
 }  // namespace ostraka

@@ -13,30 +13,32 @@
 namespace ostraka {
 
 struct RenderOptions {
-    std::string size = "1200x900";
-    std::string view = "30,20";
-    std::string views;  ///< "six", or several values of `view` separated by ";"; empty: `view`
-    std::string up = "auto";
+    std::string size = "1200x900";  ///< width and height of the picture, pixels
+    std::string view = "30,20";     ///< view direction, as `parse_view` accepts
+    std::string views;              ///< several views on one sheet: "six", or values of `view` separated by ";"; empty: one view
+    std::string up = "auto";        ///< upward direction of the object, as `parse_up` accepts
     enum class Projection { orthographic, perspective } projection = Projection::orthographic;
-    double zoom = 1;
-    enum class Fit { all, each } fit = Fit::all;  ///< several objects: all at the same scale, or each as large as possible
+    double zoom = 1;  ///< magnification about the centre; 1 shows the whole object
+    /// Scale of several objects: all at the same scale, or each as large as possible.
+    enum class Fit { all, each } fit = Fit::all;
     enum class Shading { smooth, flat } shading = Shading::smooth;
-    double crease = 40;
-    int ambient_occlusion = 0;
-    int samples = 8;
-    bool edges = false;
+    double crease = 40;         ///< smooth shading: edges whose face normals differ by more than this angle (degrees) look sharp
+    int ambient_occlusion = 0;  ///< number of ambient occlusion rays per pixel; 0: none
+    int samples = 8;            ///< number of rays per pixel where colours change; 1: no additional rays
+    bool edges = false;         ///< draw the edges of the mesh over the surface
+    /// Drawing style; lines: visible contours, creases and borders; wire: edges.
     enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
-    bool contours = false;
-    bool labels = false;
-    bool axes = false;
-    int supersample = 0;
-    bool deep = false;
-    enum class Theme { light, dark } theme = Theme::light;
-    std::string background = "auto";
-    bool transparent = false;
-    bool no_scale_bar = false;
-    bool no_legend = false;
-    std::optional<ColourScale> scale;  ///< colours of values, and the colour bar beside the picture
+    bool contours = false;  ///< draw contours, creases and borders over the surface
+    bool labels = false;    ///< write names beside the object, with leader lines, instead of a legend
+    bool axes = false;      ///< draw the directions of the mesh's axes
+    int supersample = 0;    ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
+    bool deep = false;      ///< write a PNG with 16 bits per channel
+    enum class Theme { light, dark } theme = Theme::light;  ///< colours of text and background
+    std::string background = "auto";   ///< colour of the background, as `parse_colour` accepts; auto: colour of the theme
+    bool transparent = false;          ///< leave the background transparent
+    bool no_scale_bar = false;         ///< omit the scale bar
+    bool no_legend = false;            ///< omit the legend and the colour bar
+    std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
     void describe(OptionList& visit);
 };
@@ -44,43 +46,44 @@ struct RenderOptions {
 /// Throws Error (usage) for options that `render` would refuse. Call it before reading the meshes.
 void check_render_options(const RenderOptions& options);
 
-/// A name beside an object; coordinates in pixels of the whole picture.
+/// A name written beside an object; coordinates in pixels of the whole picture.
 struct PaneLabel {
     std::string text;
     Rgb colour;
-    double left = 0, top = 0, width = 0, height = 0;
-    double place_x = 0, place_y = 0;  ///< visible point of the labelled part
+    double left = 0, top = 0, width = 0, height = 0;  ///< rectangle of the text
+    double place_x = 0, place_y = 0;                  ///< visible point of the labelled part, where the leader line ends
 };
 
-/// Layout of a picture, for tests and for drawing over the picture.
+/// Where an object is drawn in a picture, for tests and for drawing over the picture.
 struct Pane {
-    std::size_t scene = 0;
-    std::string view;
-    int left = 0, top = 0, width = 0, height = 0;  ///< pixels
-    double pixels_per_unit = 0;                    ///< scale; in perspective that of the object's middle
-    double bar_length = 0;                         ///< length of the scale bar in the mesh's unit; 0 if there is none
-    double bar_pixels = 0;
-    std::size_t markers_shown = 0;  ///< number of visible markers
+    std::size_t scene = 0;                         ///< index of the scene that the pane shows
+    std::string view;                              ///< name of the view
+    int left = 0, top = 0, width = 0, height = 0;  ///< rectangle of the pane, pixels
+    double pixels_per_unit = 0;                    ///< scale; in perspective at the depth of the object's middle
+    double bar_length = 0;                         ///< length that the scale bar represents, in the mesh's unit; 0: no scale bar
+    double bar_pixels = 0;                         ///< length of the scale bar, pixels
+    std::size_t markers_shown = 0;                 ///< number of markers that are visible
     std::vector<PaneLabel> labels;
     PictureCamera camera;  ///< in pixel coordinates of the whole picture
 };
 
+/// A rendered picture or document.
 struct Rendering {
     int width = 0, height = 0;  ///< pixels
-    Picture picture;            ///< for pixel output
-    DeepPicture deep;           ///< the same with 16 bits per channel, if requested
-    std::string document;       ///< for SVG and PDF: the contents of the file
-    std::vector<Pane> panes;
-    double build_seconds = 0;  ///< seconds spent building the search tree
-    double draw_seconds = 0;   ///< seconds spent on everything else
+    Picture picture;            ///< the picture, if the output format is pixels
+    DeepPicture deep;           ///< the picture with 16 bits per channel, if requested
+    std::string document;       ///< contents of the file, if the output format is SVG or PDF
+    std::vector<Pane> panes;    ///< panes of the picture, one per scene and view
+    double build_seconds = 0;   ///< seconds spent building the search trees
+    double draw_seconds = 0;    ///< seconds spent on the rest of the rendering
 };
 
 /// Draws the scenes side by side. Rays are traced through a bounding volume hierarchy (Embree); the first hit is shaded by a
 /// light near the viewer's head and a soft sky, with more rays where neighbouring pixels differ. Lines and markers are drawn
-/// where the ray to the viewer is free, with a tolerance of 0.2 % of the largest side of the box. The picture is bit-identical
-/// for any number of threads. O((n + pixels) log n). In documents the surface is an embedded image; everything else is vector
-/// graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a coordinate that is not finite
-/// or a list of the wrong length.
+/// where the ray to the viewer is unobstructed, with a tolerance of 0.2 % of the largest side of the bounding box. The picture is
+/// bit-identical for any number of threads. O((n + pixels) log n). In SVG and PDF the surface is an embedded image; everything
+/// else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a coordinate that
+/// is not finite or a list of the wrong length.
 Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {}, PictureKind kind = PictureKind::pixels);
 
 }  // namespace ostraka

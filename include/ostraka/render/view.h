@@ -9,30 +9,32 @@
 
 namespace ostraka {
 
-/// View direction in degrees. Azimuth 0 is the front, 90 the object's right as it appears in the front view; elevation 90 is
-/// above. The front is the side towards -y (towards +z if y is up or down).
+/// View direction in degrees. Azimuth 0 shows the front, azimuth 90 the side that is on the right in the front view; elevation 90
+/// shows the object from above. The front is the side towards -y (towards +z if the object's upward direction is y or -y).
 struct View {
-    std::string name;  ///< name for labels
+    std::string name;  ///< name of the view for labels
     double azimuth = 30, elevation = 20;
 };
 
-/// "front", "back", "left", "right", "top", "bottom", "iso" (45, 35.26) or "azimuth,elevation" in degrees.
-/// Throws Error (usage) for anything else.
+/// Parses a view: "front", "back", "left", "right", "top", "bottom", "iso" (45, 35.26) or "azimuth,elevation" in degrees. Throws
+/// Error (usage) for any other text.
 View parse_view(const std::string& text);
 
-/// The values that `parse_view` accepts, as the rule of an option.
+/// Rule of an option whose values `parse_view` accepts.
 Words view_words();
 
-/// The views of `--views six`: front, right, back, left, top, bottom.
+/// The views that the option `--views six` shows: front, right, back, left, top, bottom.
 std::vector<View> standard_views();
 
-/// "x", "y", "z", "-x", "-y", "-z" or three numbers "0,0.6,0.8"; "auto" is z. Unit length. Throws Error (usage).
+/// Parses an upward direction: "x", "y", "z", "-x", "-y", "-z" or three numbers such as "0,0.6,0.8"; "auto" is z. Returns a unit
+/// vector. Throws Error (usage) for any other text.
 std::array<double, 3> parse_up(const std::string& text);
 
-/// The picture's axes in the object's coordinates: unit vectors, right x up = towards the viewer.
+/// The axes of a view in the object's coordinates: unit vectors; toward = right x up points to the viewer.
 struct ViewAxes {
     std::array<double, 3> right, up, toward;
 };
+/// Axes of a view of an object with this upward direction.
 ViewAxes view_axes(const View& view, const std::array<double, 3>& up);
 
 }  // namespace ostraka

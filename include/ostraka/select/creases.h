@@ -1,4 +1,4 @@
-// Ridges and hollows, where clay was pressed on, joined or smeared: candidates for line and region annotations.
+// Ridges and hollows, where clay was pressed on, joined or smeared, as candidates for line and region annotations.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -11,42 +11,45 @@
 namespace ostraka {
 
 struct CreaseOptions {
-    enum class Kind { ridge, hollow, both } kind = Kind::both;
-    double scale = 0.01;
-    double wide = 3;
-    double weak = 3;
-    double strong = 6;
-    double floor = 0.03;
-    double shortest = 0.05;
+    enum class Kind { ridge, hollow, both } kind = Kind::both;  ///< which creases are found
+    double scale = 0.01;     ///< radius over which curvature is averaged, as a share of the bounding box diagonal
+    double wide = 3;         ///< radius of the neighbourhood used for comparison, in multiples of the scale
+    double weak = 3;         ///< lower hysteresis threshold of the response, in robust standard deviations
+    double strong = 6;       ///< upper hysteresis threshold of the response, in robust standard deviations
+    double floor = 0.03;     ///< min response of a crease (curvature times scale)
+    double shortest = 0.05;  ///< min length of a crease, as a share of the bounding box diagonal
 
     void describe(OptionList& visit);
 };
 
+/// A ridge or hollow.
 struct Crease {
-    bool ridge = true;          ///< convex crease; otherwise a hollow
-    bool closed = false;        ///< the line is a closed loop
-    std::vector<Index> faces;   ///< ascending
-    std::vector<Index> line;    ///< successive vertices along the crest, connected by edges; closed: first = last
+    bool ridge = true;         ///< true: convex crease; false: hollow
+    bool closed = false;       ///< true: the line is a closed loop
+    std::vector<Index> faces;  ///< indices of the faces of the crease, ascending
+    /// Successive vertices along the crest, connected by edges; if closed, the first vertex is repeated at the end.
+    std::vector<Index> line;
     double length = 0;          ///< length of the line, in the mesh's unit
-    double width = 0;           ///< area of the faces / length
-    double mean_curvature = 0;  ///< mean curvature, averaged along the line at the scale; 1/length
-    double strength = 0;        ///< mean response along the line in robust deviations, at most 1e6
+    double width = 0;           ///< mean width: area of the faces divided by the length
+    double mean_curvature = 0;  ///< mean curvature over the scale, averaged along the line; unit: 1 / length
+    double strength = 0;        ///< mean response along the line, in robust standard deviations, at most 1e6
 };
 
 /// Finds ridges and hollows. The response of a vertex is s (H(s) - H(wide s)), where H(r) is the mean curvature over a ball of
-/// radius r (fields/curvature.h) and s the scale as a length. It is zero on planes, spheres and cylinders of any radius,
-/// positive on ridges, negative in hollows. Its robust deviation is 1.4826 times the median of its absolute values over the
-/// area (zero on a shape without noise or detail, hence the floor). Vertices above `weak` that are connected with a vertex
-/// above `strong` form a crease (hysteresis), unless a response of the other sign within the wide radius is more than three
-/// times as strong (the crease is then its echo). The line of a crease is the path along the crest between the two ends
-/// farthest apart, or, if the crease is a ring, the shortest such loop around it (found on its double cover). Creases are
-/// sorted by length and strength, descending. Border vertices have no response. Time as for curvature, plus n log n in each
-/// crease. Throws Error (usage) for options out of range, `weak` above `strong`, or a scale below the mean edge length.
+/// radius r (fields/curvature.h) and s is the scale as a length. The response is zero on planes, spheres and cylinders of any
+/// radius, positive on ridges, negative in hollows. Its robust standard deviation is 1.4826 times the median of its absolute
+/// values over the area (zero on a shape without noise or detail, hence the option `floor`). Vertices above `weak` that are
+/// connected with a vertex above `strong` form a crease (hysteresis), unless a response of the other sign within the wide radius
+/// is more than three times as strong (then the crease is a side effect of the stronger one). The line of a crease is the path
+/// along the crest between the two ends farthest apart, or, if the crease is a ring, the shortest loop around the ring (found on
+/// its double cover). Creases are sorted by length, then strength, both descending. Border vertices have no response. Time as for
+/// curvature, plus n log n in each crease. Throws Error (usage) for options out of range, `weak` above `strong`, or a scale below
+/// the mean edge length.
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options = {});
 
-/// One annotation for each crease, in their order: "ridge 1", "ridge 2", ... in warm and "hollow 1", ... in cold colours, as
-/// lines along the crests or as regions. Descriptors: length (of lines), width, mean curvature and strength. `unit`: unit of
-/// the mesh's coordinates, "" if unknown.
+/// One annotation for each crease, in the order of `creases`: "ridge 1", "ridge 2", ... in warm and "hollow 1", ... in cold
+/// colours, as lines along the crests or (`regions`) as regions. Descriptors: length (of lines), width, mean curvature and
+/// strength. `unit`: unit of the mesh's coordinates, "" if unknown.
 AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions, const std::string& unit = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Selections by a scalar value per vertex or face.
+// Selections of faces and vertices by a scalar value.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,10 +10,10 @@
 
 namespace ostraka {
 
-/// One value per vertex or face; NaN where there is none.
+/// A scalar field on a mesh: one value per vertex or face; NaN where there is no value.
 struct ScalarMap {
     std::vector<double> values;
-    bool on_faces = false;
+    bool on_faces = false;  ///< true: one value per face; false: one per vertex
 };
 
 /// Closed interval from `above` to `below`.
@@ -22,31 +22,32 @@ struct ScalarRange {
     [[nodiscard]] bool contains(double x) const { return above <= x && x <= below; }
 };
 
-/// The coordinate of each vertex along a direction, in the mesh's unit; if `share`, scaled to 0 at the lowest vertex that has a
-/// face and 1 at the highest. Throws Error (input) for a direction without length.
+/// The coordinate of each vertex along a direction, in the mesh's unit; if `share`, the coordinate is scaled to 0 at the lowest
+/// vertex that has a face and 1 at the highest. `where` names the direction in errors. Throws Error (input) for a direction
+/// without length.
 ScalarMap coordinate_map(const Mesh& mesh, const Vector& direction, bool share, const std::string& where);
 
-/// Faces whose value is in the interval; for a map on vertices the value of a face is the mean of its corners.
+/// For each face, whether its value is in the interval; for a map on vertices the value of a face is the mean of its corners.
 std::vector<bool> faces_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval);
-/// Vertices that have a face and whose value is in the interval; for a map on faces the value of a vertex is the area-weighted
-/// mean of the faces around it.
+/// Indices of the vertices that have a face and whose value is in the interval; for a map on faces the value of a vertex is the
+/// area-weighted mean of the faces around the vertex.
 std::vector<Index> vertices_between(const Mesh& mesh, const ScalarMap& map, const ScalarRange& interval);
 
-/// The quantile of a map: the value below which the map lies on this share (0 to 1) of the area. Throws Error (input) if the
-/// map has no value.
+/// The quantile of a map by area: the value below which the map lies on the share `share` (0 to 1) of the surface area. Throws
+/// Error (input) if the map has no value.
 double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const std::string& where);
 
 struct SegmentOptions {
-    int clusters = 5;
-    double smoothing = 0.26;
+    int clusters = 5;         ///< number of thickness levels
+    double smoothing = 0.26;  ///< preference for short borders in concave places, 0 to 1
 
     void describe(OptionList& visit);
 };
 
-/// Segments of similar thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements it). The values of `thickness`, one per
-/// face, are smoothed over the faces, clustered by a mixture of Gaussians and cut at concave places of the surface (graph cut);
-/// connected faces of one cluster form a segment. Returns the segment index of each face; 0 is the segment of largest area.
-/// Throws Error (input) for a mesh without faces, Error (usage) for options out of range or a wrong number of values.
+/// Segments of similar thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements the algorithm). `thickness` has one value
+/// per face; the values are smoothed over the faces, clustered by a mixture of Gaussians and cut at concave places of the surface
+/// (graph cut); connected faces of one cluster form a segment. Returns the segment index of each face; segment 0 has the largest
+/// area. Throws Error (input) for a mesh without faces, Error (usage) for options out of range or a wrong number of values.
 std::vector<Index> segment(const Mesh& mesh, const std::vector<double>& thickness, const SegmentOptions& options = {});
 
 }  // namespace ostraka
