@@ -67,7 +67,8 @@ private:
 struct SliceObject final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
+        p.input("annotations", Kind::annotations, annotations,
+                "annotations of the mesh (.ant.json): unit, upward direction, parts")
             .optional();
         p.output_option("output", Kind::folder, output,
                         "a folder for everything, or .json (all), .csv (descriptors), .svg, .pdf, .png (drawing), .ply (slices "
@@ -80,7 +81,7 @@ struct SliceObject final : Operation {
         p.options.group("Planes");
         p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
-        up.describe(p, "upward direction; otherwise that of the annotations, otherwise 0,0,1");
+        up.describe(p, "upward direction; by default the upward direction of the annotations, or 0,0,1");
         p.options("count", count, "number of layers of equal height, with a slice in the middle of each (default 50)",
                   Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, from the lowest point up", Anything{}, "the mesh's unit");

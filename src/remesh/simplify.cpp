@@ -278,7 +278,7 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
 }
 
 void SimplifyOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices", Range{1, 5e8});
+    visit("vertices", vertices, "target number of vertices of the mesh", Range{1, 5e8});
     visit("method", method,
           "cost and position of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
           Choices{"qem", "lindstrom-turk"});

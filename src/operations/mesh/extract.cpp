@@ -17,7 +17,7 @@ struct MeshExtract final : AnnotatedMeshOperation {
         describe_inputs(p);
         p.output("output", Kind::mesh, output, "mesh file of the part to write");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
-        vocabulary.describe(p, "by which tags are compared with the names given");
+        vocabulary.describe(p, "by which tags of annotations are matched with --annotation and --without");
         p.options("annotation", names, "regions to cut out, by id or tag (all of that tag); the whole mesh if left out").words();
         p.options("without", without, "regions to leave out, by id or tag").words();
         p.options("closed", closed, "close the cuts by triangles, annotated as 'cut'");

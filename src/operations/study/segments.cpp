@@ -21,7 +21,7 @@ struct StudySegments final : Operation {
         p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .pdf, .png)");
         p.input_option("compare", Kind::annotations, compare,
                        "annotations with the known parts; otherwise the labels of the mesh file, if it has any");
-        up.describe(p, "upward direction; otherwise that of --compare, otherwise 0,0,1");
+        up.describe(p, "upward direction; by default the upward direction of the annotations of --compare, or 0,0,1");
         p.options("unit", unit, "unit of the mesh; otherwise that of --compare");
         options.describe(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));

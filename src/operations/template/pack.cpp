@@ -17,7 +17,7 @@ struct TemplatePack final : Operation {
             return p.input_option(role, kind, parts[role], help);
         };
         part("mesh", Kind::mesh, "mesh").needed = true;
-        part("annotations", Kind::annotations, "its annotations (.ant.json)");
+        part("annotations", Kind::annotations, "annotations of the mesh (.ant.json)");
         part("graph", Kind::graph, "relationships among them (.graph.json)");
         part("cage", Kind::cage, "closed cages around the mesh, coarse to fine").words();
         part("coordinates", Kind::coordinates, "coordinates of the mesh in the cages (.npy)").words();
@@ -27,7 +27,7 @@ struct TemplatePack final : Operation {
         part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
         p.options("class", object_class, "class of the object; otherwise that of the annotations");
         p.options("unit", unit, "unit of the coordinates, any text such as mm; otherwise that of the annotations");
-        up.describe(p, "upward direction; otherwise that of the annotations");
+        up.describe(p, "upward direction; by default the upward direction of the annotations");
         p.options("copy", copy, "copy the files into the template's folder");
         options.describe(p.options);
         declare_template(p.report, true);
