@@ -133,9 +133,9 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
 }
 
 void ProposalOptions::describe(OptionList& visit) {
-    visit("stable", stable, "propose ratios that are stable as well, not only fixed ones");
+    visit("stable", stable, "propose constraints for stable ratios as well as for fixed ratios");
     visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
-    visit("hard", hard, "propose hard constraints");
+    visit("hard", hard, "make the proposed constraints hard (satisfied exactly)");
 }
 
 }  // namespace ostraka

@@ -92,7 +92,7 @@ struct SliceObject final : Operation {
         p.options.group("What is reported and drawn");
         p.options("medial-axis", residues, "medial axes of the slices at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
         p.options("axes", axes, "also compute the straightness against the axes of `ostraka axis`");
-        p.options("unit", unit, "unit of the mesh; otherwise that of the annotations");
+        p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of the annotations");
         p.options("title", title, "title of the drawings; otherwise the name of the mesh file");
         p.options("profile-angle", angle, "direction of the profile's section; otherwise a typical one", Range{-360, 360},
                   "degrees");

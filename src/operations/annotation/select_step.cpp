@@ -79,7 +79,7 @@ void SelectStep::describe(OptionList& visit) {
           direction_words("--up"));
     visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
-    visit("size", size, "width and height of the picture in pixels");
+    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
 
     visit.group("Annotation");
     visit("tag", tag, "tag of the annotation");

@@ -112,7 +112,7 @@ struct StudyProportions final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
         vocabulary.describe(p, "by which tags of annotations are matched with the names in --measures");
-        p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
+        p.input_option("measures", Kind::text, measures, "definitions of the measures to take on every object (.measures.json)");
         p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template for which proportions are proposed");
         p.input_option("template-annotations", Kind::annotations, annotations, "annotations of the template (.ant.json)");
         p.input_option("template-graph", Kind::graph, graph_in,

@@ -18,17 +18,17 @@ struct TemplatePack final : Operation {
         };
         part("mesh", Kind::mesh, "mesh").needed = true;
         part("annotations", Kind::annotations, "annotations of the mesh (.ant.json)");
-        part("graph", Kind::graph, "relationships among them (.graph.json)");
-        part("cage", Kind::cage, "closed cages around the mesh, coarse to fine").words();
-        part("coordinates", Kind::coordinates, "coordinates of the mesh in the cages (.npy)").words();
-        part("vocabulary", Kind::vocabulary, "the words used (.vocabulary.json, .ttl, .rdf)");
+        part("graph", Kind::graph, "relationships among the annotations (.graph.json)");
+        part("cage", Kind::cage, "closed cage around the mesh; several from coarse to fine").words();
+        part("coordinates", Kind::coordinates, "coordinates of the mesh in a cage (.npy), given once per cage").words();
+        part("vocabulary", Kind::vocabulary, "vocabulary with the words that the annotations use (.vocabulary.json, .ttl, .rdf)");
         part("rules", Kind::rules, "rules of the class (.rules.json)");
-        part("ranges", Kind::text, "ranges of the class's measures (JSON)");
-        part("landmarks", Kind::landmarks, "landmarks (.ant.json)");
-        p.options("class", object_class, "class of the object; otherwise that of the annotations");
-        p.options("unit", unit, "unit of the coordinates, any text such as mm; otherwise that of the annotations");
+        part("ranges", Kind::text, "ranges of the measures of the class (JSON)");
+        part("landmarks", Kind::landmarks, "landmarks of the template (.ant.json)");
+        p.options("class", object_class, "class of the object; by default the class in the annotations");
+        p.options("unit", unit, "unit of the coordinates (any text, such as mm); by default the unit of the annotations");
         up.describe(p, "upward direction; by default the upward direction of the annotations");
-        p.options("copy", copy, "copy the files into the template's folder");
+        p.options("copy", copy, "copy the files into the folder of the template");
         options.describe(p.options);
         declare_template(p.report, true);
     }
