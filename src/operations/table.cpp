@@ -57,7 +57,7 @@ constexpr OperationEntry entries[]{
     {"annotation diff", "list the differences between two sets of annotations; exit code 3 if there are any", make_annotation_diff},
     {"annotation merge", "merge two changed versions of one set of annotations; exit code 3 and no output if there are conflicts", make_annotation_merge},
     {"annotation infer", "derive qualitative attributes from quantities by the rules of a vocabulary; exit code 3 if rules contradict each other", make_annotation_infer},
-    {"relation extract", "find relationships among annotations", make_relation_extract},
+    {"relation extract", "find the relationships that hold among annotations", make_relation_extract},
     {"relation add", "add a user-specified relationship", make_relation_add},
     {"relation remove", "remove relationships from a graph", make_relation_remove},
     {"relation edit", "change the weight, range and parameters of a relationship, and keep its id", make_relation_edit},
@@ -71,7 +71,7 @@ constexpr OperationEntry entries[]{
     {"measure clay", "compute bounds of the volume of clay of an object: with an interior that was not scanned solid, and hollow", make_measure_clay},
     {"vocabulary check", "check a vocabulary for defects; exit code 3 if there are any", make_vocabulary_check},
     {"vocabulary show", "show the concepts of a vocabulary as a tree, with the attributes that each concept permits", make_vocabulary_show},
-    {"vocabulary convert", "convert vocabularies between Ostraka's format and SKOS", make_vocabulary_convert},
+    {"vocabulary convert", "convert a vocabulary between Ostraka's format and SKOS", make_vocabulary_convert},
     {"template pack", "write one file that lists the files of a template, after a check of all files together; exit code 3, and nothing written, if the files are inconsistent", make_template_pack},
     {"template check", "check all files of a template together; exit code 3 if there are defects", make_template_check},
     {"template show", "show the contents of a template and its defects", make_template_show},
@@ -94,7 +94,7 @@ constexpr OperationEntry entries[]{
     {"study technique", "classify bodies as wheel-made or hand-made from their lower slices", make_study_technique},
     {"study segments", "segment an object along its height by clustering its slices", make_study_segments},
     {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis},
-    {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects it", make_slice},
+    {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice},
     {"deform", "deform a shape and preserve the constraints on its parts (exit code 3: the result is not acceptable)", make_deform, 2},
     {"fit", "complete an object from fragments with a template of its class, and report whether the fragments are compatible with each other and the template (exit code 3: incompatible or undecided)", make_fit, 3},
     {"pair", "register two fragments along their common fracture surface; exit code 3 if there is no answer", make_pair},
@@ -106,7 +106,7 @@ constexpr OperationEntry entries[]{
     {"replay", "repeat a run of a study and compare every output with the first run, bit by bit; exit code 3 if an output differs", make_replay, 1, true},
     {"conformance run", "run the golden cases with another program, and report which results agree (exit code 3: some differ)", make_conformance_run, 1, true},
     {"conformance self", "run the golden cases with this command; exit code 3 if one differs", make_conformance_self, 1, true},
-    {"operations", "list every operation with its inputs, outputs, options, ranges, defaults and units", make_operations},
+    {"operations", "list every operation with the inputs, outputs and options, and the range, default and unit of each option", make_operations},
 };
 // clang-format on
 const OperationGroup groups[]{
