@@ -19,7 +19,7 @@ struct CageReachOptions {
     int iterations = 100;
     void describe(OptionList& visit) {
         visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "its annotations").positional().required();
+        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
         visit("graph", graph, "relationships, some of them constraints").positional().required();
         visit("edit", edits, "files of edits, NAME.edit.json").required();
         visit("cage", cages, "files of cages, NAME.ply").required();

@@ -20,8 +20,8 @@ struct ControlPointOptions {
     double threshold = 0.4;
     void describe(OptionList& visit) {
         visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "its annotations").positional().required();
-        visit("cage", cage, "its cage").positional().required();
+        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        visit("cage", cage, "cage of the mesh").positional().required();
         visit("weights", weights, "file of 'ostraka cage weights'").positional().required();
         visit("threshold", threshold, "min influence of a control point", Range{0, 1});
         visit("output", output, "output folder");

@@ -21,8 +21,8 @@ struct Figure46Options {
     int nodes = 20000;
     void describe(OptionList& visit) {
         visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "its annotations").positional().required();
-        visit("cage", cage, "its cage").positional().required();
+        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        visit("cage", cage, "cage of the mesh").positional().required();
         visit("region", region, "tag of the region to be flattened").positional().required();
         visit("kind", kinds, "kinds of cage coordinates");
         visit("nodes", nodes, "number of nodes of the tetrahedra inside the cage", Range{1, 1e9});

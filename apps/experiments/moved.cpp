@@ -20,7 +20,7 @@ struct MovedOptions {
     std::vector<std::string> shapes;
     void describe(OptionList& visit) {
         visit("mesh", mesh, "the shape at rest").positional().required();
-        visit("annotations", annotations, "its annotations").positional().required();
+        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
         visit("shapes", shapes, "mesh files with the same vertices").positional();
         visit("fit", fit,
               "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "

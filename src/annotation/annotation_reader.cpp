@@ -384,7 +384,9 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
 }
 
 void ReadAnnotationsOptions::describe(OptionList& visit) {
-    visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
+    visit("force-mesh", force_mesh,
+          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+          Anything{});
 }
 
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options) {

@@ -406,9 +406,9 @@ std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set
 
 void FairOptions::describe(OptionList& visit) {
     visit("distance", distance,
-          "maximum distance of a curve from its original; 0: the mean edge length of the mesh or along the curve", Range{0, 1e60},
-          "unit of the mesh");
-    visit("let-area-change", let_area_change, "do not restore the area of each region");
+          "maximum distance of a smoothed curve from the original; 0: the mean edge length of the mesh or along the curve",
+          Range{0, 1e60}, "unit of the mesh");
+    visit("let-area-change", let_area_change, "leave the areas of regions as smoothing makes them, instead of restoring them");
 }
 
 }  // namespace ostraka

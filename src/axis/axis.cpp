@@ -172,11 +172,12 @@ std::string to_obj(const Axis& axis) {
 
 void AxisOptions::describe(OptionList& visit) {
     visit("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
-    visit("tolerance", tolerance, "rotation: maximum distance from the revolved profile of points that count as on it",
+    visit("tolerance", tolerance, "rotation: maximum distance at which a point counts as lying on the surface of revolution",
           Range{0, 1}, "share of its largest diameter");
-    visit("min-quality", min_quality, "rotation: minimum share of the surface that lies on the revolved profile", Range{0, 1});
-    visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
-    visit("trials", trials, "rotation: number of random sets of normals (RANSAC)", Range{0, 1000000});
+    visit("min-quality", min_quality, "rotation: minimum share of the area that lies on the surface of revolution", Range{0, 1});
+    visit("slices", slices, "slices: number of planes that slice the part", Range{4, 10000});
+    visit("trials", trials, "rotation: number of random sets of normals from which an axis is computed (RANSAC)",
+          Range{0, 1000000});
     visit("smoothing", smoothing, "rotation: number of rounds in which normals are averaged over their neighbours",
           Range{0, 100});
     visit("seed", seed, "rotation: random seed");

@@ -135,14 +135,15 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 }
 
 void CageOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices", Range{4, 1e6});
+    visit("vertices", vertices, "target number of vertices of the mesh", Range{4, 1e6});
     visit("alpha", alpha,
-          "width of the openings that the wrap does not enter; 0: a fortieth, or more where the target number of vertices "
+          "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
           "requires it",
           Range{0, 1}, "share of the diagonal");
-    visit("offset", offset, "distance of the wrap from the mesh", Range{1e-4, 0.5}, "share of the diagonal");
+    visit("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
+          "share of the diagonal");
     visit("genus", genus,
-          "handles of the object: follow (the cage keeps those that the wrap leaves open) or fill (the cage has none)",
+          "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
           Choices{"follow", "fill"});
 }
 

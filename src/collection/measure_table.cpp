@@ -154,10 +154,12 @@ SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
 void SyntheticMeasuresOptions::describe(OptionList& visit) {
     visit("objects", objects, "number of objects", Range{1, 100000});
     visit("measures", measures, "number of measures", Range{1, 60});
-    visit("groups", groups, "groups of measures with fixed proportions among each other", Range{0, 30});
-    visit("group-size", group_size, "measures in each such group", Range{2, 60});
-    visit("ratio-deviation", ratio_deviation, "standard deviation of the logarithm of ratios that are not fixed", Range{0, 2});
-    visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 2});
+    visit("groups", groups, "number of groups of measures with fixed ratios among each other", Range{0, 30});
+    visit("group-size", group_size, "number of measures in each group with fixed ratios", Range{2, 60});
+    visit("ratio-deviation", ratio_deviation,
+          "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 2});
+    visit("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
+          Range{0, 2});
     visit("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});
     visit("spread", spread,
           "spread of the individual deviations of measures: they are multiplied by evenly spaced factors "

@@ -102,12 +102,14 @@ CutPart largest_segment(const Mesh& mesh) {
 
 void PartOptions::describe(OptionList& visit) {
     visit("annotation", annotations,
-          "the part that is analysed: regions by id or tag (with a vocabulary also narrower concepts); otherwise whole objects")
+          "ids or tags of the regions that are analysed (with a vocabulary also narrower concepts); whole objects if left out")
         .words();
-    visit("without", without, "regions to leave out, by id or tag, such as beard; objects need not have them").words();
+    visit("without", without,
+          "ids or tags of regions that are left out of the analysis, such as beard; not every object needs to have them")
+        .words();
     visit("proposed", proposed,
-          "a part that is detected instead: the tubular part or the top above the neck, from slices perpendicular to the upward "
-          "direction, or the largest thickness segment",
+          "analyse a detected part instead of annotated regions: the tubular part (tube) or the part above the neck (top), from "
+          "slices perpendicular to the upward direction, or the largest segment by thickness (segment)",
           Choices{"none", "tube", "top", "segment"});
 }
 

@@ -134,9 +134,9 @@ Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph e
 }
 
 void ProposalOptions::describe(OptionList& visit) {
-    visit("stable", stable, "propose ratios that are stable as well, not only fixed ones");
+    visit("stable", stable, "propose constraints for stable ratios as well as for fixed ratios");
     visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
-    visit("hard", hard, "propose hard constraints");
+    visit("hard", hard, "make the proposed constraints hard (satisfied exactly)");
 }
 
 }  // namespace ostraka

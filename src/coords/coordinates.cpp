@@ -182,15 +182,16 @@ double Coordinates::stored_share() const {
 }
 
 void CoordinateOptions::describe(OptionList& visit) {
-    visit("snap", snap, "distance below which a point counts as lying on the cage", Range{0, 1e-6},
+    visit("snap", snap, "maximum distance at which a point counts as lying on the cage", Range{0, 1e-6},
           "share of the cage's diagonal");
     visit("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage",
           Range{100, 5e6});
-    visit("drop", drop, "weights below this are dropped (all kinds but mean-value and green)", Range{0, 0.01});
+    visit("drop", drop, "weights below this value are set to zero (not with mean-value or green)", Range{0, 0.01});
     visit("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
-    visit("tolerance", tolerance, "local: stop when ten iterations lower the total variation by less than this share",
+    visit("tolerance", tolerance, "local: stop when ten iterations reduce the total variation by less than this fraction",
           Range{0, 0.1});
-    visit("fade", fade, "nested cages: length over which the influence of an inner cage increases from its border", Range{0, 1},
+    visit("fade", fade,
+          "nested cages: distance from the border of an inner cage over which its influence grows from none to full", Range{0, 1},
           "share of its diagonal");
 }
 

@@ -170,8 +170,7 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
 
 void CurvatureOptions::describe(OptionList& visit) {
     visit("scale", scale,
-          "radius over which curvature is averaged: a larger one is smoother and tolerates more noise; 0: the faces around the "
-          "vertex",
+          "radius over which curvature is averaged; a larger radius tolerates more noise; 0: only the faces around each vertex",
           Range{0, 1}, "share of the box diagonal");
 }
 

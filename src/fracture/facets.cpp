@@ -198,9 +198,10 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
 }
 
 void FacetOptions::describe(OptionList& visit) {
-    visit("facet-edge", edge, "dihedral angle of an edge at which a fracture may begin", Range{5, 120}, "degrees");
-    visit("facet-wall", wall, "maximum thickness of a wall, as a share of the square root of the area", Range{0.01, 1});
-    visit("facet-coherence", coherence, "weight of the agreement of neighbouring faces against the features of a face",
+    visit("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
+    visit("facet-wall", wall, "maximum wall thickness of a fragment with two sides, as a share of the square root of its area",
+          Range{0.01, 1});
+    visit("facet-coherence", coherence, "weight of the labels of neighbouring faces relative to the features of the face itself",
           Range{0, 100});
 }
 

@@ -112,12 +112,13 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
 }
 
 void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer, "the change to keep where both sets changed the same field differently",
+    visit("prefer", prefer,
+          "which set's value to keep where both sets changed the same field differently; none: report a conflict",
           Choices{"none", "ours", "theirs"});
     visit("merge-faces", merge_faces,
-          "where both sets changed a region, merge the changes face by face instead of reporting a conflict", Anything{});
+          "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
     visit("renumber", renumber,
-          "where both sets added an annotation under one id, give the second a new id instead of reporting a conflict",
+          "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
           Anything{});
 }
 

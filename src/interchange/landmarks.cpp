@@ -241,16 +241,17 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
 
 void LandmarkFileOptions::describe(OptionList& visit) {
     visit("mesh-space", mesh_space,
-          "space of the mesh's coordinates, for files that state theirs: LPS (x to the left, y to the back; what 3D Slicer "
-          "writes since 4.11) or RAS (x to the right, y to the front; older ones)",
+          "space of the mesh's coordinates, for file formats that state their space: LPS (x to the left, y to the back; 3D "
+          "Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
           Choices{"LPS", "RAS"});
-    visit("specimen", specimen, "specimen of a TPS file: its ID, or its number from 1", Anything{});
+    visit("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
 }
 
 void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "maximum distance of a point of the file from the surface", Range{0, 1},
+    visit("tolerance", tolerance, "maximum distance between a point of the file and the surface of the mesh", Range{0, 1},
           "share of the box diagonal");
-    visit("skip-far", skip_far, "skip points that are farther, with a note, instead of refusing the file", Anything{});
+    visit("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",
+          Anything{});
 }
 
 }  // namespace ostraka

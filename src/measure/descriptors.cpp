@@ -246,8 +246,8 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
 }
 
 void DescriptorOptions::describe(OptionList& visit) {
-    visit("curvature", curvature, "statistics of mean and Gaussian curvature at the vertices");
-    visit("thickness", thickness, "statistics of the thickness under the faces (shape diameter)");
+    visit("curvature", curvature, "compute statistics of the mean and Gaussian curvature at the vertices");
+    visit("thickness", thickness, "compute statistics of the thickness of the object under the faces (shape diameter)");
     curvature_options.describe(visit);
     thickness_options.describe(visit);
 }

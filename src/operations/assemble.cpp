@@ -28,19 +28,19 @@ namespace {
 struct Assemble final : Operation {
     void describe(Parameters& p) override {
         p.input("fragments", Kind::collection, files,
-                "mesh files, or points without faces, and folders of such files; NAME.ant.json next to one with regions "
-                "\"outer\", \"inner\", \"fracture\" overrides the classification of its facets")
+                "mesh files, point clouds, and folders of such files; regions \"outer\", \"inner\" and \"fracture\" in "
+                "NAME.ant.json beside NAME.ply override the computed classification of its surface")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
-                 "folder for assembly.json and, for each group, group-N.ply (face labels: the number of the fragment), "
-                 "group-N.png, group-N.exploded.png (fragments drawn apart) and NAME.placed.ply; results of pairs are stored in "
-                 "its subfolder pairs and not computed again; created if missing")
+                 "folder, created if missing, for assembly.json and, for each group, group-N.ply (face labels: number of the "
+                 "fragment), group-N.png, group-N.exploded.png (fragments drawn apart) and NAME.placed.ply; its subfolder pairs "
+                 "stores the results of pairs for later runs")
             .flag();
         p.input_option("template", Kind::template_package, object_template,
-                       "template of the objects' class: each group is completed with it");
+                       "template of the class of the objects: each group of joined fragments is completed with the template");
         p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
-        p.options("no-pictures", no_pictures, "draw no pictures");
+        p.options("no-pictures", no_pictures, "write no pictures of the groups");
         p.options("fresh", fresh, "register all pairs again, without the results of an earlier run").unrecorded();
         options.describe(p.options);
         reading.describe(p.options);

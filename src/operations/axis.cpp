@@ -15,10 +15,11 @@ namespace {
 struct FindAxis final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.output_option("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional();
+        p.output_option("output", Kind::report, output, "file to write: the axis as poly-lines (.json, .obj)");
         p.options("annotation", names,
-                  "id or tag of the part, several for their union; a line or points give the axis of their circle")
+                  "id or tag of the part; several for the union of the parts; a line, or points, give the axis of the circle "
+                  "fitted to it")
             .words();
         attribute.describe(p, "axis");
         options.describe(p.options);

@@ -12,12 +12,13 @@ namespace {
 struct Deform final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, package,
-                "template (.template.json), with its graph, cage and coordinates, in place of mesh and annotations")
+                "template (.template.json) with its graph, cage and coordinates; replaces mesh and annotations")
             .optional();
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
-        p.input("edit", Kind::edit, edit, "the edit (.edit.json); or specify it with --stretch, --raise, --rotate").optional();
-        p.output("output", Kind::mesh, output, "the deformed mesh to write, acceptable or not");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional();
+        p.input("edit", Kind::edit, edit, "edit (.edit.json); alternatively, specify the edit by --stretch, --raise and --rotate")
+            .optional();
+        p.output("output", Kind::mesh, output, "deformed mesh to write, whether or not the result is acceptable");
         p.order({"mesh", "annotations", "edit", "output"});
         p.order({"mesh", "annotations", "output"});
         p.order({"mesh", "edit", "output"});
@@ -25,15 +26,19 @@ struct Deform final : Operation {
         p.order({"template", "edit", "output"});
         p.order({"template", "output"});
         p.input_option("graph", Kind::graph, graph,
-                       "relationships (.graph.json), whose constraints are solved for; instead of the template's");
-        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles; without it, the mesh's vertices are");
-        p.input_option("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+                       "relationships (.graph.json) with the constraints to satisfy; replaces the graph of the template");
+        p.input_option(
+            "cage", Kind::cage, cage,
+            "cage whose vertices are the handles of the edit; without a cage, the vertices of the mesh are the handles");
+        p.input_option("weights", Kind::coordinates, weights, "weights written by 'cage weights' (.npy)");
         p.input_option("deformed-cage", Kind::cage, deformed_cage,
-                       "the cage in another shape, a mesh with the same vertices: the first step of the edit moves them there");
+                       "deformed cage, with the same number and order of vertices: the first step of the edit moves the cage "
+                       "vertices to these positions");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "annotations of the deformed mesh, with recomputed measures");
-        p.output_option("cage-out", Kind::cage, cage_out, "the cage after the deformation");
-        p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
+                        "annotations of the deformed mesh to write (.ant.json), with recomputed measures");
+        p.output_option("cage-out", Kind::cage, cage_out, "cage after the deformation, to write");
+        p.options("states", states,
+                  "also write the shape after each step of the edit, before the constraints are solved, as output-step1, ...");
         words.describe(p.options);
         options.describe(p.options);
         tolerances.describe(p.options);

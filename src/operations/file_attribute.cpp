@@ -16,9 +16,10 @@ Path folder_of(const std::string& file) { return resolved(std::filesystem::absol
 }  // namespace
 
 void FileAttribute::describe(Parameters& p, const std::string& name) {
-    p.output_option("annotations-out", Kind::annotations, output_,
-                    "annotations to write (.ant.json): an attribute names the file, with its checksum");
-    p.options("name", name_, fmt::format("name of that attribute; \"{}\" if left out", name));
+    p.output_option(
+        "annotations-out", Kind::annotations, output_,
+        "annotations to write (.ant.json), with a new attribute that refers to the output file and stores the file's checksum");
+    p.options("name", name_, fmt::format("name of the attribute in --annotations-out; \"{}\" if left out", name));
     p.report.values(integer("annotation"), text("attribute"));
 }
 

@@ -23,21 +23,23 @@ struct Fit final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, object_template, "template of the object's class (.template.json)");
         p.input("fragments", Kind::mesh, files,
-                "a mesh file, or points without faces, for each fragment; NAME.ant.json next to it contains its annotations: "
-                "points with the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
+                "mesh file or point cloud of each fragment; in NAME.ant.json beside NAME.ply, points with tags of the template "
+                "are landmarks, and regions \"outer\", \"inner\" and \"fracture\" classify the surface")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; created if missing")
             .flag();
         p.input_option("assembly", Kind::assembly, assembly,
-                       "an assembly: its matches of annotations with \"stated\": true are used as given");
+                       "assembly file whose matches of annotations with \"stated\": true are used unchanged");
         p.input_option(
             "class", Kind::shape_class, class_file,
-            "a class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is "
-            "completed from its members that resemble the fragments; thresholds that are not specified are those of its members");
-        p.options("fresh", fresh, "search poses again, without the results of an earlier fit in the folder").unrecorded();
-        p.options("placed", placed, "also write each fragment in its pose: NAME.placed.ply");
+            "class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is completed "
+            "from members of the class that resemble the fragments; thresholds without an option are those of the class");
+        p.options("fresh", fresh,
+                  "search the poses of fragments again, instead of using the results of an earlier fit in the output folder")
+            .unrecorded();
+        p.options("placed", placed, "also write each fragment in the pose that was found, as NAME.placed.ply");
         vocabulary.describe(p, as_template_words);
         options.describe(p.options);
         reading.describe(p.options);

@@ -9,10 +9,11 @@ namespace {
 
 struct Operations final : Operation {
     void describe(Parameters& p) override {
-        p.options("name", name, "only the operations whose names begin with this").positional();
-        p.output_option("pages", Kind::folder, pages, "write a page of Markdown for each first word of the names");
-        p.output_option("manuals", Kind::folder, manuals, "write a manual page for each operation");
-        p.output_option("completions", Kind::folder, shells, "write what bash, zsh and fish read to complete commands");
+        p.options("name", name, "list only operations whose names begin with this text").positional();
+        p.output_option("pages", Kind::folder, pages,
+                        "folder to write: a page of Markdown for each first word of the operations' names");
+        p.output_option("manuals", Kind::folder, manuals, "folder to write: a manual page for each operation");
+        p.output_option("completions", Kind::folder, shells, "folder to write: completion scripts for bash, zsh and fish");
         p.report.table("operations", text("name", "operation"), text("help", "what it does"), any("inputs"), any("outputs"),
                        any("options"), any("arguments"), any("result"));
     }

@@ -20,7 +20,7 @@ using namespace fields;
 struct AnnotatedMeshOperation : Operation {
     void describe_inputs(Parameters& p) {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
     }
     [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
     [[nodiscard]] AnnotatedMeshView object() const { return {mesh->mesh, set()}; }
@@ -77,7 +77,7 @@ private:
     FileInput file_;
 };
 inline constexpr const char* as_template_words =
-    "by which tags of objects match those of the template: the same concept in any language, or a narrower one";
+    "by which a tag of an object matches a tag of the template: the same concept in any language, or a narrower concept";
 
 /// The annotation with this id, or with this tag if only one annotation has it. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);

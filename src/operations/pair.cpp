@@ -14,14 +14,16 @@ namespace {
 struct PairFragments final : Operation {
     void describe(Parameters& p) override {
         p.input("first", Kind::mesh, first,
-                "mesh file, or points without faces; it is not moved; NAME.ant.json next to it with regions \"outer\", "
-                "\"inner\", \"fracture\" overrides the classification of its facets")
+                "mesh file or point cloud of the fragment that stays in place; regions \"outer\", \"inner\" and \"fracture\" in "
+                "NAME.ant.json beside NAME.ply override the computed classification of its surface")
             .with_annotations_beside();
-        p.input("second", Kind::mesh, second, "the fragment that is moved; the same applies to its annotations")
+        p.input(
+             "second", Kind::mesh, second,
+             "mesh file or point cloud of the fragment that is moved; NAME.ant.json beside it is used as for the first fragment")
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
-                 "folder for second.ply (the second fragment in its pose; face labels 0 outer, 1 inner, 2 fracture) and "
-                 "pair.json; created if missing")
+                 "folder, created if missing, for second.ply (the second fragment in the pose that was found; face labels 0 "
+                 "outer, 1 inner, 2 fracture) and pair.json")
             .flag();
         options.describe(p.options);
         reading.describe(p.options);

@@ -66,9 +66,9 @@ struct Publish final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         p.output("folder", Kind::folder, folder, "folder to write; created if missing");
-        p.options("address", address, "where the folder will be served, such as https://museum.example/pot");
-        p.options("title", title, "title of the object; otherwise the name of the mesh");
-        p.options("rights", rights, "address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
+        p.options("address", address, "web address at which the folder will be served, such as https://museum.example/pot");
+        p.options("title", title, "title of the object; by default the name of the mesh");
+        p.options("rights", rights, "web address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
         p.options("credit", credit, "statement that a viewer must show");
         p.report.values(text("manifest"), integer("annotations", "annotations"));
     }

@@ -19,30 +19,35 @@ namespace {
 
 struct Render final : Operation {
     void describe(Parameters& p) override {
-        p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
+        p.input("meshes", Kind::mesh, meshes, "mesh to draw; several are drawn in one picture").many();
         p.output("picture", Kind::picture, picture, "picture to write (.png, .svg or .pdf)");
         p.order({"meshes", "picture"});
-        p.input_option("annotations", Kind::annotations, annotations, "annotation file; once per mesh, 'none' for a mesh without")
+        p.input_option("annotations", Kind::annotations, annotations,
+                       "annotations to draw (.ant.json); given once per mesh; 'none' for a mesh without annotations")
             .many_or_none();
-        p.input_option(
-             "map", Kind::values, maps,
-             "one number per vertex or face (.npy, or text with one number per line); once per mesh, 'none' for a mesh without")
+        p.input_option("map", Kind::values, maps,
+                       "map: one number per vertex or face (.npy, or text with one number per line); given once per mesh; 'none' "
+                       "for a mesh without a map")
             .many_or_none();
-        p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once per mesh, 'none' for a mesh without")
+        p.input_option("cage", Kind::mesh, cages,
+                       "cage to draw around an object; given once per mesh; 'none' for a mesh without a cage")
             .many_or_none();
         p.options("measures", measures, "draw measures of the annotations with their pins and values");
-        p.options("outlines", outlines, "draw borders of regions and lines along mesh edges, or smoothed",
+        p.options("outlines", outlines,
+                  "how borders of regions and lines are drawn: along mesh edges (exact) or smoothed (smooth)",
                   Choices{"exact", "smooth"});
-        p.output_option("turntable", Kind::folder, turntable, "write frames of a full turn into this folder (0001.png, ...)");
-        p.options("frames", frames, "frames of a full turn", Range{2, 3600});
-        p.options("title", titles, "title under the object; once per mesh, 'none' for a mesh without");
-        p.options("map-on", map_on, "whether the map has values per vertex or per face; auto: from their number",
+        p.output_option("turntable", Kind::folder, turntable,
+                        "folder to write: pictures of the object during a full turn (0001.png, ...)");
+        p.options("frames", frames, "number of pictures of a full turn, for --turntable", Range{2, 3600});
+        p.options("title", titles, "title under the object; given once per mesh; 'none' for a mesh without a title");
+        p.options("map-on", map_on, "whether the map has values per vertex or per face; auto: determined by the number of values",
                   Choices{"auto", "vertex", "face"});
-        p.options("map-label", map_label, "label of the colour bar, with the unit");
-        p.options("map-range", map_range, "MIN,MAX of the colour bar, instead of those of the map");
-        p.options("colour-by", colour_by, "colour by the file's labels or colours; auto: whichever is present",
+        p.options("map-label", map_label, "label of the colour bar, including the unit");
+        p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");
+        p.options("colour-by", colour_by,
+                  "whether the mesh is coloured by the labels or by the colours in its file; auto: by those that are present",
                   Choices{"auto", "labels", "colours", "none"});
-        p.options("unit", unit, "unit of the mesh, for the scale bar");
+        p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
         options.describe(p.options);
         p.report.values(text("picture"));
         for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));

@@ -54,21 +54,21 @@ std::string address_of(const Path& path) {
 struct MakeReport final : Operation {
     void describe(Parameters& p) override {
         p.input("results", Kind::text, results,
-                "results to show: meshes, each followed by its files (.ant.json, .graph.json, .cage.ply, maps .npy, slices and "
-                "reports of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other "
-                "reports (.json) and drawings (.svg); folders of such files, such as those of a run or a fit, without their "
-                "cages and maps")
+                "results to show: meshes, each followed by files that belong to it (.ant.json, .graph.json, .cage.ply, maps "
+                ".npy, slices and reports of deformations or of 'relation check' .json); templates (.template.json); tables "
+                "(.csv); other reports (.json); drawings (.svg); folders of such files, for example of a run or a fit, of which "
+                "cages and maps are omitted")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
         p.output_option("beside", Kind::folder, objects_folder,
-                        "write the objects to this folder, which stays with the page: the page is an index that loads an object "
-                        "when it is selected, for collections");
-        p.options("title", title, "title of the page; otherwise the name of the first result");
-        p.options("unit", unit, "unit of objects whose annotations have none");
+                        "folder, kept beside the page, for the objects of a large collection: the page then loads each object "
+                        "when it is selected");
+        p.options("title", title, "title of the page; by default the name of the first result");
+        p.options("unit", unit, "unit of the coordinates of objects whose annotations state no unit");
         p.options(
             "limit", limit,
-            "maximum number of vertices of an object on the page; larger objects are simplified for it, with their annotations",
+            "maximum number of vertices of an object on the page; larger objects are simplified together with their annotations",
             Range{1000, 2'000'000});
         p.report.values(text("page"), integer("bytes"));
         p.report.table("objects", text("name"), integer("vertices"), integer("shown"), integer("annotations"), integer("maps"));

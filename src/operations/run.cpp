@@ -45,23 +45,27 @@ void report_steps(Report& report, const StudyPlan& plan, const std::vector<Insta
 
 struct Run final : Operation {
     void describe(Parameters& p) override {
-        p.input("study", Kind::study, study, "steps, parameters, tables and plots (.study.json)");
+        p.input("study", Kind::study, study, "study file (.study.json), with steps, parameters, tables and plots");
         p.output_option("output", Kind::folder, output,
-                        "run folder: results, reports, tables, page, provenance; NAME-run if left out");
-        p.options("quick", quick, "use the parameters of 'quick' in the study, without its slow steps").unrecorded();
-        p.options("set", set, "NAME=VALUE or NAME=VALUE,VALUE: values of a parameter, instead of those in the study")
+                        "folder of the run, for results, reports, tables, page and provenance; NAME-run if left out");
+        p.options("quick", quick,
+                  "use the parameters under 'quick' in the study, and omit the steps that the study marks as slow")
             .unrecorded();
-        p.options("only", only, "run these steps and the steps that they need").words().unrecorded();
-        p.options("dry-run", dry_run, "check the study, and report what would run and why").unrecorded();
-        p.options("explain", explain, "report why this step would run again").unrecorded();
-        p.options("again", again, "run all steps, whether they have changed or not").unrecorded();
-        p.options("shard", shard, "K/N: process the K-th of N shards of the work; without it all results are gathered")
+        p.options("set", set, "NAME=VALUE or NAME=VALUE,VALUE: values of a parameter, which replace the values in the study")
+            .unrecorded();
+        p.options("only", only, "names of steps to run; the steps whose outputs they need also run").words().unrecorded();
+        p.options("dry-run", dry_run, "check the study, and report which steps would run and why, without running them")
+            .unrecorded();
+        p.options("explain", explain, "name of a step: report why this step would run again").unrecorded();
+        p.options("again", again, "run all steps, including unchanged steps").unrecorded();
+        p.options("shard", shard,
+                  "K/N: process the K-th of N shards of the work; without this option the results of all shards are gathered")
             .unrecorded();
         p.options("reads", reads,
-                  "further folder from which inputs may be read, besides that of the study; may be given more than once")
+                  "further folder from which inputs may be read, besides the folder of the study; may be given more than once")
             .only_by_caller();
         p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
-        p.options("programs", programs, "folder of the programs that steps name; otherwise that of this command")
+        p.options("programs", programs, "folder of the programs that steps name; by default the folder of this command")
             .only_by_caller();
         p.report.values(text("output"), integer("instances", "steps to run"), integer("done", "done"),
                         integer("wouldRun", "would run"), integer("unchanged", "unchanged"), integer("failed", "failed"),

@@ -189,14 +189,14 @@ void declare_slices(ReportLayout& layout) {
                                any("frame"),
                                boolean("completeness.empty"),
                                boolean("completeness.complete"),
-                               number("completeness.closed_share"),
-                               number("completeness.share_low"),
-                               number("completeness.share_high"),
-                               number("completeness.share_at_most"),
+                               number("completeness.closed_share", "", "fraction of the contours"),
+                               number("completeness.share_low", "", "fraction of the outline"),
+                               number("completeness.share_high", "", "fraction of the outline"),
+                               number("completeness.share_at_most", "", "fraction of the outline"),
                                number("completeness.angle_degrees", "", "degrees"),
                                integer("completeness.crossing_contours"),
                                integer("completeness.turned_contours"),
-                               number("completeness.doubtful_share")};
+                               number("completeness.doubtful_share", "", "fraction of the outer area")};
     const auto descriptors = list_descriptors({});
     for (const ShownDescriptor& shown : shown_descriptors)
         for (const auto& entry : descriptors)
@@ -212,7 +212,8 @@ void declare_slices(ReportLayout& layout) {
                  number("straightness.length", "length", "length"), number("straightness.relative", "mean / length %"));
     layout.values(integer("thickness.slices"), integer("thickness.slices_with_parts_beside"),
                   number("thickness.mean", "", "length"));
-    for (const char* part : {"within", "across", "overall"}) layout.values(number("thickness.variation_" + std::string(part)));
+    for (const char* part : {"within", "across", "overall"})
+        layout.values(number("thickness.variation_" + std::string(part), "", "fraction of the mean thickness"));
     layout.values(boolean("tube.found"), text("tube.reason"), number("tube.lowest", "", "length"),
                   number("tube.highest", "", "length"), any("tube.groups_by_height"));
 }

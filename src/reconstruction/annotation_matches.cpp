@@ -162,7 +162,7 @@ std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, Annotat
 }
 
 void AnnotationMatchOptions::describe(OptionList& visit) {
-    visit("min-score", min_score, "minimum agreement of matched annotations", Range{0, 1});
+    visit("min-score", min_score, "minimum score, from 0 to 1, of the agreement of two matched annotations", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -160,8 +160,9 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
 
 void FragmentFileOptions::describe(OptionList& visit) {
     visit("facets", facets,
-          "outer, inner and fracture surface: annotated: from annotations; auto: from the shape, overridden by annotations; "
-          "either: from annotations if there are any, else from the shape if it is closed; none: all outer",
+          "how outer, inner and fracture surface are classified: annotated: from annotations; auto: from the shape, overridden "
+          "by annotations; either: from annotations if there are any, otherwise from the shape of closed meshes; none: "
+          "everything is outer surface",
           Choices{"either", "annotated", "auto", "none"});
     finding.describe(visit);
     cloud.describe(visit);

@@ -333,11 +333,16 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
 
 void PlacementOptions::describe(OptionList& visit) {
     visit("outlier", outlier,
-          "a landmark whose residual exceeds this share of the spread of the template's landmarks is a possible outlier",
+          "residual of a landmark, as a share of the spread of all landmarks of the template, above which the landmark may be an "
+          "outlier",
           Range{0, 1});
-    visit("unit-ratio", unit_ratio, "fragments whose scales differ by more than this factor are assumed to have different units",
+    visit("unit-ratio", unit_ratio,
+          "ratio of the template's scales from one fragment and from the others, above which the fragments are assumed to have "
+          "different units",
           Range{1, 1e6});
-    visit("collinear", collinear, "landmarks are collinear if their second extent is below this share of the first", Range{0, 1});
+    visit("collinear", collinear,
+          "ratio of the second to the first principal extent of a set of landmarks, below which the set counts as collinear",
+          Range{0, 1});
 }
 
 }  // namespace ostraka

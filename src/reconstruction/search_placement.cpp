@@ -112,7 +112,8 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
 }
 
 void SearchOptions::describe(OptionList& visit) {
-    visit("search", search, "search poses without landmarks; auto: where a fragment has fewer than three",
+    visit("search", search,
+          "whether poses of fragments are searched without landmarks; auto: only for fragments with fewer than three landmarks",
           Choices{"auto", "always", "never"});
     poses.describe(visit);
 }

@@ -101,7 +101,8 @@ void ConsistentOptions::describe(OptionList& visit) {
     visit("tolerance", tolerance, "maximum distance between matched features after registration", Range{0, 1},
           "share of the size");
     visit("normal-angle", angle, "maximum angle between the normals of matched features", Range{0, 180}, "degrees");
-    visit("shrinkage", shrinkage, "maximum difference in size between objects, as a share; 0: rigid", Range{0, 0.5});
+    visit("shrinkage", shrinkage, "maximum relative difference in size between two objects; 0: rigid registration",
+          Range{0, 0.5});
 }
 
 }  // namespace ostraka

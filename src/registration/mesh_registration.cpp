@@ -524,11 +524,12 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
 }
 
 void MeshRegistrationOptions::describe(OptionList& visit) {
-    visit("scale", scale, "find the scale as well: the meshes may be in different units", Anything{});
+    visit("scale", scale, "also find the scale, because the two meshes may be in different units", Anything{});
     visit("tolerance", tolerance,
-          "maximum distance between points of the same surface; 0: estimated from the resolutions of the meshes", Range{0, 1},
-          "share of the target's diagonal");
-    visit("samples", samples, "number of points by which the meshes are registered and compared", Range{100, 1e6});
+          "maximum distance at which points of the two registered meshes count as the same surface; 0: estimated from the "
+          "resolutions",
+          Range{0, 1}, "share of the target's diagonal");
+    visit("samples", samples, "number of surface points with which the meshes are registered and compared", Range{100, 1e6});
 }
 
 }  // namespace ostraka

@@ -127,11 +127,16 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
 }
 
 void RelationOptions::describe(OptionList& visit) {
-    visit("distance", distance, "tolerance of distances and heights: 0.01 is one per cent", Range{0, 1},
-          "share of the mesh's diagonal");
-    visit("angle", angle, "tolerance of angles between axes", Range{0, 90}, "degrees");
-    visit("tilt", tilt, "tolerance of the tilt of a contact", Range{0, 90}, "degrees");
-    visit("ratio", ratio, "tolerance of areas, shapes and values of attributes", Range{0, 100}, "per cent");
+    visit("distance", distance,
+          "maximum distance or difference of height at which a relationship holds; 0.01 is one per cent of the diagonal",
+          Range{0, 1}, "share of the mesh's diagonal");
+    visit("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
+    visit("tilt", tilt,
+          "maximum tilt of the common outline at which a contact holds: from horizontal for a support, from vertical for a side "
+          "contact",
+          Range{0, 90}, "degrees");
+    visit("ratio", ratio, "maximum relative difference of areas, shapes or attribute values at which a relationship holds",
+          Range{0, 100}, "per cent");
 }
 
 }  // namespace ostraka

@@ -78,7 +78,7 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
 }
 
 void RefineOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices (reached exactly)", Range{0, 5e8});
+    visit("vertices", vertices, "target number of vertices (reached exactly); 0: determined by --levels", Range{0, 5e8});
     visit("levels", levels, "number of times each triangle is split into four", Range{0, 12});
     visit("scheme", scheme,
           "midpoint (each triangle is split into four without a change of shape; halving the longest edges gives the rest of the "

@@ -171,9 +171,11 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
 
 void RemeshOptions::describe(OptionList& visit) {
     visit("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
-    visit("iterations", iterations, "rounds of splitting, collapsing, flipping, smoothing and projecting", Range{1, 100});
-    visit("feature-angle", feature_angle, "edges with a larger dihedral angle are kept, degrees; 0: no edge is kept",
-          Range{0, 180});
+    visit("iterations", iterations,
+          "number of rounds, in each of which edges are split, collapsed and flipped, and vertices smoothed and projected",
+          Range{1, 100});
+    visit("feature-angle", feature_angle,
+          "minimum dihedral angle, in degrees, of edges that are kept as sharp features; 0: no edge is kept", Range{0, 180});
 }
 
 }  // namespace ostraka

@@ -443,7 +443,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
 }
 
 void RenderOptions::describe(OptionList& visit) {
-    visit("size", size, "width and height of the picture in pixels");
+    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
     visit("view", view, "view direction", view_words());
     visit("views", views, "several views on one sheet",
           Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
@@ -451,35 +451,38 @@ void RenderOptions::describe(OptionList& visit) {
                     candidate.views = text;
                     static_cast<void>(views_of(candidate));
                 }});
-    visit("up", up, "upward axis of the object; auto: that of the annotations, otherwise z",
+    visit("up", up, "upward axis of the object; auto: the upward direction of the annotations, or z",
           Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
                     static_cast<void>(parse_up(text));
                 }});
-    visit("projection", projection, "orthographic or perspective", Choices{"orthographic", "perspective"});
+    visit("projection", projection, "projection of the camera: orthographic or perspective",
+          Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the centre; 1 shows the whole object", Range{0.01, 1000});
-    visit("fit", fit, "several objects: all at one scale, or each as large as fits", Choices{"all", "each"});
-    visit("shading", shading, "smooth or flat", Choices{"smooth", "flat"});
-    visit("crease", crease, "smooth shading: edges sharper than this stay sharp", Range{0, 180}, "degrees");
-    visit("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: none", Range{0, 1024});
-    visit("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: none extra", Range{1, 64});
+    visit("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
+          Choices{"all", "each"});
+    visit("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
+    visit("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
+    visit("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
+          Range{0, 1024});
+    visit("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: no antialiasing", Range{1, 64});
     visit("edges", edges, "draw the edges of the mesh");
     visit("drawing", drawing,
-          "how the object is drawn: its surface; lines: contours, creases and borders, without hidden ones; wire: its edges; "
-          "points",
+          "how the object is drawn: surface; lines (visible contours, creases and borders); wire (edges of the mesh); points",
           Choices{"surface", "lines", "wire", "points"});
     visit("contours", contours, "draw contours, creases and borders over the surface");
-    visit("labels", labels, "write names next to the object with leader lines, instead of a legend");
-    visit("axes", axes, "draw the directions of the mesh's axes");
+    visit("labels", labels, "write the tags of annotations beside the object with leader lines, instead of a legend");
+    visit("axes", axes, "draw the directions of the coordinate axes of the mesh");
     visit("supersample", supersample,
-          "samples per pixel in each direction: averaged in a PNG, kept in SVG and PDF; 0: 1 in a PNG, 2 in the others",
+          "number of samples per pixel in each direction, which are averaged in PNG and kept in SVG and PDF; 0: 1 for PNG, 2 for "
+          "SVG and PDF",
           Range{0, 4});
     visit("deep", deep, "write a PNG with 16 bits per channel");
-    visit("theme", theme, "light or dark: colours of the text and of the background", Choices{"light", "dark"});
-    visit("background", background, "colour of the background; auto: that of the theme",
+    visit("theme", theme, "colours of text and background: light or dark", Choices{"light", "dark"});
+    visit("background", background, "colour of the background; auto: the background of --theme",
           Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
                     if (text != "auto") static_cast<void>(parse_colour(text));
                 }});
-    visit("transparent", transparent, "no background");
+    visit("transparent", transparent, "leave the background transparent");
     visit("no-scale-bar", no_scale_bar, "leave out the scale bar");
     visit("no-legend", no_legend, "leave out the legend and the colour bar");
 }

@@ -77,7 +77,7 @@ double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const s
 
 void SegmentOptions::describe(OptionList& visit) {
     visit("clusters", clusters, "number of thickness levels", Range{2, 100});
-    visit("smoothing", smoothing, "preference for short borders in concave places, 0 to 1", Range{0, 1});
+    visit("smoothing", smoothing, "preference for short borders between segments in concave places, 0 to 1", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -145,11 +145,12 @@ std::optional<double> segment_agreement(const SliceSegments& segments, const std
 
 void SliceSegmentOptions::describe(OptionList& visit) {
     visit("slices", slices, "number of evenly spaced slices across the object", Range{4, 10000});
-    visit("clusters", clusters, "number of clusters of slices; 0: the number that the criterion proposes", Range{0, 1000});
+    visit("clusters", clusters, "number of clusters of slices; 0: the number that --criterion proposes", Range{0, 1000});
     visit("min-run", min_run,
-          "minimum number of consecutive slices of one cluster that form a segment; shorter runs join their longer neighbour",
+          "minimum number of consecutive slices of one cluster that form a segment; a shorter run joins the longer neighbouring "
+          "run",
           Range{1, 1000});
-    visit("size", size, "also use the radius of the circle with the slice's area", Anything{});
+    visit("size", size, "also cluster by the size of slices: the radius of the circle with the same area", Anything{});
     count.describe(visit);
 }
 

@@ -294,13 +294,14 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
 void ClassifyOptions::describe(OptionList& visit) {
     fit.describe(visit);
     visit("correspondence", correspondence,
-          "an object with the template's triangles is used as given (auto, given); the template is fitted to it (fitted)",
+          "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
+          "the template (fitted)",
           Choices{"auto", "given", "fitted"});
     visit("strict", strict,
-          "decide by --max-off alone whether the template lies on an object; otherwise also by its distance from the members",
+          "decide by --max-off alone whether the template fits an object; by default also by the fit to the members of the class",
           Anything{});
-    visit("attributes", attributes, "also reject objects by attribute values out of range", Anything{});
-    visit("close", close, "classes are not distinguished if their scores differ by less than this share of the better one",
+    visit("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
+    visit("close", close, "relative difference between the scores of two classes below which the classes are not distinguished",
           Range{0, 1});
 }
 

@@ -342,15 +342,17 @@ void MemberFitOptions::describe(OptionList& visit) {
     alignment.describe(visit);
     annotations.describe(visit);
     fit.describe(visit);
-    visit("ignore-landmarks", ignore_landmarks, "register the template onto objects by their surfaces alone", Anything{});
+    visit("ignore-landmarks", ignore_landmarks, "ignore landmarks, and register the template onto objects by the surfaces alone",
+          Anything{});
     visit("tries", tries,
-          "without landmarks: number of initial poses that are fitted, the nearest ones of those from the principal axes and of "
-          "that in the files; the best fit is kept",
+          "without landmarks: number of initial poses from which the template is fitted, nearest first; the best fit is kept "
+          "(initial poses: principal axes, and the pose in the files)",
           Range{1, 5});
-    visit("observed", observed, "maximum distance between surfaces that lie on each other", Range{0, 1}, "share of the diagonal");
+    visit("observed", observed, "maximum distance at which a point of one surface counts as lying on the other surface",
+          Range{0, 1}, "share of the diagonal");
     visit("max-off", max_off,
-          "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
-          "the other after the fit",
+          "maximum share of the two surfaces (mean of unmatched and unexplained) off each other after the fit; above it the "
+          "template does not fit the object",
           Range{0, 1});
 }
 

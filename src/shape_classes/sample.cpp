@@ -197,15 +197,15 @@ Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_templ
 }
 
 void SampleOptions::describe(OptionList& visit) {
-    visit("count", count, "number of members to draw", Range{1, 1e6});
+    visit("count", count, "number of new members to sample", Range{1, 1e6});
     visit("seed", seed, "random seed", Range{0, 1e18});
     visit("by", by,
-          "modes: normal coefficients within the range of the members'; edits: the mean shape with one to three random parts "
-          "stretched or scaled",
+          "sampling method: modes (normally distributed mode coefficients, within the range of the members) or edits (mean shape "
+          "with one to three random parts stretched or scaled)",
           Choices{"modes", "edits"});
-    visit("spread", spread, "factor on the range of the members' coefficients", Range{0, 10});
+    visit("spread", spread, "modes: factor on the range of the mode coefficients of the members", Range{0, 10});
     visit("edit", edit, "edits: standard deviation of the logarithm of a part's stretch", Range{0, 2});
-    visit("attempts", attempts, "maximum number of draws per member", Range{1, 1e6});
+    visit("attempts", attempts, "maximum number of random draws for each new member", Range{1, 1e6});
 }
 
 }  // namespace ostraka

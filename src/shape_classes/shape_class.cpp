@@ -515,20 +515,20 @@ void LearnOptions::describe(OptionList& visit) {
     fit.describe(visit);
     modes.describe(visit);
     visit("correspondence", correspondence,
-          "members with the template's triangles are used as given, the template is fitted to others (auto); all have "
-          "to be in correspondence (given); it is fitted to all (fitted)",
+          "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
+          "template (auto); all as they are (given); all by fitting the template (fitted)",
           Choices{"auto", "given", "fitted"});
     visit("false-reject", reject,
-          "maximum share of members that are rejected if their quantities are normal or log-normal, over all thresholds "
-          "together",
+          "maximum share of true members that all thresholds together reject, if the quantities are normal or log-normal",
           Range{1e-6, 0.5});
     visit("unsure", unsure,
-          "maximum share of members whose dissimilarity to the others is too large for them to be recognised; between this bound "
-          "and the rejection bound nothing is decided. With three or more out-of-class objects these determine the bound instead",
+          "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "
+          "threshold they are undecided; three or more out-of-class objects determine this threshold instead",
           Range{1e-6, 0.5});
-    visit("accept", accept, "maximum share of out-of-class objects that are accepted by all classes that are queried together",
+    visit("accept", accept, "maximum share of out-of-class objects that any of the jointly tested classes accepts",
           Range{1e-6, 0.5});
-    visit("resolution", resolution, "standard deviation of the measurements of one member", Range{0, 1}, "share of its value");
+    visit("resolution", resolution, "standard deviation of repeated measurements of one member", Range{0, 1},
+          "share of its value");
 }
 
 }  // namespace ostraka

@@ -158,9 +158,9 @@ Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficie
 }
 
 void ModeOptions::describe(OptionList& visit) {
-    visit("sizes", sizes, "compare sizes; otherwise all objects are first scaled to one size", Anything{});
+    visit("sizes", sizes, "compare sizes as well as shapes; by default all objects are first scaled to one size", Anything{});
     visit("modes", maximum, "maximum number of modes of variation", Range{0, 1e6});
-    visit("variance", variance, "share of the variance that the modes explain", Range{0, 1});
+    visit("variance", variance, "share of the variance of the members that the kept modes explain", Range{0, 1});
 }
 
 }  // namespace ostraka

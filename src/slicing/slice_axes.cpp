@@ -194,11 +194,15 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
 }
 
 void TubeOptions::describe(OptionList& visit) {
-    visit("min-eccentricity", min_eccentricity, "tube: minimum ratio of width to length of a slice's rectangle", Range{0, 1});
-    visit("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its circle", Range{0, 10},
-          "share of the radius");
-    visit("similarity", similarity, "tube: maximum rms distance of a group's slices from its centre", Range{1e-6, 1e6});
-    visit("tube-seed", seed, "tube: random seed of the grouping", Range{0, 1e18});
+    visit("min-eccentricity", min_eccentricity,
+          "tube: minimum ratio of the short to the long side of the smallest rectangle around a slice", Range{0, 1});
+    visit("max-roundness", max_roundness, "tube: maximum mean distance of the outline of a slice from the circle fitted to it",
+          Range{0, 10}, "share of the radius");
+    visit(
+        "similarity", similarity,
+        "tube: maximum root mean square distance of the slices of a group from the group's centre, in dimensionless shape values",
+        Range{1e-6, 1e6});
+    visit("tube-seed", seed, "tube: random seed of the grouping of slices", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -150,7 +150,8 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
 void HardOptions::describe(OptionList& visit) {
     inner.describe(visit);
     visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
-    visit("hard-tolerance", tolerance, "distance to which hard constraints must hold", Range{1e-15, 1}, "share of the diagonal");
+    visit("hard-tolerance", tolerance, "maximum distance by which a hard constraint may be violated", Range{1e-15, 1},
+          "share of the diagonal");
 }
 
 }  // namespace ostraka

@@ -145,8 +145,9 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
 }
 
 void StabilityOptions::describe(OptionList& visit) {
-    visit("stability-resamples", resamples, "number of resamples for the stability of the clusters", Range{1, 100000});
-    visit("stability-share", share, "share of the samples in each resample", Range{0.05, 1});
+    visit("stability-resamples", resamples, "number of resamples from which the stability of the groups is estimated",
+          Range{1, 100000});
+    visit("stability-share", share, "share of the objects that each resample contains", Range{0.05, 1});
     visit("seed", seed, "random seed", Range{0, 1e18});
 }
 

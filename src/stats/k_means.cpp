@@ -197,8 +197,8 @@ void KMeansOptions::describe(OptionList& visit) {
 }
 
 void ClusterCountOptions::describe(OptionList& visit) {
-    visit("max-clusters", max_clusters, "maximum number of clusters", Range{1, 10000});
-    visit("criterion", criterion, "how the number of clusters is proposed", Choices{"silhouette", "gap"});
+    visit("max-clusters", max_clusters, "maximum number of clusters that --criterion tries", Range{1, 10000});
+    visit("criterion", criterion, "criterion that proposes the number of clusters", Choices{"silhouette", "gap"});
     visit("references", references, "number of reference sets of the gap statistic", Range{2, 100000});
     visit("restarts", k_means.restarts, "number of initialisations of k-means; the best result is kept", Range{1, 100000});
     visit("iterations", k_means.iterations, "maximum number of iterations of k-means", Range{1, 1000000});

@@ -200,7 +200,7 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
 
 void CrossValidationOptions::describe(OptionList& visit) {
     visit("folds", folds, "number of folds that are held out in turn", Range{2, 100000});
-    visit("repeats", repeats, "number of repeated divisions into folds", Range{1, 100000});
+    visit("repeats", repeats, "number of times the division into folds is repeated", Range{1, 100000});
     visit("seed", seed, "random seed", Range{0, 1e18});
 }
 

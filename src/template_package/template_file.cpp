@@ -101,8 +101,10 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
 }
 
 void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "allow files outside the folder of the template", Anything{});
-    visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
+    visit("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
+    visit("force-mesh", force_mesh,
+          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+          Anything{});
 }
 
 std::string part_name(const Path& folder, const Path& part) {

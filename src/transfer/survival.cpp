@@ -54,9 +54,10 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
 }
 
 void SurvivalOptions::describe(OptionList& visit) {
-    visit("ratio", ratio, "number of vertices of each resolution relative to the previous one", Range{0.1, 0.95});
-    visit("area-error", area_error, "a region survives as long as its area changes by less than this share", Range{0.001, 1});
-    visit("least", minimum, "minimum number of vertices tried", Range{4, 1e9});
+    visit("ratio", ratio, "ratio of the number of vertices of each resolution to that of the previous resolution",
+          Range{0.1, 0.95});
+    visit("area-error", area_error, "relative change of area at which a region counts as lost", Range{0.001, 1});
+    visit("least", minimum, "minimum number of vertices of the resolutions that are tried", Range{4, 1e9});
 }
 
 }  // namespace ostraka

@@ -263,24 +263,24 @@ std::string to_string(TransferOutcome outcome) {
 
 void TransferOptions::describe(OptionList& visit) {
     correspondence.describe(visit);
-    visit("metric", metric, "quantity that paths between corresponding vertices minimise",
+    visit("metric", metric, "length that paths between corresponding vertices minimise",
           Choices{"euclidean", "segment", "combined"});
-    visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
+    visit("spikes", spikes, "spikes of outlines: prune (remove them), avoid (do not visit a vertex twice while tracing) or keep",
           Choices{"prune", "avoid", "keep"});
     visit("outlines", outlines,
-          "outlines and lines keep their kind, but regions that partition the whole surface, such as labels, become free, "
-          "through the triangles of the target (partitions); all keep their kind (kept); all become free (free); or all run "
-          "along the target's edges (edges)",
+          "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "
+          "as labels (partitions); as on the source (kept); through the triangles (free); along edges (edges)",
           Choices{"partitions", "kept", "free", "edges"});
     visit("rounding", rounding,
-          "faces that the true outline crosses: assigned by the edge paths (path), to the side that contains most of their area "
-          "(area), or so that area and perimeter are preserved as well (balanced)",
+          "how faces that an outline crosses are assigned: by edge paths (path), to the side with most of the face's area "
+          "(area), or so that the area and perimeter of the region are preserved as well (balanced)",
           Choices{"path", "area", "balanced"});
-    visit("cover", cover, "the transferred region overlaps the source region, encloses it or is enclosed by it",
+    visit("cover", cover, "required relation of a transferred region to its source region: overlapping, enclosing or enclosed",
           Choices{"overlapping", "enclosing", "enclosed"});
-    visit("refine", refine, "insert vertices on the target so that outlines are exact", Anything{});
-    visit("overlap", overlap, "measure the overlap with the source region", Anything{});
-    visit("force", force, "continue although the meshes differ in size or position", Anything{});
+    visit("refine", refine, "insert vertices on the target mesh where outlines cross its edges, so that the outlines are exact",
+          Anything{});
+    visit("overlap", overlap, "measure the overlap of each transferred region with its source region", Anything{});
+    visit("force", force, "transfer even if the two meshes differ in size or position", Anything{});
 }
 
 }  // namespace ostraka

@@ -384,7 +384,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text) 
 }
 
 void CheckVocabularyOptions::describe(OptionList& visit) {
-    visit("strict", strict, "treat measures and descriptors that are not in the vocabulary as defects", Anything{});
+    visit("strict", strict, "report measures and descriptors that the vocabulary does not define as defects", Anything{});
 }
 
 }  // namespace ostraka

@@ -41,7 +41,7 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
 
 TEST(CommandLine, MissingInputsAreNamedWithTheirOption) {
     expect_refusal("annotation list " + vase,
-                   "annotations is missing (give its annotations (.ant.json): ostraka annotation list MESH ANNOTATIONS");
+                   "annotations is missing (give annotations of the mesh (.ant.json): ostraka annotation list MESH ANNOTATIONS");
     expect_refusal("mesh convert " + vase, "output is missing");
     expect_refusal("measure refresh " + vase, "--annotations is missing");
     expect_refusal("measure refresh " + vase, "(.ant.json): --annotations FILE");

@@ -96,7 +96,7 @@ TEST(RelationCommand, AddsSeveralRelationshipsToTheGraphInPlace) {
     refused("--graph " + graph + " --relation 'adjacency: lid,, body'", 2, "is not a relationship");
     refused("--graph " + graph + " --relation 'adjacensy: lid, body'", 2, "did you mean 'adjacency'?");
     refused("--graph " + graph + " --relation 'adjacency: lid, body' --type adjacency", 2, "in one way");
-    refused("--graph " + graph, 2, "what the relationship is");
+    refused("--graph " + graph, 2, "type of the relationship");
     refused("--relation 'adjacency: lid, body'", 2, "where the graph goes");
     refused(graph + ".new --graph " + graph + ".absent --relation 'adjacency: lid, body'", 1, "cannot be opened");
 }

@@ -21,10 +21,11 @@ struct AnnotationApply final : Operation {
         p.order({"mesh", "output"});
         p.options("from-ply-labels", mesh_labels, "use the labels of the mesh file itself instead of a recipe or label file");
         p.input_option("names", Kind::text, names,
-                       "JSON file with the labels' names, such as {\"0\": \"seat\", \"1\": \"back\"}; others are 'part N'");
-        p.input_option("edit", Kind::annotations, edited, "annotations that the recipe's steps edit and add to");
+                       "JSON file with the names of the labels, such as {\"0\": \"seat\", \"1\": \"back\"}; other labels are "
+                       "named 'part N'");
+        p.input_option("edit", Kind::annotations, edited, "existing annotations, to which the steps of the recipe apply");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) that must contain all tags and attributes");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) in which all tags and attributes must be defined");
         words.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);

@@ -13,7 +13,7 @@ struct AnnotationCreases final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
-        p.options("regions", regions, "regions instead of lines");
+        p.options("regions", regions, "write the creases as regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
         options.describe(p.options);
         p.report.table("creases", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),

@@ -8,9 +8,9 @@ namespace {
 
 struct AnnotationDiff final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh of both sets");
-        p.input("before", Kind::annotations, before, "annotations (.ant.json)");
-        p.input("after", Kind::annotations, after, "annotations to compare with them");
+        p.input("mesh", Kind::mesh, mesh, "mesh to which both sets of annotations belong");
+        p.input("before", Kind::annotations, before, "first set of annotations (.ant.json)");
+        p.input("after", Kind::annotations, after, "second set of annotations (.ant.json), compared with the first");
         p.report.values(boolean("same"));
         declare_differences(p.report, "differences");
     }

@@ -66,12 +66,13 @@ struct AnnotationFind final : Operation {
     void describe(Parameters& p) override {
         p.options("query", query, "query, such as '2 arm and 2 leg' or 'area(handle) >= area(body) / 3'").required().positional();
         p.input("objects", Kind::collection, objects,
-                "folders of meshes, lists of objects (.study.json), or single meshes or annotations (.ant.json); NAME.ant.json "
-                "and NAME.graph.json are next to NAME.ply")
+                "folders of meshes, lists of objects (.study.json), meshes or annotations (.ant.json); annotations and "
+                "relationships of NAME.ply are in NAME.ant.json and NAME.graph.json beside it")
             .many();
         p.order({"query", "objects"});
-        p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf): words in any of its languages, including narrower concepts");
+        p.input_option(
+            "vocabulary", Kind::vocabulary, vocabulary,
+            "vocabulary (.vocabulary.json, .ttl, .rdf): a word of the query also finds its translations and narrower concepts");
         p.report.values(text("query"), integer("objects"), integer("annotated"), integer("found"));
         p.report.table("matches", text("object", "object"), text("mesh"), any("annotations"), people("annotations"));
         p.report.table("failed", text("name"), text("problem"));

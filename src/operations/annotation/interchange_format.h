@@ -9,7 +9,8 @@ namespace ostraka {
 
 /// Declares --format.
 inline void describe_format(Parameters& p, std::optional<std::string>& format) {
-    p.options("format", format, "format of the file, if its extension does not determine it", Choices(interchange_formats()));
+    p.options("format", format, "format of the file; needed if the file's extension does not determine the format",
+              Choices(interchange_formats()));
 }
 
 }  // namespace ostraka

@@ -12,10 +12,10 @@ namespace {
 
 struct AnnotationMerge final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh of all sets");
-        p.input("base", Kind::annotations, base, "common ancestor of both sets");
-        p.input("ours", Kind::annotations, ours, "first changed set");
-        p.input("theirs", Kind::annotations, theirs, "second changed set");
+        p.input("mesh", Kind::mesh, mesh, "mesh to which all three sets of annotations belong");
+        p.input("base", Kind::annotations, base, "set of annotations from which both changed sets were made (.ant.json)");
+        p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
+        p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write");
         options.describe(p.options);
         p.report.values(boolean("merged"), integer("annotations"));

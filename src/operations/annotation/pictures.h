@@ -17,7 +17,7 @@ struct AnnotationPictures {
         p.output_option("ply", Kind::mesh, coloured,
                         "write the mesh in the colours of its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,
-                        "label file to write: for each face the id of the smallest region on it, -1 for none");
+                        "label file to write: for each face, the id of the smallest region that contains the face, or -1");
     }
     void write(AnnotatedMeshView object, Report& report) const {
         if (coloured) coloured.write(object.mesh, colour_by_annotation(object));

@@ -16,12 +16,15 @@ namespace {
 struct AnnotationRemap final : Operation {
     void describe(Parameters& p) override {
         p.input("before", Kind::mesh, before, "mesh before the change");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json) or label file");
+        p.input("annotations", Kind::annotations, annotations,
+                "annotations (.ant.json) or label file of the mesh before the change");
         p.input("after", Kind::mesh, after, "mesh after the change");
         p.output("output", Kind::annotations, output, "annotations or labels to write");
-        p.input_option("vertex-map", Kind::index_map, vertex_map, "map of the vertices (JSON)");
+        p.input_option("vertex-map", Kind::index_map, vertex_map,
+                       "index map (JSON): for each vertex before the change, its index afterwards");
         p.input_option("face-map", Kind::index_map, face_map,
-                       "map of the faces (JSON); without it, faces are mapped through their corners");
+                       "index map (JSON): for each face before the change, its index afterwards; without this map, faces are "
+                       "mapped by their corners");
         reading.describe(p.options);
         pictures.describe(p);
         declare_annotations(p.report);

@@ -12,10 +12,10 @@ namespace {
 
 struct AnnotationSegment final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
+        p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh must be closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.output_option("labels-out", Kind::labels, labels_out,
-                        "label file to write: the number of each face's segment, one per line");
+                        "label file to write: for each face, the number of its segment; one per line");
         options.describe(p.options);
         thickness_options.describe(p.options);
         p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),

@@ -13,15 +13,18 @@ struct AnnotationSelect final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json) to update or create");
-        p.output_option("output", Kind::annotations, output, "write the annotations to this file instead of updating the input")
+        p.output_option("output", Kind::annotations, output,
+                        "write the annotations to this file, and leave the input file unchanged")
             .updates(annotations);
-        p.input_option("record", Kind::recipe, record, "recipe to which the step is appended; created if it does not exist");
-        p.output_option("recipe", Kind::recipe, recipe, "write the recipe to this file instead of updating that of --record")
+        p.input_option("record", Kind::recipe, record,
+                       "recipe to which this selection is appended as a step; created if the file does not exist");
+        p.output_option("recipe", Kind::recipe, recipe,
+                        "write the recipe to this file, and leave the recipe of --record unchanged")
             .updates(record);
         step.describe(p.options);
         p.options.group("New file");
-        p.options("class", object_class, "class of the object (any text)");
-        p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
+        p.options("class", object_class, "class of the object (any text), stored in a new file");
+        p.options("unit", unit, "unit of the coordinates (any text, such as mm), stored in a new file");
 
         p.report.values(integer("id"), text("action"), text("tag"), text("type"), integer("elements"), integer("patches"),
                         number("area", "", "length^2"), number("length", "", "length"));

@@ -25,70 +25,74 @@ void check_threshold(const std::string& of) {
 }  // namespace
 
 void SelectStep::describe(OptionList& visit) {
-    visit("expression", expression, "selection, in the syntax of recipes (JSON)").positional();
+    visit("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
     visit.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
     visit("all", all, "the whole mesh");
-    visit("rectangle", rectangle, "x0,y0,x1,y1 in pixels of the camera's picture");
-    visit("polygon", polygon, "x,y,x,y,... drawn around a part in the camera's picture");
-    visit("box", box, "six numbers: minimum and maximum corner");
-    visit("sphere", sphere, "x,y,z,radius");
-    visit("halfspace", halfspace, "six numbers: a point of the plane, and the normal towards the selected side");
-    visit("nearest", nearest, "x,y,z: the nearest vertex");
-    visit("threshold", threshold, "places whose value lies in a range; the value distance is measured from --seed",
+    visit("rectangle", rectangle, "selects what the rectangle x0,y0,x1,y1 covers, in pixels of the camera's picture");
+    visit("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
+    visit("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
+    visit("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
+    visit("halfspace", halfspace,
+          "selects one side of a plane: a point of the plane and the normal towards that side, as six numbers");
+    visit("nearest", nearest, "selects the vertex nearest to x,y,z");
+    visit("threshold", threshold,
+          "selects places where this quantity lies between --above and --below; distance is measured from --seed",
           Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
     visit("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
-    visit("path", path, "picks joined by shortest paths along edges").words();
-    visit("lasso", lasso, "picks around a part; --seed lies within it").words();
-    visit("brush", brush, "picks; selects the geodesic discs of --radius around them").words();
-    visit("vertices", vertices, "picks").words();
+    visit("path", path, "selects the shortest paths along edges that join these picks").words();
+    visit("lasso", lasso, "selects the part that a path through these picks encloses; --seed lies within the part").words();
+    visit("brush", brush, "selects the geodesic discs of --radius around these picks").words();
+    visit("vertices", vertices, "selects the vertices at these picks").words();
     visit("component", component, "selects the connected component of this pick");
-    visit("faces", faces, "indices of faces").words();
-    visit("labels", labels, "labels of the mesh file's faces").words();
+    visit("faces", faces, "selects the faces with these indices").words();
+    visit("labels", labels, "selects the faces with these labels in the mesh file").words();
 
     visit.group("How");
-    visit("through", through, "rectangle and polygon: select hidden parts too");
-    visit("closed", closed, "path: back to the first pick");
-    visit("metric", metric, "path and lasso: the length that is minimised", Choices{"euclidean", "segment", "combined"});
-    visit("seed", seed, "lasso, segment, distance: a pick");
-    visit("radius", radius, "brush: geodesic radius, in the lengths of --frame");
-    visit("stroke", stroke, "brush: along the path through the picks");
-    visit(
-        "above", above,
-        "threshold: minimum value; lengths in the unit of --frame (curvature: its inverse), values of a file in the file's unit");
-    visit("below", below, "threshold: maximum value, in the same unit");
-    visit("quantiles", quantiles, "threshold: the limits are quantiles by area, 0 to 1");
-    visit("scale", scale, "curvature: averaging radius; 0: from the mesh resolution", Range{0, 1}, "share of the diagonal");
-    visit("smoothing", smoothing, "segment: preference for short borders in concave places", Range{0, 1});
-    visit("grow", grow, "number of rings by which the selection is dilated", Range{0, 1000000});
-    visit("shrink", shrink, "number of rings by which the selection is eroded", Range{0, 1000000});
+    visit("through", through, "with --rectangle or --polygon: select hidden parts as well");
+    visit("closed", closed, "with --path: close the path from the last pick to the first");
+    visit("metric", metric, "with --path or --lasso: length that is minimised between picks",
+          Choices{"euclidean", "segment", "combined"});
+    visit("seed", seed, "with --lasso, --segment or --threshold distance: a pick within the part");
+    visit("radius", radius, "with --brush: geodesic radius, in the unit of --frame");
+    visit("stroke", stroke, "with --brush: paint along the path through the picks");
+    visit("above", above,
+          "with --threshold: minimum value (lengths in the unit of --frame, curvature in its inverse, values of a file as in the "
+          "file)");
+    visit("below", below, "with --threshold: maximum value, in the unit of --above");
+    visit("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
+    visit("scale", scale, "with --threshold of a curvature: radius of averaging; 0: chosen from the mesh resolution", Range{0, 1},
+          "share of the diagonal");
+    visit("smoothing", smoothing, "with --segment: preference for short borders in concave places", Range{0, 1});
+    visit("grow", grow, "number of rings of neighbours by which the selection is dilated", Range{0, 1000000});
+    visit("shrink", shrink, "number of rings of neighbours by which the selection is eroded", Range{0, 1000000});
     visit("invert", invert, "select the complement");
     visit("frame", frame,
-          "mesh: coordinates and lengths in the unit of the mesh; box: coordinates as shares, 0 to 1, of the bounding box, "
-          "lengths as shares of its diagonal",
+          "how coordinates and lengths are given: in the unit of the mesh (mesh), or relative to its bounding box (box): "
+          "coordinates from 0 to 1, lengths as shares of the diagonal",
           Choices{"mesh", "box"});
 
     visit.group("Camera (that of 'ostraka render' without legend and title)");
-    visit(
-        "camera", camera_text,
-        "a camera of the recipe by its name, or a camera as JSON ('render --json' reports it), instead of the following options");
+    visit("camera", camera_text,
+          "name of a camera in the recipe, or a camera as JSON (as reported by 'render --json'); replaces --view to --size");
     visit("view", view, "view direction", view_words());
-    visit("up", up, "upward direction, stored in a new file; otherwise that of the annotations, otherwise 0,0,1",
+    visit("up", up, "upward direction, stored in a new file; by default the upward direction of the annotations, or 0,0,1",
           direction_words("--up"));
     visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
-    visit("zoom", zoom, "magnification about the middle", Range{0.01, 1000});
-    visit("size", size, "width and height of the picture in pixels");
+    visit("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
+    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
 
     visit.group("Annotation");
     visit("tag", tag, "tag of the annotation");
-    visit("id", id, "id of the annotation; a new annotation without one gets a free id");
-    visit("type", type, "type of a new annotation; otherwise that of the selection", Choices{"point", "line", "region"});
+    visit("id", id, "id of the annotation; without it, a new annotation gets an unused id");
+    visit("type", type, "type of a new annotation; by default the type that the selection has",
+          Choices{"point", "line", "region"});
     visit("outline", outline,
-          "free: through the faces of the mesh; edges: along its edges; if left out, an edited outline keeps its kind; a new "
-          "region is free if a part of its border is a level set (of a volume, a drawn polygon, a threshold on vertices, a "
-          "brush, a lasso or a distance), else along the edges; lines run along the edges",
+          "course of outlines: through the faces (free) or along edges (edges); by default edited outlines keep their kind, new "
+          "ones are free if the selection has a border between vertices (volume, polygon, threshold on vertices, brush, lasso, "
+          "distance), and lines follow edges",
           Choices{"edges", "free"});
-    visit("colour", colour, "red,green,blue", Range{0, 255});
-    visit("action", action, "effect of the selection on the annotation with this id",
+    visit("colour", colour, "colour of the annotation, as red,green,blue", Range{0, 255});
+    visit("action", action, "what the selection does to the annotation with --id",
           Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
 }
 

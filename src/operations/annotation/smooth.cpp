@@ -11,9 +11,10 @@ namespace {
 struct AnnotationSmooth final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
-        p.output("output", Kind::annotations, output, "annotations to write (.ant.json): their outlines run through the faces");
-        p.options("annotation", names, "ids or tags of the annotations to smooth; all if left out").words();
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
+        p.output("output", Kind::annotations, output,
+                 "annotations to write (.ant.json), with outlines through the faces of the mesh");
+        p.options("annotation", names, "ids or tags of the annotations to smooth; all annotations if left out").words();
         options.describe(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), number("length_before", "length before", "length"),
                        number("length_after", "after", "length"), number("area_before", "area before", "length^2"),

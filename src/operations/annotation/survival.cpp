@@ -9,8 +9,8 @@ namespace {
 
 struct AnnotationSurvival final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "the annotated mesh");
-        p.input("annotations", Kind::annotations, annotations, "its annotations");
+        p.input("mesh", Kind::mesh, mesh, "annotated mesh");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         options.describe(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), integer("vertices", "smallest number of vertices"),
                        text("end", "and below"));

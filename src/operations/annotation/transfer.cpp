@@ -36,20 +36,22 @@ std::string remarks_on(const TransferScore& score) {
 
 struct AnnotationTransfer final : Operation {
     void describe(Parameters& p) override {
-        p.input("source", Kind::mesh, source, "the annotated mesh");
-        p.input("annotations", Kind::annotations, annotations, "its annotations");
-        p.input("target", Kind::mesh, target, "the mesh at another resolution");
-        p.output("output", Kind::annotations, output, "the annotations on the target (*.ant.json)");
+        p.input("source", Kind::mesh, source, "annotated mesh");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the source mesh (.ant.json)");
+        p.input("target", Kind::mesh, target, "mesh of the same object at another resolution");
+        p.output("output", Kind::annotations, output, "annotations of the target mesh to write (.ant.json)");
         p.output_option("back", Kind::annotations, back,
-                        "also transfer the result back to the source, into this file, and score it");
+                        "file to write: the result transferred back to the source mesh; the report scores the difference");
         p.output_option("ply", Kind::mesh, coloured,
                         "write the target in the colours of its annotations (PLY or another format with colours)");
-        p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices");
-        p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
+        p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
+        p.output_option("map", Kind::index_map, map,
+                        "with --refine: JSON file to write: for each new face, the index of the old face");
         options.describe(p.options);
-        p.options("register", registers,
-                  "register the source onto the target first: the meshes may differ in unit and pose (see mesh register)",
-                  Anything{});
+        p.options(
+            "register", registers,
+            "first register the source mesh onto the target mesh: the meshes may differ in unit and pose (see 'mesh register')",
+            Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));
         for (const char* direction : {"annotations", "back"})

@@ -18,17 +18,20 @@ namespace {
 struct CageInfluence final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("cage", Kind::cage, cage, "its cage");
-        p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
+        p.input("cage", Kind::cage, cage, "cage of the mesh");
+        p.input("weights", Kind::coordinates, weights, "weights written by 'cage weights' (.npy)");
         p.output("output", Kind::mesh, output,
-                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, otherwise "
-                 "the mesh; by default coloured by the number of cage vertices that carry 95 % of the weight");
+                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage with --annotation, otherwise "
+                 "the mesh; by default coloured by how many cage vertices carry 95 % of the weight of each mesh vertex");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
-        p.options("cage-vertex", cage_vertex, "the weights of this cage vertex on the mesh");
-        p.options("annotation", annotation, "id or tag: the influence of each cage vertex on its vertices");
-        p.options("by", by, "influence on an annotation: the maximum or the sum of the weights on its vertices",
+        p.options("cage-vertex", cage_vertex, "index of a cage vertex: colour the mesh by the weights of this cage vertex");
+        p.options("annotation", annotation,
+                  "id or tag of an annotation: colour the cage by the influence of each cage vertex on the vertices of this "
+                  "annotation");
+        p.options("by", by,
+                  "influence of a cage vertex on --annotation: maximum or sum of its weights over the vertices of the annotation",
                   Choices{"max", "sum"});
-        p.options("threshold", threshold, "list the cage vertices with an influence above this");
+        p.options("threshold", threshold, "list the cage vertices whose influence exceeds this value");
         p.report.values(text("what", "what"), text("on", "on the"), number("min", "min"), number("max", "max"), any("above"),
                         any("strongest"));
     }

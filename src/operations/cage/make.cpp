@@ -18,25 +18,27 @@ namespace {
 
 struct CageMake final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file; it may be open");
+        p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh may be open");
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
-        p.input_option(
-            "annotations", Kind::annotations, annotations,
-            "annotations of the mesh (.ant.json): the cage has four times as many vertices near points, lines and outlines");
+        p.input_option("annotations", Kind::annotations, annotations,
+                       "annotations of the mesh (.ant.json): the vertex density of the cage is four times as high near points, "
+                       "lines and outlines");
         p.input_option("graph", Kind::graph, graph,
-                       "relationships (.graph.json): a mirror symmetry gives the mirror plane of the cage and of the cages of "
-                       "symmetric parts");
-        p.input_option(
-            "for", Kind::graph, constraints,
-            "relationships (.graph.json) whose constraints the cage must be able to satisfy: it is denser at their parts, closer "
-            "to the mesh, and has up to twice the vertices if necessary (exit code 3: it cannot satisfy one)");
-        vocabulary.describe(p, "by which tags are compared with --parts");
+                       "relationships (.graph.json): a mirror symmetry in the file makes the cage, and the cages of symmetric "
+                       "parts, symmetric");
+        p.input_option("for", Kind::graph, constraints,
+                       "relationships (.graph.json) with constraints that the cage must be able to satisfy: near the constrained "
+                       "parts the cage is denser and closer to the mesh, with up to twice the vertices (exit code 3: a "
+                       "constraint cannot be satisfied)");
+        vocabulary.describe(p, "by which tags of annotations are matched with --parts");
         options.describe(p.options);
-        p.options("levels", levels,
-                  "numbers of vertices, separated by commas: nested cages, each around the finer one, written as output-NUMBER",
-                  Range{4, 1000000});
-        p.options("together", one_file, "write the levels to one file: nested cages, each of which can be edited");
-        p.options("parts", parts, "regions, by id or tag, that get their own cages, nested in the cage of the whole object")
+        p.options(
+            "levels", levels,
+            "numbers of vertices, separated by commas: write nested cages, each around the next finer one, as output-NUMBER",
+            Range{4, 1000000});
+        p.options("together", one_file,
+                  "write the cages of --levels to one file, in which each of the nested cages can be edited");
+        p.options("parts", parts, "ids or tags of regions that get cages of their own, nested in the cage of the whole object")
             .words();
         p.options("part-vertices", part_vertices, "target number of vertices of a part's cage", Range{4, 1000000});
         p.options("mirror", mirror,
@@ -44,7 +46,8 @@ struct CageMake final : Operation {
                   Words{{"auto"}, "a point and a normal as six numbers with commas", [](const std::string& text) {
                             if (text != "auto") static_cast<void>(plane_of(text));
                         }});
-        p.options("detail", details, "annotation=factor: factor on the vertex density there; may be given several times");
+        p.options("detail", details,
+                  "ANNOTATION=FACTOR: factor on the vertex density of the cage near this annotation; may be given several times");
         p.report.table("cages", text("file", "cage"), integer("level"), text("part"), integer("vertices", "vertices"),
                        integer("faces", "faces"), boolean("reached"), integer("genus", "genus"),
                        number("clearance", "clearance", "length"), number("alpha", "alpha"));

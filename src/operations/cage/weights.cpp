@@ -13,12 +13,12 @@ namespace {
 struct CageCoordinates final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are triangulated)");
-        p.output("output", Kind::coordinates, output, "weights to write (.npy; with a .coordinates.json next to it)");
+        p.input("cage", Kind::cage, cage, "cage: a closed mesh around the mesh (polygons are triangulated)");
+        p.output("output", Kind::coordinates, output,
+                 "weights to write (.npy), with their description in a file .coordinates.json beside it");
         p.options("kind", kind,
-                  "mean-value; local, harmonic or positive-mean-value (inside, none negative); green (strictly inside; without "
-                  "constraints "
-                  "only)",
+                  "kind of coordinates: mean-value; local, harmonic or positive-mean-value (inside the cage; never negative); "
+                  "green (strictly inside; not for constraints)",
                   Choices(coordinate_kinds()));
         options.describe(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),

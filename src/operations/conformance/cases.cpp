@@ -13,10 +13,10 @@ namespace ostraka {
 
 void Conformance::describe_kit(Parameters& p) {
     p.input_option("kit", Kind::folder, kit,
-                   "folder of the kit (conformance.json); by default the one installed with the command");
-    p.options("only", only, "operations or cases, instead of all").words();
+                   "folder of the conformance kit (conformance.json); by default the kit that is installed with the command");
+    p.options("only", only, "names of the operations or cases to run; all if left out").words();
     p.output_option("junit", Kind::report, junit, "write the results as JUnit XML");
-    p.options("time-limit", time_limit, "time limit of a case", Range{0.1, 86400}, "s").unrecorded();
+    p.options("time-limit", time_limit, "time limit of each case", Range{0.1, 86400}, "s").unrecorded();
     p.report.values(text("kit", "kit"), integer("cases", "cases"), integer("agree", "agree"), integer("differ", "differ"),
                     integer("unsupported", "not supported"));
     p.report.table("operations", text("operation", "operation"), integer("cases", "cases"), integer("agree", "agree"),

@@ -11,8 +11,9 @@ namespace {
 
 struct ConformanceRun final : Conformance {
     void describe(Parameters& p) override {
-        p.options("command", command, "the program and its first arguments, after --").positional().words();
-        p.options("lines", lines, "start the program once, and give it a line of JSON for each case (doc/conformance.md)");
+        p.options("command", command, "program to test and its first arguments, after --").positional().words();
+        p.options("lines", lines,
+                  "start the program once, and send each case as one line of JSON to its standard input (doc/conformance.md)");
         describe_kit(p);
     }
 

@@ -11,7 +11,7 @@ namespace {
 
 struct ConformanceSelf final : Conformance {
     void describe(Parameters& p) override {
-        p.options("record", record, "record the output of this command as the expected output: for those who change the kit")
+        p.options("record", record, "record the output of this command as the expected output, after a change of the kit")
             .unrecorded();
         describe_kit(p);
     }

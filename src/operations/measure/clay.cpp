@@ -14,12 +14,11 @@ namespace {
 
 struct MeasureClay final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
-        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
+        p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh may be closed or open");
+        p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json): unit and upward direction")
             .optional();
-        up.describe(p,
-                    "direction perpendicular to the slices; otherwise the upward direction of the annotations, otherwise 0,0,1");
-        p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; otherwise that of the annotations");
+        up.describe(p, "direction perpendicular to the slices; by default the upward direction of the annotations, or 0,0,1");
+        p.options("unit", unit, "unit of the mesh's coordinates, such as mm; by default the unit of the annotations");
         options.describe(p.options);
         for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));

@@ -18,7 +18,8 @@ struct MeasureDescribe final : Operation {
                        "NAME=FILE: a map with one value per vertex (.npy, or text with one number per line)")
             .many()
             .named();
-        p.options("annotation", chosen, "id or tag of an annotation; once for each, all if left out");
+        p.options("annotation", chosen,
+                  "id or tag of an annotation to describe; may be given more than once; all annotations if left out");
         options.describe(p.options);
         p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
         p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});

@@ -18,16 +18,18 @@ struct MeasureMap final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::values, output, "file to write: one value per vertex or face (.npy, or text)");
-        p.options("of", quantity, "quantity to compute", Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"})
+        p.options("of", quantity, "quantity whose map is computed",
+                  Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"})
             .required();
-        p.options("on", element, "whether there is one value per vertex or per face", Choices{"vertex", "face"});
-        p.options("from", source_vertices, "vertices from which geodesic distances are measured, like 12,88",
+        p.options("on", element, "whether the map has one value per vertex or one per face", Choices{"vertex", "face"});
+        p.options("from", source_vertices, "indices of the vertices from which geodesic distances are measured, like 12,88",
                   Range{0, std::numeric_limits<int>::max()});
         p.input_option("annotations", Kind::annotations, annotations,
-                       "annotations of the mesh (.ant.json), one of which gets the map as an attribute");
+                       "annotations of the mesh (.ant.json); --annotation gets an attribute that refers to the map");
         attribute.describe(p, "NAME of --of");
-        p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
-        p.options("unit", unit, "unit of the coordinates, if the annotations do not state it (any text, such as mm)");
+        p.options("annotation", annotation,
+                  "id or tag of the annotation that gets the new attribute; the whole object if left out");
+        p.options("unit", unit, "unit of the coordinates (any text, such as mm), if the annotations do not state a unit");
         options.curvature_options.describe(p.options);
         options.thickness_options.describe(p.options);
         quantity_option = p.options.find("of");

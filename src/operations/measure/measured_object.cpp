@@ -7,9 +7,10 @@ namespace ostraka {
 Slot& MeasuredObject::describe(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
     Slot& annotations_slot = p.input_option("annotations", Kind::annotations, annotations,
-                                            "its annotations (.ant.json); the whole object is measured if left out");
-    p.output_option("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)");
-    p.options("unit", unit, "unit of the coordinates, if the annotations do not state it (any text, such as mm)");
+                                            "annotations of the mesh (.ant.json); the whole object is measured if left out");
+    p.output_option("output", Kind::annotations, output,
+                    "annotations to write (.ant.json), with the computed values as attributes");
+    p.options("unit", unit, "unit of the coordinates (any text, such as mm), if the annotations do not state a unit");
     return annotations_slot;
 }
 

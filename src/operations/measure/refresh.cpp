@@ -11,8 +11,8 @@ struct MeasureRefresh final : Operation {
     void describe(Parameters& p) override {
         Slot& annotations = object.describe(p);
         annotations.needed = true;
-        annotations.help = "its annotations (.ant.json)";
-        p.options("merge-pickings", merge, "merge measures of the same name into repeated pickings of one measure");
+        annotations.help = "annotations of the mesh (.ant.json)";
+        p.options("merge-pickings", merge, "merge measures with the same name into one measure with repeated pickings");
         for (const char* count : {"computed", "stale", "merged"}) p.report.values(integer(count));
         p.report.table("measures", integer("annotation", "id"), people("tag"), text("name", "measure"), number("value", "value"),
                        number("uncertainty", "uncertainty"), people("unit"), integer("pickings", "pickings"));

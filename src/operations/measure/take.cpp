@@ -18,20 +18,25 @@ namespace {
 struct MeasureTake final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
-        p.options("tool", tool, "ruler (straight), tape (over the surface) or bounding (between two planes)",
+        p.options("tool", tool,
+                  "measuring tool: ruler (straight distance), tape (over the surface) or bounding (between two parallel planes)",
                   Choices{"ruler", "tape", "bounding"})
             .required();
-        p.options("points", points, "pins as vertex indices, like 12,88", Range{0, largest_index});
-        p.options("at", pin_positions, "a pin as coordinates x,y,z: the nearest vertex; once for each pin");
+        p.options("points", points, "pins (the points between which the tool measures) as vertex indices, like 12,88",
+                  Range{0, largest_index});
+        p.options("at", pin_positions, "one pin, as coordinates x,y,z: the vertex nearest to them; repeated for each pin");
         p.options("direction", direction,
-                  "direction of a bounding measure; without pins the whole annotation is measured along it",
+                  "direction of a bounding measure; without pins the whole annotation is measured along this direction",
                   direction_words("--direction"));
-        p.options("geodesic", geodesic, "a tape along edges, or the exact shortest curve over the faces",
+        p.options("geodesic", geodesic,
+                  "how a tape runs: along edges (edges) or as the exact shortest curve over the faces (exact)",
                   Choices{"edges", "exact"});
         p.options("repeat", repeats,
-                  "the pins picked again, as vertex indices like 12,88; once for each picking: the value is the mean");
-        p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
-        p.options("name", name, "name of the attribute; the tool if left out");
+                  "pins of a repeated picking, as vertex indices like 12,88; given once per picking, and the value is the mean "
+                  "of all pickings");
+        p.options("annotation", annotation,
+                  "id or tag of the annotation that gets the new attribute; the whole object if left out");
+        p.options("name", name, "name of the new attribute; the name of the tool if left out");
         p.report.values(text("name"), integer("annotation"), text("tool"), any("points"), number("value"), text("unit"));
         for (const char* figure : {"uncertainty", "resolution", "spread"}) p.report.values(number(figure));
         p.report.values(integer("pickings"));

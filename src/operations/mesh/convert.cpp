@@ -14,10 +14,10 @@ struct MeshConvert final : Operation {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; tetrahedra: .mesh, .vtu");
         p.output("output", Kind::mesh, output.with_encoding(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
-        p.output_option("map", Kind::index_map, map, "JSON file to write: the source polygon of each triangle");
+        p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle, the index of its source polygon");
         p.input_option("polygons-of", Kind::mesh, polygons_of,
-                       "polygon file from which the triangles were made, possibly with other vertex positions; its polygons are "
-                       "written instead of the triangles (.obj, .off, .ply)");
+                       "polygon file from which the triangles of the input were made, possibly with other vertex positions; the "
+                       "polygons of this file are written instead of triangles (.obj, .off, .ply)");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));
     }

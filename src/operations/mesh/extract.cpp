@@ -15,13 +15,17 @@ namespace {
 struct MeshExtract final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
-        p.output("output", Kind::mesh, output, "mesh file of the part to write");
+        p.output("output", Kind::mesh, output, "mesh of the part to write");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
-        vocabulary.describe(p, "by which tags are compared with the names given");
-        p.options("annotation", names, "regions to cut out, by id or tag (all of that tag); the whole mesh if left out").words();
-        p.options("without", without, "regions to leave out, by id or tag").words();
-        p.options("closed", closed, "close the cuts by triangles, annotated as 'cut'");
-        p.options("labels", labels, "write the id of the smallest region of each face into the mesh (PLY)");
+        vocabulary.describe(p, "by which tags of annotations are matched with --annotation and --without");
+        p.options("annotation", names,
+                  "id or tag of regions that form the part (a tag: all regions with this tag); the whole mesh if left out")
+            .words();
+        p.options("without", without, "id or tag of regions that are removed from the part").words();
+        p.options("closed", closed, "close the cuts by triangles, annotated with the tag 'cut'");
+        p.options(
+            "labels", labels,
+            "write, as the label of each face in the mesh file (PLY), the id of the smallest region that contains the face");
         p.report.values(integer("vertices"), integer("faces"), number("area"), integer("cuts"), integer("closed"));
     }
 

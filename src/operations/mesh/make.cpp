@@ -12,14 +12,14 @@ namespace {
 
 struct MeshMake final : Operation {
     void describe(Parameters& p) override {
-        p.options("object", object_name, "object to make (see --list)",
+        p.options("object", object_name, "name of the object to make (see --list)",
                   Words{synthetic_object_names(), {}, [](const std::string& name) { static_cast<void>(synthetic_object(name)); }})
             .positional();
         p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
             .optional();
         p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one per line");
         p.order({"object", "output"});
-        p.options("list", list_objects, "show the objects, their parts and labels").unrecorded();
+        p.options("list", list_objects, "list the objects with their parts and labels, and make no mesh").unrecorded();
         options.describe(p.options);
 
         p.report.values(text("object"), text("class"), text("unit"), integer("vertices"), integer("faces"), integer("genus"),

@@ -50,8 +50,9 @@ struct MeshResizeBound : MeshResize {
         describe_meshes(p);
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "where to write the annotations of the output mesh");
-        p.output_option("labels-out", Kind::labels, labels_out, "where to write the face labels of the input mesh, one per line");
+                        "annotations of the output mesh to write (.ant.json)");
+        p.output_option("labels-out", Kind::labels, labels_out,
+                        "text file to write: the label of each face of the output mesh, one per line");
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"),
                        integer("before.elements", "elements"), integer("after.elements", "after"),
                        number("before.area", "area", "length^2"), number("after.area", "", "length^2"), people("change of area"),

@@ -11,13 +11,15 @@ namespace {
 struct MeshSimplify final : MeshResizeBound {
     void describe(Parameters& p) override {
         describe_bound(p);
-        p.output_option("vertex-map", Kind::index_map, vertex_map, "JSON file to write: the new vertex of each old one");
+        p.output_option("vertex-map", Kind::index_map, vertex_map,
+                        "JSON file to write: for each old vertex, the index of the new vertex");
         p.output_option("face-map", Kind::index_map, face_map,
-                        "JSON file to write: the new face of each old one, -1 where it vanished");
+                        "JSON file to write: for each old face, the index of the new face, or -1 if it vanished");
         options.describe(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");
-        p.options("protect-outlines", protect, "the same as --outlines protect; pins of measures stay too").unrecorded();
+        p.options("protect-outlines", protect, "same effect as --outlines protect; the pins of measures also stay unchanged")
+            .unrecorded();
         p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
                         integer("isolated_dropped"));
     }

@@ -15,28 +15,31 @@ namespace {
 struct RelationAdd final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
-        p.input_option("graph", Kind::graph, graph, "graph to which the relationship is added; created if it does not exist");
-        p.output("output", Kind::graph, output, "graph to write (.graph.json); without it the one of --graph")
+        p.input_option("graph", Kind::graph, graph,
+                       "graph to which the relationship is added; created if the file does not exist");
+        p.output("output", Kind::graph, output, "graph to write (.graph.json); if left out, the file of --graph is updated")
             .optional()
             .updates(graph);
         Words known{{}, "a type of your own with --own-type"};
         for (const RelationType& one : relation_types()) known.names.push_back(one.name);
-        p.options("type", type, "what the relationship is", std::move(known));
-        p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words();
-        p.options("relation", several,
-                  "TYPE: A, B, ...: type and members of a relationship, once for each, instead of --type and --annotation; the "
-                  "other options apply to all")
+        p.options("type", type, "type of the relationship", std::move(known));
+        p.options("annotation", members,
+                  "id or tag of a member of the relationship; given once per member; the first member is the subject")
             .words();
-        p.options("own-type", own_type, "the type is user-defined");
-        p.options("directed", directed, "the first annotation is the subject");
+        p.options("relation", several,
+                  "TYPE: A, B, ...: type and members of a relationship, instead of --type and --annotation; may be given more "
+                  "than once; the other options apply to all relationships")
+            .words();
+        p.options("own-type", own_type, "the type in --type is user-defined");
+        p.options("directed", directed, "the relationship has a direction: the first annotation is the subject");
         p.options("constraint", is_constraint, "the relationship is a constraint on deformations");
         p.options("parameters", parameters, "JSON object with the parameters of the constraint");
         p.options("weight", weight, "weight of the constraint", Range{0, 1e300});
         p.options("tolerance", tolerances,
-                  "QUANTITY=NUMBER, the tolerance of checks: angle=5 (also tilt; degrees), distance=2 (also height; unit of the "
-                  "mesh's coordinates), distance=1% (of the mesh's diagonal), area=10 (also shape, difference; per cent)")
+                  "QUANTITY=NUMBER: tolerance when the relationship is checked: angle=5 (or tilt; degrees), distance=2 (or "
+                  "height; unit of the mesh), distance=1% (of the mesh's diagonal), area=10 (or shape, difference; per cent)")
             .words();
-        p.options("attribute", attribute, "name of the attribute that is equal, with --type 'equal attributes'");
+        p.options("attribute", attribute, "with --type 'equal attributes': name of the attribute whose values are equal");
         describe_relationships(p.report);
     }
 

@@ -16,10 +16,10 @@ struct RelationCheckAll final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         p.input_option("rest", Kind::mesh, rest,
-                       "the same mesh in its rest shape: constraints that preserve something are evaluated against it");
-        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that are checked as well");
+                       "same mesh before the deformation (rest shape), with which constraints that preserve a quantity compare");
+        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf): rules also apply to narrower concepts");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf): a rule for a concept also applies to narrower concepts");
         tolerances.describe(p.options);
         describe_relationships(p.report, true);
         for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));

@@ -15,10 +15,12 @@ struct RelationEdit final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         describe_output(p);
-        p.options("id", id, "id of the relationship, as 'relation list' shows it", Range{0, 2147483647}).required();
-        p.options("weight", weight, "its weight as a constraint; 0 leaves it out", Range{0, 1e300});
-        p.options("range", range, "MIN,MAX: minValue and maxValue of the constraint");
-        p.options("parameters", parameters, "JSON object whose members replace those of the constraint; null removes one");
+        p.options("id", id, "id of the relationship, as shown by 'relation list'", Range{0, 2147483647}).required();
+        p.options("weight", weight, "weight of the relationship as a constraint; with weight 0 the constraint is not used",
+                  Range{0, 1e300});
+        p.options("range", range, "MIN,MAX: new values of minValue and maxValue of the constraint");
+        p.options("parameters", parameters,
+                  "JSON object whose members replace the parameters of the constraint; null removes a parameter");
         p.options("constraint", constraint, "whether the relationship is a constraint on deformations",
                   Choices{"unchanged", "yes", "no"});
         describe_relationships(p.report);

@@ -15,15 +15,18 @@ struct RelationExtract final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
-        p.input_option("graph", Kind::graph, graph, "graph whose user-specified relationships are kept");
+        p.input_option("graph", Kind::graph, graph,
+                       "graph (.graph.json) whose user-specified relationships are copied to the output");
         Words told;
         for (const RelationType& type : relation_types())
             if (type.geometric) told.names.push_back(type.name);
         told.check = [](const std::string& name) { static_cast<void>(geometric_types({name})); };
-        p.options("type", types, "type of relationship to detect, once for each; all if left out", std::move(told)).words();
+        p.options("type", types, "type of relationship to detect; may be given more than once; all types if left out",
+                  std::move(told))
+            .words();
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: annotations contained in an "
-                       "annotation of their whole are related as 'part of'");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: an annotation inside an annotation "
+                       "of its whole is related to it as 'part of'");
         tolerances.describe(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);

@@ -12,7 +12,9 @@ struct RelationRemove final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         describe_output(p);
-        p.options("id", ids, "id of a relationship, as 'relation list' shows it; once for each").words().required();
+        p.options("id", ids, "id of a relationship to remove, as shown by 'relation list'; may be given more than once")
+            .words()
+            .required();
         describe_relationships(p.report);
     }
 

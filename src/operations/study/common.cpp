@@ -8,21 +8,22 @@ namespace ostraka {
 
 void StudyFiles::describe(Parameters& p, bool labels, const std::string& collections) {
     p.input("collection", Kind::collection, collection, collections);
-    p.output("output", Kind::folder, output,
-             "folder for tables, plots and the report; finished results are kept there and not computed again")
+    p.output(
+         "output", Kind::folder, output,
+         "folder for tables, plots and the report; results of finished objects are stored in the folder and not computed again")
         .flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "pdf", "png"}).unrecorded();
     p.options("shard", shard_,
-              "K/N: process the K-th of N shards of the objects and keep the results in the folder; without it the results are "
-              "gathered")
+              "K/N: process the K-th of N shards of the objects and store the results in the folder; without this option the "
+              "results of all shards are gathered")
         .unrecorded();
     p.report.table("failed", text("name"), text("problem"));
     p.report.values(integer("part.objects"), integer("part.failed"));
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("own-truth", own_truth_,
-              "use the known answers in truth.csv of the collection's folder, where 'study make' writes them");
-    p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
+              "use the known answers in truth.csv in the folder of the collection, as written by 'study make'");
+    p.options("truth-column", truth_column_, "name of the column with the known answers; 'label' if left out");
     p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }
 

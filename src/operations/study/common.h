@@ -56,7 +56,7 @@ class StudyPart {
 public:
     void describe(Parameters& p) {
         options_.describe(p.options);
-        vocabulary_.describe(p, "by which tags are compared with the names of parts");
+        vocabulary_.describe(p, "by which tags of annotations are matched with the names of parts");
     }
     void check() const {
         static_cast<void>(ObjectParts(options_));

@@ -15,7 +15,7 @@ namespace {
 
 struct StudyMakeTechnique final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
-        describe_folder(p, "folder to write meshes, annotations and truth.csv to");
+        describe_folder(p, "folder to write: meshes, annotations and the known answers (truth.csv)");
         options.describe(p.options);
         p.report.values(text("folder"));
         for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));

@@ -20,9 +20,13 @@ struct StudyMoulds final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         part.describe(p);
-        p.options("similarity", similarity, "similarity measure by which the groups are found", Choices(mould_similarities()));
-        p.options("leave-out", leave_out, "labels of faces to leave out, such as beards").words();
-        p.options("choices", choices, "write a table of the groups by every similarity, method and epsilon as well");
+        p.options("similarity", similarity,
+                  "similarity of two heads by which they are grouped: number of matches, of consistent matches, distance after "
+                  "registration, or all combined",
+                  Choices(mould_similarities()));
+        p.options("leave-out", leave_out, "labels of faces that are left out of the analysis, such as beards").words();
+        p.options("choices", choices,
+                  "also write a table of the groups that every similarity, method and rule for epsilon gives");
         compare.describe(p.options);
         group.describe(p.options);
         stability.describe(p.options);

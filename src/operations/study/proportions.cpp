@@ -111,14 +111,16 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
 struct StudyProportions final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
-        vocabulary.describe(p, "by which tags are compared with the names in --measures");
-        p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
+        vocabulary.describe(p, "by which tags of annotations are matched with the names in --measures");
+        p.input_option("measures", Kind::text, measures, "definitions of the measures to take on every object (.measures.json)");
         p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template for which proportions are proposed");
-        p.input_option("template-annotations", Kind::annotations, annotations, "its annotations");
-        p.input_option("template-graph", Kind::graph, graph_in, "its relationships, to which proposals are added");
-        p.output_option("graph", Kind::graph, graph, "graph to write: fixed proportions as constraints on the template");
+        p.input_option("template-annotations", Kind::annotations, annotations, "annotations of the template (.ant.json)");
+        p.input_option("template-graph", Kind::graph, graph_in,
+                       "relationships of the template (.graph.json), to which the proposed constraints are added");
+        p.output_option("graph", Kind::graph, graph,
+                        "graph to write (.graph.json), with fixed proportions as constraints on the template");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "the template's annotations, with the measures to which the constraints refer");
+                        "annotations of the template to write (.ant.json), with the measures to which the constraints refer");
         options.describe(p.options);
         proposals.describe(p.options);
         p.report.values(integer("objects"));

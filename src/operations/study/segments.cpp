@@ -18,11 +18,13 @@ struct StudySegments final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .pdf, .png)");
+        p.output_option("curve", Kind::picture, curve,
+                        "plot to write: the criterion over the number of clusters (.svg, .pdf, .png)");
         p.input_option("compare", Kind::annotations, compare,
-                       "annotations with the known parts; otherwise the labels of the mesh file, if it has any");
-        up.describe(p, "upward direction; otherwise that of --compare, otherwise 0,0,1");
-        p.options("unit", unit, "unit of the mesh; otherwise that of --compare");
+                       "annotations of the known parts (.ant.json), with which the result is compared; by default the labels of "
+                       "the mesh file, if any");
+        up.describe(p, "upward direction; by default the upward direction of the annotations of --compare, or 0,0,1");
+        p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of --compare");
         options.describe(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
         p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),

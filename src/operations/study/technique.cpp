@@ -17,7 +17,8 @@ struct StudyOfTechnique final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         part.describe(p);
-        up.describe(p, "upward direction of all objects; otherwise that of their annotations, otherwise 0,0,1");
+        up.describe(
+            p, "upward direction of all objects; by default the upward direction of the annotations of each object, or 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
         for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));

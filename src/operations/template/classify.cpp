@@ -15,10 +15,11 @@ namespace {
 struct TemplateClassify final : Operation {
     void describe(Parameters& p) override {
         p.input("files", Kind::shape_class, files,
-                "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
+                "class files (.class.json), then the mesh file of each object (for classes of landmarks: the landmark file)")
             .many();
         vocabulary.describe(p, as_template_words);
-        p.output_option("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)");
+        p.output_option("report", Kind::report, answer,
+                        "file to write: the complete answer as JSON (doc/schema/classification.schema.json)");
         options.describe(p.options);
         p.report.schema = "classification";
         p.report.people_table("", {"object", "class", "verdict", "score", "against"});

@@ -16,22 +16,23 @@ namespace {
 struct TemplateLearn final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, template_input,
-                "the template (.template.json), or the first member of a class of landmarks (.mrk.json, .fcsv, .tps, .pp), which "
-                "determines the landmarks, and the orientation of the mean");
+                "template (.template.json), or, for a class of landmarks only, the first member (.mrk.json, .fcsv, .tps, .pp), "
+                "which determines the set of landmarks and the orientation of the mean");
         p.input("members", Kind::mesh, members,
-                "a mesh file for each member; NAME.ant.json beside it are its annotations; or files of the same landmarks")
+                "mesh file of each member, with annotations in NAME.ant.json beside it; for a class of landmarks, a landmark "
+                "file of each member")
             .many()
             .with_annotations_beside()
             .optional();
         p.input_option("strangers", Kind::mesh, out_of_class,
-                       "objects that do not belong to the class, such as members of other classes: they limit how dissimilar to "
-                       "the members a recognised object may be; one file each time it is given")
+                       "mesh of an object outside the class, such as a member of another class; these objects limit how "
+                       "dissimilar from the members a recognised object may be")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; created if missing").flag();
-        p.options("name", name, "name of the class; otherwise that of the template");
+        p.options("name", name, "name of the class; by default the class of the template");
         vocabulary.describe(p, as_template_words);
-        p.options("given", given, "the same as --correspondence given");
+        p.options("given", given, "same effect as --correspondence given");
         options.describe(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
                         number("diversity"), numbers("varianceShares"));

@@ -16,17 +16,17 @@ namespace {
 struct TemplatePropagate final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, template_input, "template (.template.json)");
-        p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
+        p.input("members", Kind::mesh, members, "mesh file of each member, with annotations in NAME.ant.json beside it")
             .many()
             .with_annotations_beside();
         vocabulary.describe(p, as_template_words);
         p.output("output", Kind::folder, output,
                  "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; created if missing")
             .flag();
-        p.options("given", given, "the same as --correspondence given");
+        p.options("given", given, "same effect as --correspondence given");
         p.options("correspondence", options.correspondence,
-                  "members with the template's triangles are used as they are, and the template is fitted to others (auto); all "
-                  "members must be in correspondence (given); it is fitted to all (fitted)",
+                  "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
+                  "template (auto); all as they are (given); all by fitting the template (fitted)",
                   Choices{"auto", "given", "fitted"});
         options.fit.describe(p.options);
         p.report.table("members", text("name", "member"), text("placedBy", "placed by"), number("distance", "distance %"),

@@ -14,7 +14,7 @@ namespace {
 
 struct TemplateSample final : Operation {
     void describe(Parameters& p) override {
-        p.input("class", Kind::shape_class, file, "class (.class.json), as 'template learn' writes it");
+        p.input("class", Kind::shape_class, file, "class file (.class.json), as written by 'template learn'");
         p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; created if missing")
             .flag();
         options.describe(p.options);

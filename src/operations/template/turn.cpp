@@ -13,9 +13,9 @@ namespace {
 
 struct TemplateTurn final : Operation {
     void describe(Parameters& p) override {
-        p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all in the pose that they had in the vessel").many();
-        p.output("output", Kind::folder, output, "folder to write the template to").flag();
-        p.options("unit", unit, "unit of the coordinates, any text such as mm");
+        p.input("sherds", Kind::mesh, files, "closed mesh of a sherd, in the pose that the sherd had in the vessel").many();
+        p.output("output", Kind::folder, output, "folder to write: the template of the vessel").flag();
+        p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
         options.describe(p.options);
         reading.describe(p.options);
         p.report.schema = "turned";

@@ -16,8 +16,8 @@ namespace {
 struct VocabularyShow final : Operation {
     void describe(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
-        p.options("language", language, "language of the labels");
-        p.options("under", under, "only this concept (id or label) and narrower ones");
+        p.options("language", language, "language of the labels that are shown");
+        p.options("under", under, "id or label of a concept: show only this concept and its narrower concepts");
         p.report.table("concepts", text("label", "concept"), text("id", "id"), integer("depth"), people("other languages"),
                        texts("attributes", "attributes"));
     }
