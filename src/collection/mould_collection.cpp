@@ -113,7 +113,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
         std::vector<double> sizes;
         for (const auto& area : areas)
             if (area.problem.empty() && area.result.GetDouble() > 0) sizes.push_back(area.result.GetDouble());
-        size = common_size(std::move(sizes));
+        size = common_size(sizes);
     }
     std::vector<std::string> key_parts{"mould features", left_out};
     for (const auto& [name, value] : list_options(prepared.options.features)) key_parts.push_back(name + "=" + value);

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-struct _cairo;
-struct _cairo_surface;
+struct _cairo;          // NOLINT(bugprone-reserved-identifier): the name that cairo gives it
+struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace ostraka::figures {
 

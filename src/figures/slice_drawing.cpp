@@ -145,8 +145,8 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
             for (const auto& curve : content.view) sheet.polyline(placing(curve, true), ink, false, 0.8);
         }
         for (std::size_t i = 0; i < content.slices.size(); ++i) {
-            const auto column = static_cast<double>(i % static_cast<std::size_t>(grid.columns));
-            const auto row = static_cast<double>(i / static_cast<std::size_t>(grid.columns));
+            const auto columns = static_cast<std::size_t>(grid.columns), row_index = i / columns;
+            const auto column = static_cast<double>(i % columns), row = static_cast<double>(row_index);
             const double left = margin + view_width + column * (grid.width + gap),
                          upper = top + row * (grid.height + caption + gap);
             const double scale = grid.width / size.x();

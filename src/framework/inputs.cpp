@@ -15,7 +15,7 @@ namespace {
 /// Path of an in-memory file or folder that holds the object.
 Path in_memory(Context& context, const Object& object, const std::string& slot) {
     if (const auto folder = object.as<Path>()) return *folder;
-    const Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
+    Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
     OutputTransaction transaction;  // read before the outputs of the call are committed
     write_object(object, path, slot);
     transaction.commit();
@@ -223,7 +223,7 @@ const Template& TemplateInput::operator*() const {
 Path FileInput::path(std::size_t i) const {
     const Source& source = sources.at(i);
     if (!source.object) return source.file;
-    const Path file = in_memory(*context, source.object, name);
+    Path file = in_memory(*context, source.object, name);
     if (source.object.sha256.empty() && file_exists(file)) context->record_object(*this, i, sha256_of_file(file));
     return file;
 }

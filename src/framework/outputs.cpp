@@ -235,7 +235,7 @@ const Path& FolderOutput::open(std::size_t i, bool replaces) const {
 }
 
 Path FolderOutput::in(const std::string& file, std::size_t i) const {
-    const Path path = open(i) / file;
+    Path path = open(i) / file;
     require_writable_inside(path, open(i));  // the folder may contain links that others placed there
     context->check_output(path);
     return path;

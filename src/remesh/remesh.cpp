@@ -60,7 +60,7 @@ struct WatchedPoints {
 /// get a normal of tiny length here: at a vertex around which no face has a normal, the library's relaxation (CGAL 5.5) reads
 /// an edge that does not exist.
 struct WatchedKernel : Kernel {
-    struct Construct_cross_product_vector_3 {
+    struct Construct_cross_product_vector_3 {  // NOLINT(readability-identifier-naming): the name that CGAL uses
         Vector operator()(const Vector& a, const Vector& b) const {
             const Vector product = CGAL::cross_product(a, b);
             return product == CGAL::NULL_VECTOR ? Vector(1e-100, 0, 0) : product;

@@ -319,7 +319,8 @@ private:
             Plan& plan = plans_[i];
             Pane& pane = plan.pane;
             pane.left = static_cast<int>(cell_width * static_cast<double>(i % columns));
-            pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
+            const std::size_t row = i / columns;
+            pane.top = static_cast<int>(cell_height * static_cast<double>(row));
             pane.width = std::max(1, static_cast<int>(cell_width));
             pane.height = std::max(1, static_cast<int>(cell_height - bar_height_ - caption_height_));
             const Scene& scene = scenes_[pane.scene];

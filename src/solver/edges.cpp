@@ -158,7 +158,7 @@ public:
 
 class EqualLength final : public Edges {
 public:
-    EqualLength(const ConstraintArguments& a, std::vector<std::pair<int, int>> first,
+    EqualLength(const ConstraintArguments& a, const std::vector<std::pair<int, int>>& first,
                 const std::vector<std::pair<int, int>>& second)
         : Edges(a, joined(first, second)), first_(static_cast<Index>(first.size())) {}
     void project(const RowsIn& rows, RowsOut projected) const override {

@@ -159,7 +159,7 @@ public:
         }
         const Decomposition svd(f);
         Eigen::Matrix<double, 3, N> u = svd.matrixU().template leftCols<N>();
-        const Square v = svd.matrixV();
+        const Square& v = svd.matrixV();
         std::array<double, 3> s{1, 1, 1};
         for (int i = 0; i < N; ++i) s[i] = svd.singularValues()[i];
         if constexpr (N == 3) {

@@ -130,7 +130,7 @@ private:
         std::vector<MappedPlace> found(all.size());
         parallel_for(
             all.size(), [&](std::size_t i) { found[i] = mapping_(all[i]); }, 64);
-        for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], std::move(found[i]));
+        for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], found[i]);
     }
 
     const MappedPlace& at(const SurfacePoint& place) {
