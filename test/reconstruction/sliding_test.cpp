@@ -118,9 +118,9 @@ TEST(Sliding, IsNoFartherFromTheTruthThanOtherCounterparts) {
     const Mesh mesh = meshed_body(900, 0), again = meshed_body(1100, 1);
     for (const bool same : {true, false})
         for (const double share : {1.0, 0.6}) {
-            const double error = fit_member({mesh, same ? mesh : again}, share, "sliding").error;
+            const double error = fit_member(mesh, same ? mesh : again, share, "sliding").error;
             for (const std::string other : {"surface", "one-to-one"})
-                EXPECT_LE(error, fit_member({mesh, same ? mesh : again}, share, other).error)
+                EXPECT_LE(error, fit_member(mesh, same ? mesh : again, share, other).error)
                     << other << ", " << share << (same ? ", the template's mesh" : ", its own mesh");
         }
 }
