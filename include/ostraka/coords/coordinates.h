@@ -15,22 +15,25 @@
 
 namespace ostraka {
 
-/// Dense weights, one row per point; rows are contiguous.
+/// Dense weights, one row per point; the weights of a row are contiguous in memory.
 using WeightMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Sparse weights, one row per point, stored row by row.
 using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 struct Coordinates {
-    std::string kind;           ///< "mean-value", "green" ...
-    WeightMatrix vertex;        ///< points x cage vertices, columns in the order of the cage's vertices
-    WeightMatrix normal;        ///< points x cage faces, in units of length; 0 x 0 for kinds without a normal term
-    SparseWeights sparse = {};  ///< copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for others
-    /// For kinds on tetrahedra, the seconds spent in each phase: tetrahedra, weights at their nodes, points.
+    std::string kind;     ///< "mean-value", "green" ...
+    WeightMatrix vertex;  ///< weight of each cage vertex (column) for each point (row)
+    /// Weight of each cage face normal (column) for each point (row), in units of length; 0 x 0 for kinds without a normal term.
+    WeightMatrix normal;
+    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for other kinds.
+    SparseWeights sparse = {};
+    /// For kinds computed on tetrahedra: name and seconds of each phase (tetrahedralisation, weights at the nodes, weights of the
+    /// points).
     std::vector<std::pair<std::string, double>> seconds = {};
-    [[nodiscard]] bool has_normals() const { return normal.size() > 0; }
-    [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }
-    /// The share of the weights that are stored; 1 for dense weights.
+    [[nodiscard]] bool has_normals() const { return normal.size() > 0; }  ///< true for kinds with a normal term
+    [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }    ///< true if `sparse` is filled
+    /// The fraction of the weights that are stored; 1 for dense weights.
     [[nodiscard]] double stored_share() const;
 };
 
@@ -38,34 +41,38 @@ struct CoordinateOptions {
     /// A point closer than this to a vertex, an edge or a face of the cage counts as lying on it; relative to the cage's
     /// diagonal.
     double snap = 4e-15;
-    /// For kinds on tetrahedra inside the cage: approximate number of nodes, and the threshold below which weights are dropped.
+    /// Approximate number of nodes, for kinds computed on tetrahedra inside the cage.
     std::uint64_t nodes = 20000;
+    /// Weights below this are dropped, for kinds computed on tetrahedra and positive-mean-value.
     double drop = 1e-4;
-    /// For local coordinates: maximum number of iterations; they also stop when the total variation falls by less than this
-    /// share of itself in ten iterations.
+    /// Maximum number of iterations, for local coordinates.
     int iterations = 300;
+    /// Local coordinates: stop when ten iterations reduce the total variation by less than this fraction.
     double tolerance = 1e-4;
-    /// For nested cages: distance over which the influence of an inner cage rises from 0 to 1, starting where the mesh enters
-    /// it; relative to the inner cage's diagonal.
+    /// For nested cages: distance over which the influence of an inner cage rises from 0 (where the mesh enters the inner cage)
+    /// to 1; relative to the inner cage's diagonal.
     double fade = 0.15;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// A kind of coordinates. `compute` may assume a closed triangle cage without garbage and finite numbers.
+/// A kind of cage coordinates that can be computed by name.
 struct CoordinateKind {
-    std::string name, about;
-    bool on_cage = true;        ///< defined for points on the cage, and outside
-    bool with_normals = false;  ///< has a normal term: not for constrained deformation (thesis, equation 4.9)
+    std::string name, about;  ///< name of the kind; description for help texts
+    bool on_cage = true;      ///< true: defined also for points on the cage and outside
+    /// True: has a normal term and cannot be used for constrained deformation (thesis, equation 4.9).
+    bool with_normals = false;
+    /// Computes the coordinates; the cage is a closed triangle mesh without garbage, and all numbers are finite.
     std::function<Coordinates(const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions&)> compute;
 };
 
-/// Registers a kind under its name, replacing a kind of the same name. Not thread-safe: must not run while coordinates are
-/// computed.
+/// Registers a kind of coordinates under its name, replacing a kind of the same name. Not thread-safe: do not call while
+/// coordinates are computed.
 void add_coordinate_kind(CoordinateKind kind);
-/// The names of all kinds: "mean-value", "green", "harmonic", "local", "positive-mean-value" and the registered ones.
+/// The names of all kinds of coordinates: "mean-value", "green", "harmonic", "local", "positive-mean-value" and the registered
+/// ones.
 std::vector<std::string> coordinate_kinds();
-/// Looks up a kind. Throws Error (usage) that lists the kinds if there is none of that name.
+/// The kind of this name. Throws Error (usage) that lists all kinds if there is no kind of this name.
 const CoordinateKind& coordinate_kind(const std::string& name);
 
 /// Coordinates of `points` in `cage`. Time and memory are proportional to points x (vertices + faces); the result is the same
@@ -93,12 +100,12 @@ Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const
 /// The points of a mesh, in the order of its vertices.
 std::vector<Point> points_of(const Mesh& mesh);
 
-/// The positions of the points after the vertices of the cage moved to `cage_points`. Green coordinates scale the normals by
-/// the stretch of their faces (section 3 of the paper). Throws Error (usage) if the sizes do not match.
+/// The positions of the points when the cage vertices are at `cage_points`. Green coordinates scale the normals by the stretch of
+/// their faces (section 3 of the paper). Throws Error (usage) if the sizes do not match.
 std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
-/// The face normals that the normal weights multiply; the length of each is the stretch of its face relative to the rest cage.
-/// Zero for faces without area at rest.
+/// The face normals that the normal weights multiply: the length of a normal is the stretch of its face relative to the
+/// undeformed cage. The normal of a face without area in the undeformed cage is zero.
 std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
 }  // namespace ostraka
