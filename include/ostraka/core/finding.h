@@ -1,4 +1,4 @@
-// Findings of a check.
+// Findings of a check: defects and remarks.
 #pragma once
 
 #include <compare>
@@ -7,9 +7,9 @@
 namespace ostraka {
 
 struct Finding {
-    bool defect = false;  ///< false: a remark on something allowed
-    std::string where;    ///< JSON pointer
-    std::string text;
+    bool defect = false;  ///< true: a defect; false: a remark about something allowed
+    std::string where;    ///< location of the finding (a JSON pointer, for files)
+    std::string text;     ///< the finding in words
     auto operator<=>(const Finding&) const = default;
 };
 
