@@ -21,9 +21,9 @@ struct CoordinateCertificate {
     /// Largest deviation of the weights at cage vertices from 1 (own weight) or 0 (other weights). The weights of coincident
     /// vertices are added. None for kinds that are not defined on the cage.
     std::optional<double> lagrange = {};
-    /// Largest deviation from linear weights, at three points on each cage edge; none as for `lagrange`.
+    /// Largest deviation from linear weights, at three points on each cage edge; none for kinds that are not defined on the cage.
     std::optional<double> edges = {};
-    /// Largest deviation from linear weights, at three points on each cage face; none as for `lagrange`.
+    /// Largest deviation from linear weights, at three points on each cage face; none for kinds that are not defined on the cage.
     std::optional<double> on_faces = {};
 
     double negative = 0;              ///< fraction of the vertex weights that are negative

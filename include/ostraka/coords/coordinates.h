@@ -43,7 +43,7 @@ struct CoordinateOptions {
     double snap = 4e-15;
     /// Approximate number of nodes, for kinds computed on tetrahedra inside the cage.
     std::uint64_t nodes = 20000;
-    /// Weights below this are dropped, for kinds computed on tetrahedra and positive-mean-value.
+    /// Weights below this value are dropped, for kinds with sparse weights.
     double drop = 1e-4;
     /// Maximum number of iterations, for local coordinates.
     int iterations = 300;
@@ -93,8 +93,8 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// coordinates restricted to the part of the cage that is visible from the point, by evenly distributed rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
-/// As above, for the vertices of a mesh. In a cage that contains other cages the coordinates cover all of them
-/// (coords/nested.h).
+/// Coordinates of the vertices of a mesh in `cage`. If the cage contains other cages, the coordinates cover all nested cages
+/// (coords/nested.h). Errors and cost are those of `compute_coordinates` for points.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const Mesh& mesh,
                                 const CoordinateOptions& options = {});
 /// The points of a mesh, in the order of its vertices.
