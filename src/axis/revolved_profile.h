@@ -10,10 +10,11 @@ namespace ostraka::detail {
 
 /// A surface sample in the part's own frame (centroid at the origin, diagonal 1), with its normal and area.
 struct RoundSample {
-    Vector3d p, n;
-    double weight;
+    Vector3d p, n;  ///< position; unit normal
+    double weight;  ///< area of the surface that the sample represents
 };
 
+/// A candidate axis in the frame of the part.
 struct AxisLine {
     Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
 };
@@ -36,7 +37,7 @@ struct RevolvedProfile {
         double hh = 0, hr = 0;
         std::vector<std::size_t> members;  ///< indices of the samples
     };
-    std::vector<Bin> bins;
+    std::vector<Bin> bins;    ///< one per bin of height and wall
     std::vector<int> bin_of;  ///< for each sample: its bin; -1 for samples that face along the axis
     /// Per sample: height, radius, distance from the profile, robust weight.
     std::vector<double> height, radius, error, robust;
@@ -51,10 +52,11 @@ private:
 /// Normal equations of two translations and two tilts of the axis along `u` and `w`, with each bin's radius and slope
 /// eliminated.
 struct AxisRefinement {
-    Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+    Eigen::Matrix4d H = Eigen::Matrix4d::Zero();  ///< normal matrix
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();  ///< right-hand side: gradient
+    /// Total weight; weighted sum of squares; mean radius; effective number of samples.
     double weight = 0, squares = 0, radius = 0, count = 0;
-    Vector3d u, w;
+    Vector3d u, w;  ///< unit vectors across the axis, the directions of steps
 
     AxisRefinement(const std::vector<RoundSample>& samples, const AxisLine& axis, const RevolvedProfile& profile);
     AxisRefinement(const std::vector<RoundSample>& samples, const AxisLine& axis, const RevolvedProfile& profile,

@@ -9,6 +9,7 @@ namespace ostraka {
 
 inline constexpr std::size_t max_harmonics = 6;
 
+/// Fourier coefficients of the radius of an outline.
 struct OutlineHarmonics {
     double turn = 0;    ///< fraction of the directions from the centre that meet the contour
     double radius = 0;  ///< mean radius over the angle; 0 if too few directions meet the contour

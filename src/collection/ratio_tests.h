@@ -11,7 +11,7 @@ namespace ostraka::proportions {
 
 /// A ratio of two measures: indices of two columns of the matrix of logarithms.
 struct Pair {
-    Eigen::Index a, b;
+    Eigen::Index a, b;  ///< indices of the columns
 };
 
 /// Logarithms of measures minus column centres: x_ij - c_j, where the c_j minimise the sum of (x_ij - s_i - c_j)^2 over the

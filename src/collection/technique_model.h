@@ -36,8 +36,8 @@ inline constexpr double min_positive = 1e-12;
 
 /// Linear classifier with score weights . (x - middle) - limit; an object is positive if its score is at least 0.
 struct TechniqueModel {
-    Eigen::VectorXd weights, middle;
-    double limit = 0;
+    Eigen::VectorXd weights, middle;  ///< one entry per column: weight, and reference value
+    double limit = 0;                 ///< threshold of the weighted sum
     /// Threshold in the descriptor's unit; none unless there is a single column.
     std::optional<Threshold> threshold;
     [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle) - limit; }

@@ -12,6 +12,7 @@
 
 namespace ostraka::coords {
 
+/// An edge of the cage.
 struct CageEdge {
     Index from, to;  ///< vertices of the edge
     Vector3 along;   ///< to - from

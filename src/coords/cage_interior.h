@@ -57,7 +57,7 @@ struct UnitCage {
     explicit UnitCage(const Mesh& cage);
     /// Converts a point to unit coordinates.
     [[nodiscard]] Eigen::Vector3d unit(const Point& p) const;
-    Mesh mesh;
+    Mesh mesh;                             ///< the cage in unit coordinates
     std::vector<Eigen::Vector3d> corners;  ///< vertices of the cage in unit coordinates
     Point middle{0, 0, 0};                 ///< middle of the bounding box, in input coordinates
     double diagonal = 1;                   ///< diagonal of the bounding box, in input units

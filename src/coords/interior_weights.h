@@ -12,7 +12,7 @@ struct CellGradients {
     /// Per tetrahedron: gradient of the hat function of each corner.
     std::vector<std::array<Eigen::Vector3d, 4>> of_corner;
 };
-CellGradients gradients_of(const CageInterior& inside);
+CellGradients gradients_of(const CageInterior& inside);  ///< per tetrahedron
 
 /// Boundary values of the weights, one row per node: linear on the cage, zero at interior nodes.
 WeightMatrix weights_on_cage(const CageInterior& inside, const UnitCage& cage);

@@ -10,8 +10,8 @@ namespace ostraka::figures {
 
 /// A tick of an axis.
 struct Tick {
-    double value;  ///< value at the tick
-    std::string text;
+    double value;      ///< value at the tick
+    std::string text;  ///< label of the tick
 };
 
 /// True if a value can be shown on the axis (finite, and positive on a logarithmic axis).

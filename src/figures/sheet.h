@@ -25,7 +25,7 @@ Rgb lighter(const Rgb& colour, double fraction);
 
 /// A rectangle on the sheet.
 struct Box {
-    double left = 0, top = 0, right = 0, bottom = 0;
+    double left = 0, top = 0, right = 0, bottom = 0;    ///< sides of the rectangle
     [[nodiscard]] bool meets(const Box& other) const {  ///< true if the rectangles overlap
         return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
     }
@@ -50,7 +50,7 @@ public:
     void frame(const Box& box, const Rgb& colour, double width);
     /// Draws a filled circle.
     void dot(double x, double y, const Rgb& colour, double radius = 3);
-    /// Draws mark number `form`, each with its own shape: dot, square, triangle, rhomb, cross, ring ... ...
+    /// Draws mark number `form`, each with its own shape: dot, square, triangle, rhomb, cross, ring and others. ... ...
     void mark(double x, double y, std::size_t form, const Rgb& colour);
 
     /// Width of a text in points.

@@ -8,7 +8,7 @@ namespace ostraka {
 
 /// An open temporary file.
 struct TemporaryFile {
-    Path name;
+    Path name;            ///< empty if the file could not be created
     int descriptor = -1;  ///< open file descriptor; -1: the file could not be created, and errno gives the reason
 };
 

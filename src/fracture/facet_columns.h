@@ -33,7 +33,7 @@ public:
             for (const auto& column : columns_) result.values.push_back(column[r]);
         return result;
     }
-    std::vector<std::string> names;
+    std::vector<std::string> names;  ///< names of the columns
 
 private:
     std::size_t rows_;

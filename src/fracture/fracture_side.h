@@ -52,11 +52,11 @@ struct FractureSide {
     FractureSide() = default;
     FractureSide(const Fragment& fragment, double radius, int frame_count, int sample_count);
 
-    std::vector<RimFrame> frames;     ///< frames along the rim
-    SurfaceSamples fracture, intact;  ///< samples of the fracture surface and of the intact surface
-    std::vector<RimLoop> loops;       ///< the whole rim
-    double rim_length = 0;            ///< total length of the rim
-    [[nodiscard]] FractureSide moved(const Motion& motion) const;
+    std::vector<RimFrame> frames;                                  ///< frames along the rim
+    SurfaceSamples fracture, intact;                               ///< samples of the fracture surface and of the intact surface
+    std::vector<RimLoop> loops;                                    ///< the whole rim
+    double rim_length = 0;                                         ///< total length of the rim
+    [[nodiscard]] FractureSide moved(const Motion& motion) const;  ///< a copy after a rigid motion
 };
 
 /// Size of a fragment: square root of its surface area.

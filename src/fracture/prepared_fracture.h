@@ -8,9 +8,10 @@
 
 namespace ostraka {
 
+/// The precomputed data.
 struct PreparedFracture::Parts {
-    Mesh mesh;
-    std::string name;
+    Mesh mesh;                                         ///< surface of the fragment
+    std::string name;                                  ///< name of the fragment
     double size = 0;                                   ///< square root of the surface area
     double width = 0;                                  ///< width of the fracture (PreparedFracture::width)
     std::size_t faces = 0;                             ///< number of fracture faces

@@ -50,7 +50,7 @@ private:
 
 /// A sherd in the frame in which the vessel's axis is the vertical line through the origin.
 struct UprightSherd {
-    Mesh mesh;
+    Mesh mesh;                         ///< surface of the sherd
     FractureSide side;                 ///< fracture and rim; a sherd without fracture meets no other sherd
     double radius = 0;                 ///< root mean square distance of the sherd from the axis
     std::unique_ptr<RotationMap> map;  ///< cells that the sherd covers

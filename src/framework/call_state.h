@@ -9,6 +9,7 @@
 
 namespace ostraka {
 
+/// What a context knows about the running call.
 struct Context::CallState {
     std::string command;                       ///< name of the operation
     const Parameters* parameters = nullptr;    ///< slots and options of the call
@@ -16,6 +17,7 @@ struct Context::CallState {
     std::vector<ReadRecord::Entry> read = {};  ///< files read so far, in the order of reading
     /// (slot, index) -> checksum of the object in memory.
     std::map<std::pair<const Slot*, std::size_t>, std::string> checksums = {};
+    /// (slot, index, type, key) -> object read in this call.
     std::map<std::tuple<const Slot*, std::size_t, std::type_index, std::string>, std::shared_ptr<const void>> loaded = {};
     /// Files read by the enclosing load if loads are nested; else null.
     std::vector<ReadRecord::Entry>* within = nullptr;
@@ -28,7 +30,7 @@ struct Context::CallState {
     /// that writing the object would give.
     const std::string& checksum_of(const Slot& slot, std::size_t i);
     void add(const std::vector<ReadRecord::Entry>& files);  ///< adds files that were read
-    /// Files that were read, except those that are updated in place.
+    /// Files that were read, except files that are updated in place.
     [[nodiscard]] std::vector<Path> inputs() const;
 };
 

@@ -31,7 +31,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> p, Left&& 
 
 /// Limits of a rectangle around a convex polygon, in the coordinates of its axes.
 struct Extent {
-    double x0, x1, y0, y1;
+    double x0, x1, y0, y1;  ///< min and max along the first and along the second axis
 };
 
 /// Extent of a polygon along the unit vector `a` and perpendicular to `a`, computed from all corners.

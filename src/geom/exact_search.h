@@ -18,6 +18,7 @@ namespace ostraka::detail {
 
 using PlainTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
 
+/// Remedy in messages about memory.
 inline constexpr const char* coarser = "measure along edges, up to a limit, or on a coarser copy (ostraka mesh simplify)";
 
 /// Checks that memory suffices for the windows of a search: at least 6 kB per face on a rough surface, where windows end soon; on

@@ -20,6 +20,7 @@ bool may_hold_near(const Mesh& mesh, Face face, const PointTree& points, double 
 struct SurfacePatch : SubMesh {
     double scale = 1;  ///< length in the whole mesh = scale * length in the patch
 };
+/// Cuts out the listed faces as a separate mesh, translated and scaled.
 SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& origin);
 
 }  // namespace ostraka

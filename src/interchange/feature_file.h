@@ -48,7 +48,7 @@ public:
     FeatureFile(const std::string& bytes, const std::string& where);
 
     glb::Reader file;
-    std::vector<Primitive> primitives;
+    std::vector<Primitive> primitives;        ///< triangles, lines and points of the mesh
     std::map<std::size_t, Feature> features;  ///< row of the property table -> elements of the feature
     std::size_t rows = 0;                     ///< number of rows of the property table
     /// True: the table was written by this toolkit, and ids, kinds, colours, notes and attributes are available.

@@ -14,7 +14,7 @@ bool same(const Annotation& a, const Annotation& b);
 
 /// The value of a field as complete text on one line.
 std::string as_text(const std::string& text);
-std::string as_text(const std::array<int, 3>& colour);
+std::string as_text(const std::array<int, 3>& colour);  ///< three numbers separated by blanks
 std::string as_text(const std::optional<std::array<double, 3>>& direction);
 std::string as_text(const std::vector<Information>& entries);
 std::string as_text(const Attribute& attribute);

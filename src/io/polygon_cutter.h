@@ -48,7 +48,7 @@ private:
     std::vector<Point2> flat_;         ///< projections of the kept corners, scaled by a power of two, counter-clockwise
     /// For each kept corner: its neighbours in the remaining polygon.
     std::vector<std::uint32_t> next_, previous_;
-    /// Corners to try as ears in this round and in the next round; round in which a corner was last tried.
+    /// Corners to try as ears in this round and in the next round; round in which a corner last changed.
     std::vector<std::uint32_t> candidates_, waiting_, round_of_;
     /// Corners that are not strictly convex, and the grid that finds them.
     std::vector<std::uint32_t> reflex_, cell_begin_, cell_items_;

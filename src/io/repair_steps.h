@@ -38,6 +38,7 @@ using Counts = std::vector<std::pair<std::string, std::size_t>>;
 /// For each halfedge of a manifold soup: its opposite halfedge; no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
+/// Distances within which points are merged.
 struct MergeDistances {
     double distance;  ///< points closer than this are merged; in the mesh's unit
     double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
@@ -49,14 +50,16 @@ Counts merge_points(RepairSoup& work, const MergeDistances& limits, double& crac
 double crack_width(const TriangleSoup& soup);
 /// Inserts border vertices into triangle edges on which the vertices lie within the tolerance (T-junctions).
 Counts sew_junctions(RepairSoup& work, double tolerance);
-Counts drop_invalid_triangles(RepairSoup& work);
-Counts orient_patches(RepairSoup& work);
+Counts drop_invalid_triangles(RepairSoup& work);  ///< triangles with a repeated corner, and duplicates
+Counts orient_patches(RepairSoup& work);          ///< orients triangles consistently across manifold edges
 /// Joins triangles at edges in pairs and gives each fan of triangles its own vertex.
 Counts separate_nonmanifold(RepairSoup& work);
+/// Drops components with a smaller fraction of the area, or all but the largest component.
 Counts drop_components(RepairSoup& work, bool only_largest, double smallest_share);
-Counts flip_degenerate(RepairSoup& work);
-Counts orient_outwards(RepairSoup& work);
+Counts flip_degenerate(RepairSoup& work);  ///< removes degenerate triangles by edge flips
+Counts orient_outwards(RepairSoup& work);  ///< orients closed components outwards, except cavities
 
+/// Which holes are filled.
 struct HoleLimits {
     std::size_t edges;  ///< maximum number of border edges
     double share;       ///< maximum width of a hole, as a fraction of the component's diagonal

@@ -27,7 +27,7 @@ std::vector<std::uint8_t> triangles_without_area(const TriangleSoup& soup);
 
 /// Bounding box of the vertices with triangles.
 CGAL::Bbox_3 box_of_triangles(const TriangleSoup& soup);
-double diagonal(const CGAL::Bbox_3& box);
+double diagonal(const CGAL::Bbox_3& box);  ///< length of the diagonal
 
 /// Finds intersecting pairs of triangles. `place`: for each vertex, the first vertex with the same position; `without_area`: for
 /// each triangle, 1 if it is ignored.

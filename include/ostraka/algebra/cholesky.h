@@ -10,6 +10,7 @@ namespace ostraka {
 /// A symmetric matrix, stored column-major as its lower triangle and diagonal, with row indices sorted within each column.
 using LowerTriangle = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
+/// Solver for sparse symmetric positive definite systems: analyse, factor, solve.
 class SparseCholesky {
 public:
     SparseCholesky();

@@ -12,7 +12,7 @@
 
 namespace ostraka {
 
-/// A measure and the pins (picked vertices) that define it (Appendix B.1).
+/// A measure with the pins (picked vertices) that define the measure (Appendix B.1).
 struct Measure {
     std::string tool;           ///< "ruler", "tape" or "bounding"
     std::vector<Index> points;  ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
@@ -43,11 +43,13 @@ struct Descriptor {
     bool operator==(const Descriptor&) const = default;
 };
 
+/// How the value of an attribute is given.
 enum class AttributeType { semantic, measure, descriptor };
 
+/// A named attribute of an annotation.
 struct Attribute {
-    int id = 0;
-    std::string name;
+    int id = 0;        ///< unique among the attributes of the annotation
+    std::string name;  ///< name of the attribute
     AttributeType type = AttributeType::semantic;
     std::string note;       ///< text of a semantic attribute; empty for the other types
     Measure measure;        ///< used if `type` is measure
@@ -67,6 +69,7 @@ struct Information {
 };
 std::string to_string(Information::Kind kind);
 
+/// What an annotation selects on the mesh.
 enum class AnnotationType { point, line, region };
 
 /// Colour (grey) of annotations that cover the whole object and thus distinguish no part.
@@ -76,7 +79,7 @@ inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 /// A free annotation has its own curves, which need not follow the edges; its selection then holds the elements nearest to the
 /// curves (curves.h).
 struct Annotation {
-    int id = 0;
+    int id = 0;                                  ///< unique among the annotations of the set
     std::string tag;                             ///< name of the annotated part
     std::array<int, 3> colour = neutral_colour;  ///< red, green, blue, 0 to 255
     AnnotationType type = AnnotationType::region;
@@ -85,16 +88,18 @@ struct Annotation {
     /// at the end.
     std::vector<std::vector<Index>> polylines;
     std::vector<Index> faces;  ///< region: indices of its faces, ascending, without repeats
-    /// Curves of a free annotation, each a list of stored points (stored_point); consecutive points lie in a common face. Region:
-    /// outlines with the interior to the left, closed (the first point is repeated) or from border to border. Line: poly-lines,
-    /// closed if first = last. Point: one point each.
+    /// Curves of a free annotation, each a list of stored points (stored_point); consecutive points lie in a common face. Curves
+    /// of a region are outlines with the interior to the left, closed (the first point is repeated) or from border to border of
+    /// the mesh. Curves of a line are poly-lines, closed if the first point is repeated. Curves of a point annotation have one
+    /// point each.
     std::vector<std::vector<SurfacePoint>> curves;
-    bool all = false;  ///< true: the region is the whole mesh, and `faces` lists every face
-    std::vector<Attribute> attributes;
+    bool all = false;                      ///< true: the region is the whole mesh, and `faces` lists every face
+    std::vector<Attribute> attributes;     ///< semantic attributes, measures and descriptors of the annotation
     std::vector<Information> information;  ///< texts, links and files attached to the annotation
     std::string note;                      ///< changes that a transfer or a simplification made to the annotation, if any
 };
 
+/// All annotations of one mesh.
 struct AnnotationSet {
     AnnotationSet() = default;
     AnnotationSet(const AnnotationSet& other);
@@ -105,9 +110,9 @@ struct AnnotationSet {
     std::string object_class;                 ///< class of the object ("class" in the file); empty if unknown
     std::string unit;                         ///< unit of the mesh's coordinates; empty if unknown
     std::optional<std::array<double, 3>> up;  ///< upward direction of the object; none if unknown
-    std::vector<Annotation> annotations;
-    Json provenance;                 ///< provenance as read from the file; null if the file has none
-    std::vector<std::string> notes;  ///< remarks by the reader or by functions that adapted the set to a changed mesh
+    std::vector<Annotation> annotations;      ///< in the order of the file
+    Json provenance;                          ///< provenance as read from the file; null if the file has none
+    std::vector<std::string> notes;           ///< remarks by the reader or by functions that adapted the set to a changed mesh
 
     [[nodiscard]] const Annotation* find(int id) const;  ///< the annotation with this id; null if there is none
     [[nodiscard]] Annotation* find(int id);
@@ -117,9 +122,9 @@ std::string to_string(AnnotationType type);
 /// The annotation as named in messages: "annotation 3 ('spout')".
 std::string name_of(const Annotation& annotation);
 
-/// The annotation of the whole object: a region with `all`. If there is none, it is inserted as the first annotation, with the
-/// class as its tag ("object" if the class is unknown) and a free id. It holds the attributes of the object itself (total
-/// height, site of excavation ...).
+/// The annotation of the whole object: a region with `all`. If the set has no such annotation, one is inserted as the first
+/// annotation, with the class as its tag ("object" if the class is unknown) and a free id. The attributes of this annotation are
+/// the attributes of the object itself (total height, site of excavation and so on).
 Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh);
 
 /// An annotation id that the set does not use: one more than the largest id, or 0 for an empty set.
@@ -138,6 +143,7 @@ struct Figures {
     std::string unit;            ///< unit of `values`
     bool stale = false;          ///< true: the mesh or the pins changed and the values were not recomputed
 };
+/// The numbers of a measure or descriptor attribute.
 Figures figures_of(const Attribute& attribute);
 
 /// For each face of the mesh: true if the face is listed in `faces`.

@@ -8,6 +8,7 @@
 
 namespace ostraka {
 
+/// Options of `read_annotations`.
 struct ReadAnnotationsOptions {
     bool force_mesh = false;  ///< true: accept a file made for another mesh; indices and edges are still checked
 

@@ -14,8 +14,8 @@ namespace ostraka {
 inline constexpr const char* vertex_annotations = "v:annotations";
 inline constexpr const char* edge_annotations = "e:annotations";
 inline constexpr const char* face_annotations = "f:annotations";
-/// Map that gives, per face, the regions whose free outlines cut the face. Such a face counts as inside a region if most of its
-/// area is inside.
+/// Map that gives, per face, the regions whose free outlines cut the face. A face cut by free outlines counts as inside a region
+/// if most of the face's area is inside.
 inline constexpr const char* face_cuts = "f:annotation-cuts";
 
 /// The distinct sets of annotation ids, and the data that cannot be recovered from an edited mesh.
@@ -49,8 +49,8 @@ AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 /// follow the vertex map and keep their order; with an empty `vertex_map`, points and poly-lines are read from the vertices and
 /// edges in index order, and pins keep their indices. Consecutive poly-line vertices that coincide after the edits are merged; a
 /// segment that was split is followed along the edges that carry the annotation. A region without remaining faces becomes a line
-/// or a point and keeps its tag; the annotation's `note` reports the change. Free annotations lose their curves; `project_curves`
-/// recomputes them. Values of measures and descriptors are marked stale; `refresh_measures` recomputes them.
+/// or a point and keeps its tag; the annotation's `note` reports the change. Free annotations lose their curves, which
+/// `project_curves` recomputes. Values of measures and descriptors are marked stale; `refresh_measures` recomputes the values.
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map = {});
 

@@ -20,8 +20,8 @@ std::array<int, 3> fresh_colour(const Mesh& mesh, const AnnotationSet& set, cons
 /// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
 void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
-/// The regions of a set, by descending area; for equal areas, the later one in the set first. Painting them in this order
-/// leaves the smallest (then the earliest) region on top.
+/// The regions of a set, by descending area; of regions of equal area, the later region in the set comes first. Painting the
+/// regions in this order leaves the smallest (then the earliest) region on top.
 std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, const AnnotationSet& set);
 
 /// Colours each face and each vertex by the smallest region that covers it (grey: none), and the vertices of line and point

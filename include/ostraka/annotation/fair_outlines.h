@@ -9,6 +9,7 @@
 
 namespace ostraka {
 
+/// Options of `fair_outlines`.
 struct FairOptions {
     double distance = 0;  ///< maximum deviation in the mesh's unit; 0: mean edge length of the mesh or, if larger, of the curve
     bool let_area_change = false;  ///< true: regions need not keep their areas
@@ -18,7 +19,7 @@ struct FairOptions {
 
 /// Changes that fairing made to one annotation.
 struct FairedAnnotation {
-    int id = 0;
+    int id = 0;                                  ///< id of the annotation
     double length_before = 0, length_after = 0;  ///< perimeter of a region, length of a line
     double area_before = 0, area_after = 0;      ///< area of a region; 0 for a line
     double moved = 0;                            ///< maximum distance of the new curve from the old curve, in the mesh's unit

@@ -11,17 +11,18 @@ namespace ostraka {
 /// A closed path of vertices that does not repeat its first vertex; the interior of the region lies to the left of each edge.
 using Outline = std::vector<Index>;
 
-/// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, it is split so that
-/// the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed once).
-/// Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
+/// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, the outline is split
+/// so that the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed
+/// once). Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
 /// halfedge. Linear in the number of selected faces, except for one pass over the flags.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected);
+/// The outlines of a set of faces, given by their indices.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// A path of vertices along an outline: the whole outline, or a stretch between two vertices on the border of the mesh.
 struct OutlinePath {
-    std::vector<Index> vertices;
-    bool closed = false;  ///< true: the whole outline, without repeating its first vertex
+    std::vector<Index> vertices;  ///< along the path, in order
+    bool closed = false;          ///< true: the whole outline, without repeating its first vertex
 };
 /// The outlines of a set of faces, without their edges on the border of the mesh; where such edges are left out, an outline is
 /// split into open paths.
@@ -61,6 +62,7 @@ struct RegionMeasures {
         return area > 0 ? perimeter * perimeter / area : 0;
     }  ///< perimeter^2 / area: 4 pi for a disc; 0 without area
 };
+/// Area and perimeter of a set of faces.
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

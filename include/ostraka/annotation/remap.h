@@ -11,9 +11,10 @@ namespace ostraka {
 /// file, position and remedy unless the kind and the two counts in the file equal the arguments.
 std::vector<Index> read_index_map(const Path& file, const std::string& kind, std::size_t from, std::size_t to);
 
-/// Maps the annotations of `before` to `after`. Faces are mapped by `face_map`, or by their corners if it is empty. Points and
-/// poly-lines are mapped by `vertex_map`; a poly-line is split where consecutive vertices are no longer connected, and a region
-/// without faces becomes a line or a point; notes report split lines and converted regions. Values of measures are marked stale.
+/// Maps the annotations of `before` to `after`. Faces are mapped by `face_map`, or, if `face_map` is empty, by the corners of the
+/// faces. Points and poly-lines are mapped by `vertex_map`; a poly-line is split where consecutive vertices are no longer
+/// connected, and a region without faces becomes a line or a point; notes report split lines and converted regions. Values of
+/// measures are marked stale.
 AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, const Mesh& after,
                                 const std::vector<Index>& vertex_map, const std::vector<Index>& face_map = {});
 

@@ -10,9 +10,11 @@
 
 namespace ostraka {
 
+/// Method by which an axis is found.
 enum class AxisMethod { rotation, slices, skeleton, principal };
 std::string to_string(AxisMethod method);
 
+/// Options of `find_axis`.
 struct AxisOptions {
     AxisMethod method = AxisMethod::rotation;  ///< how the axis is computed
     /// Rotation: max distance of a point on the revolved profile, as a fraction of the largest diameter.
@@ -28,8 +30,8 @@ struct AxisOptions {
 
 /// A number that describes the axis; lengths are in the mesh's unit.
 struct AxisFigure {
-    std::string name;
-    double value;
+    std::string name;  ///< name of the number in reports
+    double value;      ///< in `unit`
     std::string unit;  ///< "length", "degree", "%" or empty for a ratio
 };
 
@@ -50,12 +52,12 @@ struct Axis {
 /// Finds the axis of a set of faces by the method in the options. Throws Error (input) if there are no faces with area.
 Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Axis of the best-fitting surface of revolution. Every normal of such a surface meets the axis: the linear line complex of
-/// Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all normals
-/// with reweighting. The result is refined so that radii agree along parallels (robust least squares over heights), which needs
-/// no normals; the refinement starts from the axis fitted to the normals and from the principal directions of the normals, and
-/// the result of the highest quality is kept. Quality: the fraction of the area (without parts that face along the axis) within
-/// `tolerance` of the revolved profile. No axis is found for flat parts, spheres (infinitely many), shapes that are not
+/// Axis of the surface of revolution fitted to the faces. Every normal of a surface of revolution meets the axis: the linear line
+/// complex of Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all
+/// normals with reweighting. The result is refined so that radii agree along parallels (robust least squares over heights), which
+/// needs no normals; the refinement starts from the axis fitted to the normals and from the principal directions of the normals,
+/// and the result of the highest quality is kept. Quality: the fraction of the area (without parts that face along the axis)
+/// within `tolerance` of the revolved profile. No axis is found for flat parts, spheres (infinitely many), shapes that are not
 /// rotationally symmetric or that fit about several lines, and short arcs (relative error of the diameter above one half).
 /// Figures: largest diameter, per cent of the circle preserved, rms distance from the profile, standard errors of the direction
 /// and of the diameter. Linear in faces.
@@ -88,11 +90,12 @@ std::string to_obj(const Axis& axis);
 
 /// Centroid and covariance of the surface area of faces, integrated exactly over the triangles.
 struct AreaMoments {
-    double area = 0;
-    Point centroid{0, 0, 0};
+    double area = 0;                    ///< total area
+    Point centroid{0, 0, 0};            ///< centroid of the area
     std::array<double, 3> variances{};  ///< variances along `directions`, descending
     std::array<Vector, 3> directions;   ///< unit eigenvectors of the covariance, a right-handed frame
 };
+/// Integrates the moments of the area of faces.
 AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

@@ -16,6 +16,7 @@ struct AxisGuess {
     Eigen::Vector3d point, direction, u, w;
 };
 
+/// How well a line fits a part as axis of rotation, and how to improve the line.
 struct AxisEvidence {
     /// Fraction of the area that is consistent with the axis: on the profile revolved about the axis, with normals that meet the
     /// axis.
@@ -42,14 +43,15 @@ public:
 
     /// Normal equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
     /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance of
-    /// patch means to that of single samples. `round` is small for parts that are no surface of revolution about any nearby line.
+    /// patch means to the variance of single samples. `round` is small for parts that are no surface of revolution about any
+    /// nearby line.
     [[nodiscard]] AxisEvidence at(const AxisGuess& guess) const;
 
     /// True if the part has enough faces for `at`.
     [[nodiscard]] bool enough() const;
-    [[nodiscard]] const Eigen::Vector3d& centroid() const;
-    [[nodiscard]] double area() const;      ///< area of the part
-    [[nodiscard]] double diagonal() const;  ///< diagonal of the part's bounding box
+    [[nodiscard]] const Eigen::Vector3d& centroid() const;  ///< centroid of the part
+    [[nodiscard]] double area() const;                      ///< area of the part
+    [[nodiscard]] double diagonal() const;                  ///< diagonal of the part's bounding box
 
 private:
     struct State;

@@ -14,12 +14,13 @@
 
 namespace ostraka {
 
+/// Options of `make_cage`.
 struct CageOptions {
     std::uint64_t vertices = 200;  ///< target number of cage vertices; for nested cages: of the finest cage
     /// Openings narrower than this fraction of the mesh's diagonal are closed; 0: automatic, doubled when needed.
     double alpha = 0;
     double offset = 0.0167;  ///< distance of the wrap from the mesh, as a fraction of the mesh's diagonal
-    /// Follow: keep handles and through holes; fill: fill them.
+    /// follow: the cage keeps the handles of the mesh; fill: the cage has no handles
     enum class Genus { follow, fill } genus = Genus::follow;
 
     void describe(OptionList& visit);  ///< adds every member to a list of options
@@ -27,13 +28,14 @@ struct CageOptions {
 
 /// Plane of symmetry of a cage.
 struct MirrorPlane {
-    Point point{0, 0, 0};
-    Vector normal{1, 0, 0};
+    Point point{0, 0, 0};    ///< a point of the plane
+    Vector normal{1, 0, 0};  ///< normal of the plane, of any length
 };
 
 /// Requested density of cage vertices at a point of the surface, relative to other points; positive.
 using CageDensity = std::function<double(const Point&)>;
 
+/// A cage made by `make_cage`.
 struct CageResult {
     Mesh cage;  ///< closed, oriented outwards, without self-intersections, strictly around the mesh
     /// True if the cage has the target number of vertices (with a mirror plane: or one or two fewer).
@@ -62,9 +64,9 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 
 /// A vertex of the mesh that is not strictly inside the cage.
 struct OutsideVertex {
-    Index vertex = no_index;
-    double distance = 0;    ///< distance of the vertex from the cage; 0 if the vertex is on the cage
-    Index face = no_index;  ///< the face of the cage closest to the vertex
+    Index vertex = no_index;  ///< index of the vertex
+    double distance = 0;      ///< distance of the vertex from the cage; 0 if the vertex is on the cage
+    Index face = no_index;    ///< the face of the cage closest to the vertex
 };
 
 /// Properties of a cage around a mesh.

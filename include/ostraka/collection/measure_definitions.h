@@ -43,6 +43,7 @@ struct MeasureDefinition {
     int entry = 1;  ///< 1-based index of the number if the value is a list
 };
 
+/// The content of a *.measures.json file.
 struct MeasureDefinitions {
     std::vector<MeasureDefinition> measures;  ///< in the order of the file
     std::string text;                         ///< text of the file; part of the keys of results that depend on it
@@ -80,7 +81,8 @@ Json object_measures_to_json(const ObjectMeasures& measures);
 ObjectMeasures object_measures_from_json(const JsonValue& value);
 
 /// Table of the measures of all objects, in the order of `names`. Objects that failed (nullopt) are left out. If the power of a
-/// measure differs between objects, the measure is missing in the objects that differ from the majority, and `notes` reports it.
+/// measure differs between objects, the measure is missing in the objects that differ from the majority, and `notes` reports the
+/// difference.
 MeasureTable measure_table(const std::vector<std::string>& names, const std::vector<std::optional<ObjectMeasures>>& objects,
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes);
 

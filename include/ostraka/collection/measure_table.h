@@ -11,12 +11,14 @@
 
 namespace ostraka {
 
+/// Heading of a column of a measure table.
 struct MeasureColumn {
-    std::string name;
+    std::string name;  ///< name of the measure
     int power = 1;     ///< exponent of the unit of length: 1 for a length, 2 area, 3 volume; 0 for other quantities
     std::string unit;  ///< unit of the column's values; for lengths, areas and volumes set by `unify_units`
 };
 
+/// Table of measures of objects.
 struct MeasureTable {
     std::vector<std::string> objects;     ///< names of the objects, one per row
     std::vector<MeasureColumn> measures;  ///< one per column
@@ -57,6 +59,7 @@ struct SyntheticMeasuresOptions {
     void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
+/// A synthetic table of measures with its true groups.
 struct SyntheticMeasures {
     MeasureTable table;
     std::vector<int> groups;  ///< for each measure: index of its group; -1: in no group

@@ -17,6 +17,7 @@
 
 namespace ostraka {
 
+/// Options of `compare_heads`.
 struct CompareOptions {
     SiftOptions features;  ///< detection and description of salient points
     MatchOptions matches;  ///< matching of salient points
@@ -48,8 +49,8 @@ struct MouldMatrices {
 };
 
 /// Compares every pair of heads. Pairs whose results are in `store` are not compared again. The results of a head are stored as
-/// soon as it has been compared with all later heads. If the store has a share, only the heads of the share are compared with the
-/// later heads. The matrices do not depend on the number of threads.
+/// soon as the head has been compared with all later heads. If the store has a share, only the heads of the share are compared
+/// with the later heads. The matrices do not depend on the number of threads.
 MouldMatrices compare_heads(const std::vector<std::string>& names, const std::vector<PreparedHead>& heads,
                             const CompareOptions& options, const ResultStore& store = ResultStore(),
                             const std::vector<std::string>& checksums = {});

@@ -22,7 +22,7 @@ struct PartOptions {
 
 /// The part of an object that a study examines.
 struct ObjectPart {
-    Mesh mesh;
+    Mesh mesh;                                ///< the part as a mesh
     std::vector<std::int32_t> face_labels;    ///< one per face, if the file has labels
     std::optional<std::array<double, 3>> up;  ///< up direction from the annotations
     /// Why the annotations could not be read, if they were not needed; null if they were read.
@@ -41,8 +41,8 @@ public:
     /// The options on which stored results depend, as texts for ResultStore::key.
     [[nodiscard]] std::vector<std::string> key() const;
     /// Reads an object and cuts out the selected part along its outlines: the regions of any of `annotations` (all of the mesh if
-    /// the list is empty) minus those of `without`, which the object need not have. A proposed part is cut off across `up`, or if
-    /// `up` is not given across the up direction in the annotations, or else across z. "tube" is the tubular part
+    /// the list is empty) minus the regions of `without`, which the object need not have. A proposed part is cut off across `up`,
+    /// or if `up` is not given across the up direction in the annotations, or else across z. "tube" is the tubular part
     /// (slicing/slice_axes.h) found with 100 slices. "top" is the part above the neck. The neck is the slice in the upper half
     /// with the smallest radius relative to the largest radii below and above the slice; its radius must be at most 0.8 of both.
     /// "segment" is the largest segment by thickness (select/scalars.h) of a closed object. Throws Error (input), naming the

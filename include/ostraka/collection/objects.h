@@ -13,6 +13,7 @@
 
 namespace ostraka {
 
+/// An object of a collection, with its files.
 struct CollectionObject {
     std::string name;   ///< unique within the collection; valid as a file name
     Path mesh;          ///< mesh file; empty if the object has only landmarks
@@ -24,6 +25,7 @@ struct CollectionObject {
     std::string checksum;
 };
 
+/// The objects of a folder or a study file.
 struct Collection {
     std::vector<CollectionObject> objects;  ///< sorted by name
     /// Files that cannot be objects: printable file name, reason.

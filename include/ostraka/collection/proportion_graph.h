@@ -8,6 +8,7 @@
 
 namespace ostraka {
 
+/// Options of `propose_proportions`.
 struct ProposalOptions {
     bool stable = false;  ///< true: propose stable ratios too, not only fixed ratios
     double weight = 1;    ///< weight of the proposed constraints

@@ -12,6 +12,7 @@
 
 namespace ostraka {
 
+/// Options of `study_proportions`.
 struct ProportionOptions {
     double false_discoveries = 0.05;  ///< allowed fraction of false discoveries among the ratios reported as fixed
     enum class Correction { bh, by } correction = Correction::bh;  ///< Benjamini-Hochberg, Benjamini-Yekutieli
@@ -35,6 +36,7 @@ struct MeasureRow {
     std::optional<double> own_deviation;
 };
 
+/// How stable the ratio of two measures is.
 enum class Fixedness {
     unknown,    ///< too few objects for a test, or identical objects
     free,       ///< the two measures are unrelated
@@ -44,6 +46,7 @@ enum class Fixedness {
 };
 std::string to_string(Fixedness fixedness);
 
+/// Statistics and tests of the ratio of two measures.
 struct RatioRow {
     /// Indices of the two measures; the numerator has the larger median.
     std::size_t numerator = 0, denominator = 0;
@@ -67,6 +70,7 @@ struct RatioRow {
 /// if no test is possible.
 std::string reason_not_fixed(const RatioRow& ratio, double false_discoveries);
 
+/// Result of `study_proportions`.
 struct ProportionStudy {
     std::vector<MeasureRow> measures;  ///< one per measure of the table
     std::vector<RatioRow> ratios;      ///< one per pair of measures of the same kind (same power or unit)
@@ -78,13 +82,13 @@ struct ProportionStudy {
 /// Describes every measure and every ratio of two measures of one kind (the same power of a length, or the same unit), and tests
 /// on logarithms which ratios are fixed. A ratio is fixed if it passes two tests. (a) The ratio varies less than ratios do when
 /// each object's deviations from its size are permuted among its measures. (b) The two measures deviate from the size together:
-/// their deviations from the mean of the others, corrected for the error of that mean, are correlated more than when all
+/// their deviations from the mean of the other measures, corrected for the error of that mean, are correlated more than when all
 /// deviations are shuffled over the objects. Test (b) applies only if at least two other measures, or groups of measures related
 /// by (a), are left to estimate the size. The p-value of a ratio is the larger p-value of tests (a) and (b), corrected for the
 /// number of ratios. A ratio that is constant, up to rounding, in four or more objects is fixed, with the smallest p-value that
 /// the permutations allow; if all measures of all objects are equal, the result is unknown. Values that are not positive, above
-/// 1e35 or below 1e-35 count as missing (the latter two with a note). Throws Error (input) for no measure or no object, Error
-/// (usage) for more than 60 measures or options out of range. Results do not depend on the number of threads. See
+/// 1e35 or below 1e-35 count as missing (very large and very small values with a note). Throws Error (input) for no measure or no
+/// object, Error (usage) for more than 60 measures or options out of range. Results do not depend on the number of threads. See
 /// doc/proportions.md.
 ProportionStudy study_proportions(const MeasureTable& table, const ProportionOptions& options = {});
 

@@ -13,6 +13,7 @@
 
 namespace ostraka {
 
+/// Options of `measure_technique`.
 struct TechniqueOptions {
     int slices = 100;              ///< number of slices per object
     double from = 0.02, to = 0.4;  ///< ends of the sliced range, as fractions of the height
@@ -24,6 +25,7 @@ struct TechniqueOptions {
 
 /// One slice of the body. Lengths are relative to the radius of the circle fitted to its outline. Unknown values are NaN.
 struct TechniqueSlice {
+    /// Value of members that are not known.
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double height = 0;                               ///< height of the slice, as a fraction of the object's height
     double turn = 0;                                 ///< fraction of the full turn covered by the outline; 1 if closed
@@ -48,6 +50,7 @@ struct TechniqueDescriptor {
     std::size_t slices = 0;                  ///< number of slices from which the value is computed
 };
 
+/// Slices and descriptors of one object.
 struct TechniqueMeasures {
     std::vector<TechniqueSlice> slices;  ///< the used slices, from bottom to top
     /// Numbers of slices: requested; without outline; open and skipped; open and used.

@@ -11,8 +11,9 @@
 
 namespace ostraka {
 
+/// An object of the study.
 struct TechniqueObject {
-    std::string name;
+    std::string name;   ///< name of the object
     std::string label;  ///< the known technique; empty if unknown
     TechniqueMeasures measures;
 };
@@ -20,7 +21,7 @@ struct TechniqueObject {
 /// A classifier to be trained on labelled objects: one descriptor with the threshold of the largest F1, or several descriptors
 /// (standardised, positive descriptors as logarithms) with Fisher's linear discriminant and the threshold of the largest F1.
 struct TechniqueClassifier {
-    std::string name;
+    std::string name;                      ///< name of the classifier
     std::vector<std::string> descriptors;  ///< names of the descriptors used
     std::string words;                     ///< the descriptors used, as text for messages
 };
@@ -30,6 +31,7 @@ struct TechniqueClassifier {
 /// straightness", "wall variation", "outside" (ovality, marks, coherence and straightness), "outside and wall".
 const std::vector<TechniqueClassifier>& technique_classifiers();
 
+/// Options of `study_technique`.
 struct TechniqueStudyOptions {
     std::string positive;            ///< label of the positive class of F1; empty: the class with the rounder bodies
     std::string answer_by = "both";  ///< name of the classifier that gives the answers
@@ -102,6 +104,7 @@ struct TechniqueAnswer {
     [[nodiscard]] bool wrong() const { return !answer.empty() && !label.empty() && answer != label; }
 };
 
+/// Result of `study_technique`.
 struct TechniqueStudy {
     /// Labels of the two classes; "rounder" and "less round" in a study without labels.
     std::string positive, negative;
@@ -128,7 +131,7 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
 /// The split of values into two groups with the smallest within-group variance: threshold, and fraction `share` of the variance
 /// between the groups (0 if all values are equal).
 struct TwoGroups {
-    double threshold = 0, share = 0;
+    double threshold = 0, share = 0;  ///< value that separates the groups; fraction of the variance between them
 };
 TwoGroups divide_in_two(std::vector<double> values);
 

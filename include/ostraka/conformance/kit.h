@@ -19,7 +19,7 @@ struct Comparison {
     /// What `tolerance` is relative to: "absolute", "diagonal" (of the mesh), "largest" (value) or "value".
     std::string scale = "absolute";
     std::vector<std::string> freedoms;  ///< properties of a mesh that may differ: "vertex order", "triangulation"
-    /// For annotations: the mesh that they belong to, as an input file or the name of an output.
+    /// For annotations: the mesh to which the annotations belong, as an input file or the name of an output.
     std::string mesh;
     /// For method "values": names of the members to compare, or of the members to ignore.
     std::vector<std::string> only, ignored;
@@ -39,10 +39,10 @@ struct ConformanceCase {
 
 /// The kit read from a folder.
 struct ConformanceKit {
-    Path folder;
+    Path folder;                           ///< folder of the kit
     std::string version;                   ///< version of the kit
     std::shared_ptr<const Json> document;  ///< the parsed conformance.json, to which the cases point
-    std::vector<ConformanceCase> cases;
+    std::vector<ConformanceCase> cases;    ///< in the order of the document
 };
 
 /// Reads FOLDER/conformance.json. Throws Error (input) that names the invalid case: operations, settings and outputs are
@@ -73,7 +73,9 @@ std::unique_ptr<Backend> command_backend(std::vector<std::string> words, Argumen
 /// `time_limit`: in seconds per case.
 std::unique_ptr<Backend> lines_backend(std::vector<std::string> words, double time_limit);
 
+/// Outcome of a case.
 enum class Outcome { agrees, differs, unsupported };
+/// Result of running a case.
 struct CaseResult {
     Outcome outcome = Outcome::differs;
     std::vector<std::string> differences;  ///< descriptions of the differences; empty if the case agrees

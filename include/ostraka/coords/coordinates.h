@@ -21,6 +21,7 @@ using WeightMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// Sparse weights, one row per point, stored row by row.
 using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
+/// Weights of points with respect to a cage.
 struct Coordinates {
     std::string kind;     ///< "mean-value", "green" ...
     WeightMatrix vertex;  ///< weight of each cage vertex (column) for each point (row)
@@ -37,9 +38,10 @@ struct Coordinates {
     [[nodiscard]] double stored_share() const;
 };
 
+/// Options of `compute_coordinates`.
 struct CoordinateOptions {
-    /// A point closer than this to a vertex, an edge or a face of the cage counts as lying on it; relative to the cage's
-    /// diagonal.
+    /// A point closer than this distance to a vertex, an edge or a face of the cage counts as lying on that element; relative to
+    /// the cage's diagonal.
     double snap = 4e-15;
     /// Approximate number of nodes, for kinds computed on tetrahedra inside the cage.
     std::uint64_t nodes = 20000;
@@ -81,16 +83,17 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// not defined (the message names the first of them).
 ///
 /// mean-value: Ju, Schaefer and Warren, Mean value coordinates for closed triangular meshes, 2005, in vector form; for points
-/// inside, outside and on the cage. On a face, edge or vertex they are the linear interpolation there.
+/// inside, outside and on the cage. On a face, edge or vertex of the cage, mean value coordinates are linear interpolation.
 /// green: Lipman, Levin and Cohen-Or, Green coordinates, 2008; for points strictly inside; the cage is oriented outward.
-/// The other kinds are for points inside and on a cage without self-intersections. Their weights are sparse. Every row is
-/// projected, as a last step, to weights that are non-negative, sum to one and reproduce the point up to rounding.
-/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; by linear finite
-/// elements on tetrahedra inside the cage.
-/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; on the same tetrahedra, each
-/// gradient weighted by its distance from the cage vertex within the cage.
+/// The kinds harmonic, local and positive-mean-value are for points inside and on a cage without self-intersections. Their
+/// weights are sparse. As a last step, every row is projected to weights that are non-negative, sum to one and reproduce the
+/// point up to rounding.
+/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; computed by
+/// linear finite elements on tetrahedra inside the cage.
+/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; computed on the
+/// same tetrahedra; each gradient is weighted by its distance, within the cage, from the cage vertex.
 /// positive-mean-value: Lipman, Kopf, Cohen-Or and Levin, GPU-assisted positive mean value coordinates, 2007: mean value
-/// coordinates restricted to the part of the cage that is visible from the point, by evenly distributed rays.
+/// coordinates restricted to the part of the cage that is visible from the point, computed by evenly distributed rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
 /// Coordinates of the vertices of a mesh in `cage`. If the cage contains other cages, the coordinates cover all nested cages

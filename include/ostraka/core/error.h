@@ -6,6 +6,7 @@
 
 namespace ostraka {
 
+/// Kind of an error, which determines the exit code.
 enum class ErrorKind {
     input,     ///< a file or a mesh is invalid (exit code 1)
     failure,   ///< the work could not be done: no disk space, no memory, no solution (exit code 1)

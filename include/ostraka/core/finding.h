@@ -6,6 +6,7 @@
 
 namespace ostraka {
 
+/// A defect or a remark found by a check.
 struct Finding {
     bool defect = false;  ///< true: a defect; false: a remark about something allowed
     std::string where;    ///< location of the finding (a JSON pointer, for files)

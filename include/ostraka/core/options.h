@@ -28,7 +28,7 @@ namespace ostraka {
 struct Anything {};
 /// Rule of an option: numbers from min to max are allowed.
 struct Range {
-    double min, max;
+    double min, max;  ///< both allowed
 };
 /// Rule of an option: only these names are allowed.
 struct Choices {
@@ -85,6 +85,7 @@ public:
 /// Type of the value of an option; "texts", "numbers" and "integers" are lists.
 enum class OptionType { boolean, integer, number, text, choice, texts, numbers, integers };
 
+/// One option: a named reference to a variable, with help, rule and state.
 struct Option {
     std::string name;            ///< the flag (--name) and the JSON key
     OptionValue value;           ///< the variable that holds the value

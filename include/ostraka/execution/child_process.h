@@ -9,6 +9,7 @@
 
 namespace ostraka {
 
+/// How a child process is started.
 struct ChildOptions {
     Path folder = {};  ///< working directory; empty: the working directory of this process
     /// Files for stdout and stderr; both may be the same file, which then keeps the order of printing.

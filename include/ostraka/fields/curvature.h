@@ -8,6 +8,7 @@
 
 namespace ostraka {
 
+/// Options of `curvature`.
 struct CurvatureOptions {
     /// Radius of the neighbourhood, as a fraction of the diagonal of the mesh's bounding box; 0: only the faces around the
     /// vertex.
@@ -43,7 +44,7 @@ CurvatureIntegrals curvature_integrals(const Mesh& mesh);
 
 /// Area and curvature integrals of a region, summed in the order of `faces`.
 struct RegionCurvature {
-    double area = 0, mean_integral = 0, gaussian_integral = 0;
+    double area = 0, mean_integral = 0, gaussian_integral = 0;  ///< integrals in units of length, and in radians
     /// Mean curvature averaged over the region.
     [[nodiscard]] double mean() const { return area > 0 ? mean_integral / area : 0; }
     /// Gaussian curvature averaged over the region.

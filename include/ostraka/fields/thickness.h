@@ -8,6 +8,7 @@
 
 namespace ostraka {
 
+/// Options of `thickness`.
 struct ThicknessOptions {
     int rays = 30;     ///< number of rays in the cone under each face
     double cone = 60;  ///< full opening angle of the cone, in degrees

@@ -9,6 +9,7 @@
 
 namespace ostraka {
 
+/// A drawing of annotations as rows and of relationships as brackets.
 struct BracketGraph {
     std::string title;  ///< title of the drawing
     struct Row {

@@ -10,6 +10,7 @@
 
 namespace ostraka {
 
+/// A plot of a tree of clusters.
 struct Dendrogram {
     std::string title;               ///< title of the plot
     Linkage tree;                    ///< merges of the samples

@@ -11,6 +11,7 @@
 
 namespace ostraka {
 
+/// A plot of a matrix as coloured cells.
 struct HeatMap {
     std::string title;                       ///< title of the plot
     Eigen::MatrixXd values;                  ///< the matrix; NaN entries have no value and are drawn grey

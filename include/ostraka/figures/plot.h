@@ -10,6 +10,7 @@
 
 namespace ostraka {
 
+/// The x or y axis of a plot.
 struct PlotAxis {
     std::string label = {};    ///< label of the axis, including the unit
     bool logarithmic = false;  ///< true: logarithmic scale
@@ -20,6 +21,7 @@ struct PlotAxis {
 
 enum class Mark { dots, bars };  ///< how points are drawn
 
+/// Points of a plot that share one style.
 struct PlotSeries {
     std::string name = {};  ///< name in the legend; series without a name are not in the legend
     /// X and y of each point; the line is interrupted at points outside the domain of the axes.
@@ -43,14 +45,15 @@ struct PlotLine {
     std::string label;     ///< text at the end of the line
 };
 
+/// A plot of series over two axes.
 struct Plot {
     std::string title;  ///< title of the plot
     PlotAxis x = {}, y = {};
-    std::vector<PlotSeries> series = {};
-    int width = 760, height = 480;     ///< size of the SVG in points
-    bool square = false;               ///< true: the plot area is square, as for receiver operating characteristics
-    bool equal = false;                ///< true: x and y have equal scale, as for positions
-    std::vector<PlotLine> lines = {};  ///< straight lines across the plot
+    std::vector<PlotSeries> series = {};  ///< drawn in this order
+    int width = 760, height = 480;        ///< size of the SVG in points
+    bool square = false;                  ///< true: the plot area is square, as for receiver operating characteristics
+    bool equal = false;                   ///< true: x and y have equal scale, as for positions
+    std::vector<PlotLine> lines = {};     ///< straight lines across the plot
 };
 
 /// Writes the plot as an SVG, or as a PNG of twice the size if the file name ends in .png, atomically, creating folders; the same

@@ -19,6 +19,7 @@ struct DrawnSlice {
     std::size_t number = 0;  ///< number displayed at the slice; 0: position of the slice on the sheet
 };
 
+/// A sheet of drawn slices.
 struct SliceSheet {
     std::string title;  ///< title of the sheet
     std::string unit;   ///< unit written after lengths; may be empty

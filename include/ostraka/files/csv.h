@@ -19,9 +19,10 @@ std::string unescape_formula(const std::string& text);
 /// `escape_formula`.
 std::string csv_row(const std::vector<std::string>& cells);
 
+/// One row of a CSV file.
 struct CsvRow {
-    std::size_t line = 0;  ///< number of the line on which the row begins, from 1
-    std::vector<std::string> cells;
+    std::size_t line = 0;            ///< number of the line on which the row begins, from 1
+    std::vector<std::string> cells;  ///< not unescaped
 };
 /// The non-empty rows of a CSV file; cells are not unescaped. A byte order mark is skipped. Throws Error (input), naming file and
 /// line, if a quoted cell is not closed or is followed by text.

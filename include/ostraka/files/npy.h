@@ -41,7 +41,7 @@ NpyView view_npy(std::string_view bytes, const std::string& where);
 template <class Number>
 struct NpyArray {
     std::vector<std::size_t> shape;  ///< size of each of the one or two dimensions
-    std::vector<Number> values;
+    std::vector<Number> values;      ///< in row-major order
     [[nodiscard]] std::size_t rows() const { return shape.front(); }
     [[nodiscard]] std::size_t columns() const { return shape.size() < 2 ? 1 : shape[1]; }
 };

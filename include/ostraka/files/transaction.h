@@ -7,8 +7,8 @@ namespace ostraka {
 
 /// The innermost transaction open on this thread; null if there is none.
 OutputTransaction* current_transaction();
-/// Sets the transaction of this thread (null: none) during the lifetime of this object. Parallel loops use it to write into the
-/// transaction of the thread that starts them.
+/// Sets the transaction of this thread (null: none) during the lifetime of this object. Threads of a parallel loop use a
+/// TransactionScope to write into the transaction of the thread that started the loop.
 class TransactionScope {
 public:
     explicit TransactionScope(OutputTransaction* transaction);

@@ -12,8 +12,8 @@ namespace ostraka {
 
 /// Points spread evenly over the surface of a fragment.
 struct PatchSamples {
-    std::vector<Point> points;
-    std::vector<Index> patch;  ///< for each point: index of its patch
+    std::vector<Point> points;  ///< positions of the samples
+    std::vector<Index> patch;   ///< for each point: index of its patch
 };
 
 /// For each patch: the samples (PatchSamples) in a neighbourhood of the patch.
@@ -31,7 +31,8 @@ struct FacetEvidence {
     Walls walls;
     PatchSamples samples;
     std::array<Neighbourhoods, 4> around;  ///< neighbourhoods of each patch at four radii, smallest radius first
-    /// For each patch: index of its part (convex_parts), bounded by sharp convex edges and by less sharp ones.
+    /// For each patch: index of its part (convex_parts), once with parts bounded by sharp convex edges, once also by less sharp
+    /// edges.
     std::array<std::vector<std::size_t>, 2> parts;
     std::vector<double> convexity;  ///< for each patch: how sharply the surface turns outward around the patch
     FeatureTable features;          ///< features of the patches, one row per patch

@@ -47,6 +47,7 @@ struct Walls {
     double typical = 0;         ///< median depth over the area that has an opposite side (a wall); 0: no wall
     double share = 0;           ///< fraction of the area that lies over a wall of about the typical depth
 };
+/// Casts rays from each patch into the solid.
 Walls measure_walls(const Mesh& mesh, const FacetGraph& graph);
 
 /// Segments the patches into parts whose mutual boundary turns outward by more than `sharpest` (radians) on average. Small parts

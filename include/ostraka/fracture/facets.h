@@ -10,6 +10,7 @@
 
 namespace ostraka {
 
+/// Options of `find_facets`.
 struct FacetOptions {
     double edge = 40;  ///< dihedral angle in degrees at which an edge may bound a fracture
     /// Max wall thickness of a shell, as a fraction of the square root of the fragment's area.
@@ -24,8 +25,8 @@ struct FacetOptions {
 struct FacetSegment {
     Facet facet = Facet::outer;
     std::vector<Index> faces;  ///< indices of the faces, ascending
-    double area = 0;
-    double confidence = 0;  ///< how well the features of the faces support the class: mean over the area, 0 to 1
+    double area = 0;           ///< total area of the faces
+    double confidence = 0;     ///< how well the features of the faces support the class: mean over the area, 0 to 1
 };
 
 /// Facet class of each face of a fragment, and the answer whether the object is broken.
@@ -39,10 +40,10 @@ struct Facets {
     std::vector<double> probability;
     std::vector<FacetSegment> segments;  ///< connected components of equal class, largest area first
     Answer answer = Answer::unclear;
-    bool shell = false;     ///< true: the fragment is a wall with two sides
-    double thickness = 0;   ///< thickness of the wall, if `shell`
-    double confidence = 0;  ///< confidence of the classes, mean over the area
-    std::vector<std::string> notes;
+    bool shell = false;                            ///< true: the fragment is a wall with two sides
+    double thickness = 0;                          ///< thickness of the wall, if `shell`
+    double confidence = 0;                         ///< confidence of the classes, mean over the area
+    std::vector<std::string> notes;                ///< messages about the classification
     [[nodiscard]] double area(Facet facet) const;  ///< total area of a class
 };
 

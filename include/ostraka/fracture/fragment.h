@@ -15,9 +15,10 @@ namespace ostraka {
 enum class Facet : std::uint8_t { outer, inner, fracture };
 std::string to_string(Facet facet);
 
+/// A fragment with its annotations and facet classes.
 struct Fragment {
-    std::string name;
-    Mesh mesh;
+    std::string name;  ///< name in reports
+    Mesh mesh;         ///< surface of the fragment
     AnnotationSet annotations;
     std::vector<Facet> facets;  ///< class of each face; empty: all faces are outer surface
 };

@@ -46,8 +46,8 @@ struct JoinEvidence {
 
     // The next members are root mean square distances of the normals of intact surfaces from a fitted axis, as fractions of the
     // smaller fragment's size. On a vessel the normals meet its axis, however worn the fractures are.
-    /// Distance of both fragments' normals from one common axis, less that from each fragment's own axis (root of the difference
-    /// of squares).
+    /// Distance of both fragments' normals from one common axis, less the distance from each fragment's own axis (root of the
+    /// difference of squares).
     double axis = 0;
     double own_axis = 0;  ///< distance of both fragments' normals, each from the axis of its own fragment
 
@@ -67,8 +67,8 @@ double join_log_odds(const JoinEvidence& evidence);
 /// the largest log odds of the other candidates of the pair.
 double join_probability(double log_odds, double lead);
 /// Correction added to the log odds of a pair for the number of fragments: a fragment has about four neighbours, so the more
-/// fragments there are, the smaller the fraction of pairs that join. The correction is 0 if this fraction is that of the training
-/// data.
+/// fragments there are, the smaller the fraction of pairs that join. The correction is 0 if this fraction equals the fraction in
+/// the training data.
 double join_log_odds_correction(std::size_t fragments);
 /// SHA-256 of the join model (data/joins.model.json); results of different models are not comparable.
 std::string join_model_version();

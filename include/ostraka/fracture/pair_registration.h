@@ -13,6 +13,7 @@
 
 namespace ostraka {
 
+/// Options of `register_fractures`.
 struct PairOptions {
     int frames = 160;    ///< number of frames along the rim of each fracture
     int samples = 2000;  ///< number of points on each fracture, and on the intact surface of each fragment

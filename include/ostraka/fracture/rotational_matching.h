@@ -9,6 +9,7 @@
 
 namespace ostraka {
 
+/// Options of `match_rotations`.
 struct RotationMatchOptions {
     /// Whether rotations are determined from the fractures: automatic (where undetermined) or never.
     enum class Turns { automatic, never } rotations = Turns::automatic;
@@ -24,8 +25,8 @@ struct RotationMatchOptions {
 
 /// A sherd registered to the template vessel up to a rotation about its axis.
 struct SherdOnAxis {
-    const Fragment* fragment = nullptr;
-    Motion pose;  ///< maps the sherd onto the template; axis and height are correct
+    const Fragment* fragment = nullptr;  ///< must not be null
+    Motion pose;                         ///< maps the sherd onto the template; axis and height are correct
     /// True: the rotation is known too (from landmarks), and other sherds are rotated to fit this sherd.
     bool fixed = false;
 };
@@ -43,12 +44,13 @@ struct FractureJoint {
     /// True: the joint is an edge of the spanning tree of the assembly; false: the joint closes a cycle.
     bool carries = false;
     /// For a joint that carries, when all sherds on one side of the joint are rotated against all sherds on the other side.
-    /// share: fracture area and rim that meet, as a fraction of those of the smaller side, added up (0 to 2); lead: margin over
-    /// the best other rotation (0 to 1); confidence: resulting confidence.
+    /// share: fracture area and rim that meet, as fractions of the fracture area and rim of the smaller side, added up (0 to 2);
+    /// lead: margin over the best other rotation (0 to 1); confidence: resulting confidence.
     double share = 0, lead = 0, confidence = 0;
     bool decided = false;  ///< true: the confidence is at least min_joint
 };
 
+/// Result of `match_rotations`.
 struct RotationMatch {
     std::vector<Motion> poses;  ///< per sherd: maps the sherd onto the vessel
     /// Per sherd: number of its group; sherds of a group are connected by decided joints, or fixed.

@@ -15,6 +15,7 @@ namespace ostraka {
 
 class Context;
 
+/// Whether an operation reads or writes the slot.
 enum class Role { input, output };
 
 /// The kind of an object, which determines the file formats that can hold the object.

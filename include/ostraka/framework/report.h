@@ -63,7 +63,7 @@ struct ReportLayout {
         std::vector<Field> columns;
         std::string title = {};  ///< heading line for people; empty: none
     };
-    std::deque<Table> tables;
+    std::deque<Table> tables;  ///< the declared tables
     /// Name of the JSON schema (doc/schema) of the whole result; empty: only declared fields are allowed.
     std::string schema;
     bool checks = false;  ///< true: the operation calls Report::findings

@@ -71,6 +71,7 @@ ArcFit fit_arc(const std::vector<Eigen::Vector2d>& points);
 struct CircleDeviation {
     double absolute = 0, square = 0;  ///< mean distance from the circle; mean squared distance
 };
+/// Mean deviation of segments from a circle.
 CircleDeviation circle_deviation(const PlaneSegments& segments, const Circle& circle);
 
 }  // namespace ostraka

@@ -8,7 +8,7 @@ namespace ostraka {
 
 /// A box of any orientation.
 struct OrientedBox {
-    std::array<double, 3> centre{};
+    std::array<double, 3> centre{};  ///< centre of the box
     /// Unit vectors along the sides, longest side first, right-handed.
     std::array<std::array<double, 3>, 3> axes{};
     std::array<double, 3> sides{};  ///< lengths of the sides, descending

@@ -16,11 +16,12 @@ struct PolygonMoments {
     double area = 0;              ///< signed area: positive if counter-clockwise
     Eigen::Vector2d first{0, 0};  ///< integral of (position - reference) over the polygon
 };
+/// Area and first moment of a polygon relative to `reference`.
 PolygonMoments polygon_moments(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& reference);
 
 /// A rectangle of any orientation.
 struct PlaneRectangle {
-    Eigen::Vector2d centre{0, 0};
+    Eigen::Vector2d centre{0, 0};    ///< centre of the rectangle
     Eigen::Vector2d along{1, 0};     ///< unit vector of the long side
     double length = 0, breadth = 0;  ///< lengths of the sides, length >= breadth >= 0
     [[nodiscard]] double area() const { return length * breadth; }

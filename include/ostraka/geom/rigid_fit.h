@@ -10,8 +10,8 @@ namespace ostraka {
 /// Rigid or similarity motion p -> scale * rotation * p + translation.
 struct Motion {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< determinant 1
-    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-    double scale = 1;
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< applied after rotation and scaling
+    double scale = 1;                                        ///< scale factor; 1 for rigid motions
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
     [[nodiscard]] Motion inverse() const;

@@ -9,7 +9,7 @@ namespace ostraka {
 
 /// Some faces of a mesh, as a mesh of their own.
 struct SubMesh {
-    Mesh mesh;
+    Mesh mesh;                    ///< the faces as a mesh
     std::vector<Index> vertices;  ///< for each vertex of `mesh`: its index in the whole mesh
     std::vector<Index> faces;     ///< for each face of `mesh`: its index in the whole mesh; ascending
 };

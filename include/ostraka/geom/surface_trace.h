@@ -11,7 +11,7 @@ namespace ostraka {
 
 /// A curve on the surface of a mesh: each straight piece from points[i] to points[i + 1] lies in one face.
 struct SurfaceCurve {
-    std::vector<SurfacePoint> points;
+    std::vector<SurfacePoint> points;  ///< ends of the straight pieces, in order
     /// For each piece: index of the face that contains it (either face for a piece along an edge).
     std::vector<Index> faces;
     [[nodiscard]] double length(const Mesh& mesh) const;

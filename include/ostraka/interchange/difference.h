@@ -33,6 +33,7 @@ struct Conflict {
     std::string base, ours, theirs;  ///< value of the field in the base, in our set and in their set, as text
 };
 
+/// Options of `merge_annotations`.
 struct MergeOptions {
     enum class Side { none, ours, theirs } prefer = Side::none;  ///< whose change is kept in a conflict
     bool merge_faces = false;  ///< true: merge regions that both sides changed face by face, without a conflict
@@ -42,6 +43,7 @@ struct MergeOptions {
     void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
+/// Result of `merge_annotations`.
 struct MergedAnnotations {
     AnnotationSet set;                ///< the merged set; contains our version of each conflict, unless `prefer` is theirs
     std::vector<Conflict> conflicts;  ///< all conflicts, including conflicts resolved by `prefer`

@@ -8,8 +8,8 @@ namespace ostraka {
 
 /// Identifies an annotation or an attribute by its id, or by its tag or name if this text is unique.
 struct EntryName {
-    std::optional<int> id;
-    std::string text;  ///< tag of the annotation or name of the attribute; used if there is no id
+    std::optional<int> id;  ///< id of the annotation or attribute; none: identified by `text`
+    std::string text;       ///< tag of the annotation or name of the attribute; used if there is no id
 };
 
 /// One step of an edit list, on one annotation. The parts of a step are carried out in the order of the members.

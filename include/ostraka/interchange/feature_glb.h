@@ -14,9 +14,9 @@ namespace ostraka {
 /// first set with a feature at a position gives the smallest region there. Lines and points are separate primitives. Ids are
 /// 16-bit integers, or floats for more than 65535 annotations. A vertex attribute _VERTEX holds the index of the vertex in the
 /// mesh (up to 2^24). If annotations are free, the mesh is cut along their curves, and the extras of the glTF mesh contain all
-/// annotations on the original mesh, as in an annotation file (`original`, with its checksum); the extras contain them too if an
-/// annotation has additional information. `notes` reports rounded values. Throws Error (failure) for a mesh without triangles,
-/// coordinates beyond single precision, or a file beyond four gigabytes.
+/// annotations on the original mesh, as in an annotation file (`original`, with its checksum); the extras contain all annotations
+/// also if an annotation has additional information. `notes` reports rounded values. Throws Error (failure) for a mesh without
+/// triangles, coordinates beyond single precision, or a file beyond four gigabytes.
 std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes);
 

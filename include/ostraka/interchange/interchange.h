@@ -15,12 +15,14 @@ const std::vector<std::string>& interchange_formats();
 /// written, `bytes` is empty, and .csv means "attributes-csv". Throws Error (usage) for an unknown extension.
 std::string guess_interchange_format(const Path& file, const std::string& bytes = {});
 
+/// Options of `export_annotations`.
 struct ExportOptions {
     LandmarkFileOptions landmarks;  ///< for landmark formats
 
     void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
+/// Result of `export_annotations`.
 struct ExportedAnnotations {
     std::string bytes;               ///< contents of the file
     std::vector<std::string> notes;  ///< messages about data that the format cannot store
@@ -33,6 +35,7 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
                                        const std::string& mesh_file, const Provenance& provenance,
                                        const ExportOptions& options = {});
 
+/// Options of `import_annotations`.
 struct ImportOptions {
     LandmarkFileOptions landmarks;  ///< for landmark formats
     PlaceOptions place;             ///< how points are placed on the mesh

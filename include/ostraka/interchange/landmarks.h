@@ -8,6 +8,7 @@
 
 namespace ostraka {
 
+/// A named point.
 struct Landmark {
     std::string name;                  ///< name of the landmark
     std::array<double, 3> position{};  ///< coordinates in the space and unit of the mesh
@@ -26,12 +27,13 @@ struct LandmarkCurve {
 
 /// The content of a landmark file.
 struct LandmarkSet {
-    std::vector<Landmark> landmarks;
-    std::vector<LandmarkCurve> curves;
-    std::string unit;                ///< unit of the coordinates; empty if the file does not give it
-    std::vector<std::string> notes;  ///< messages about content of the file that was not kept
+    std::vector<Landmark> landmarks;    ///< named points
+    std::vector<LandmarkCurve> curves;  ///< curves; only in the format mrk
+    std::string unit;                   ///< unit of the coordinates; empty if the file does not give it
+    std::vector<std::string> notes;     ///< messages about content of the file that was not kept
 };
 
+/// Format of a landmark file.
 enum class LandmarkFormat {
     csv,  ///< a table with the columns x, y, z and optionally name and id
     tps,  ///< Rohlf's tps, three-dimensional (LM3)
@@ -43,6 +45,7 @@ enum class LandmarkFormat {
 /// Directions of the x and y axes: left and posterior (lps), or right and anterior (ras).
 enum class AnatomicalSpace { lps, ras };
 
+/// Options for reading and writing landmark files.
 struct LandmarkFileOptions {
     AnatomicalSpace mesh_space = AnatomicalSpace::lps;  ///< space of the mesh's coordinates
     std::string specimen;                               ///< specimen of a TPS file: its ID, or its number from 1
@@ -70,10 +73,11 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
 /// annotations) that were left out.
 LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format = LandmarkFormat::mrk);
 
+/// Options for placing points on a mesh.
 struct PlaceOptions {
     /// Max distance of a point from the surface, as a fraction of the diagonal of the mesh's bounding box.
     double tolerance = 0.02;
-    /// True: points beyond the tolerance are skipped with a note; false: they are an error.
+    /// True: points beyond the tolerance are skipped with a note; false: points beyond the tolerance are an error.
     bool skip_far = false;
 
     void describe(OptionList& visit);  ///< adds every member to a list of options

@@ -11,6 +11,7 @@
 
 namespace ostraka {
 
+/// Options of `diagnose`.
 struct DiagnoseOptions {
     /// True: skip the most expensive check; the verdict then ignores self-intersections.
     bool skip_self_intersections = false;
@@ -20,7 +21,7 @@ struct DiagnoseOptions {
 /// A closed path of border edges.
 struct BorderLoop {
     std::size_t edges = 0;  ///< number of edges
-    double length = 0;
+    double length = 0;      ///< total length of the edges
 };
 
 /// Diagnosis of one connected component: triangles connected through shared vertices.
@@ -30,7 +31,7 @@ struct ComponentDiagnosis {
     /// Number of each (see MeshDiagnosis).
     std::size_t border_edges = 0, nonmanifold_edges = 0, misoriented_edges = 0, nonmanifold_vertices = 0;
     bool orientable = true;  ///< true: the triangles can be oriented consistently
-    double area = 0;
+    double area = 0;         ///< area of the component
     /// Signed volume; for an open component relative to the centre of the object's bounding box.
     double volume = 0;
     bool inside_out = false;  ///< true: closed, with negative volume, and not a cavity
@@ -113,6 +114,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options 
 /// mate have their mate; 0 if fewer than nine in ten border points have a mate. O(n log n).
 double crack_width(const TriangleSoup& soup);
 
+/// Result of `self_intersections`.
 struct SelfIntersections {
     /// Indices of intersecting triangles, smaller index first; sorted.
     std::vector<std::pair<Index, Index>> pairs;

@@ -50,8 +50,8 @@ struct TriangulatedSoup {
     TriangleSoup soup;
     /// For each triangle: index of its polygon; empty if every polygon is a triangle.
     std::vector<Index> triangle_polygon;
-    MeshExtras extras;  ///< attributes per vertex and per triangle; corner_texture per triangle corner
-    std::vector<std::string> notes;
+    MeshExtras extras;               ///< attributes per vertex and per triangle; corner_texture per triangle corner
+    std::vector<std::string> notes;  ///< messages about polygons that were not kept
 };
 /// Divides polygons into triangles: convex polygons as fans, others by ear clipping in their plane; deterministic. Polygons with
 /// fewer than three distinct corners give no triangles.
@@ -59,17 +59,18 @@ TriangulatedSoup triangulate(PolygonSoup&& polygons);
 
 /// A mesh file read as an oriented manifold triangle mesh (open or closed). Vertex i of the mesh is vertex i of the file.
 struct MeshFile {
-    Mesh mesh;
+    Mesh mesh;          ///< the triangle mesh
     MeshExtras extras;  ///< attributes per vertex and per triangle
     /// For each triangle: index of its polygon; empty if every polygon is a triangle.
     std::vector<Index> triangle_polygon;
-    std::vector<std::string> notes;
+    std::vector<std::string> notes;  ///< messages about content of the file that was not kept
 };
 
 /// Reads a mesh file as a manifold (read_polygons, triangulate, build_mesh). Throws Error (input), with the remedy "run: ostraka
 /// mesh repair", if the mesh in the file is not an oriented manifold or has no faces.
 MeshFile read_mesh(const Path& file);
 
+/// Encoding of PLY and STL files.
 enum class Encoding { binary, ascii };
 
 /// A property of faces in PLY files.
@@ -78,6 +79,7 @@ struct FaceValues {
     std::vector<float> values;  ///< one number per triangle
 };
 
+/// Options of `write_mesh`.
 struct WriteOptions {
     Encoding encoding = Encoding::binary;  ///< encoding of PLY and STL
     std::string comment;                   ///< comment of one line (the provenance), written if the format supports comments

@@ -13,9 +13,9 @@ namespace ostraka {
 
 /// A named quantity: one number or a list of numbers.
 struct Quantity {
-    std::string name;  ///< name of the quantity
-    std::vector<double> values;
-    bool is_list = false;  ///< true: `values` is written as a list even if there is only one value
+    std::string name;            ///< name of the quantity
+    std::vector<double> values;  ///< one number, or the entries of a list
+    bool is_list = false;        ///< true: `values` is written as a list even if there is only one value
     /// Exponent of the unit of length: 1 length, 2 area, -1 curvature; 0 if dimensionless or in `unit`.
     int power = 0;
     std::string unit;  ///< unit of quantities that are no power of a length, e.g. "rad"; else empty
@@ -31,6 +31,7 @@ struct NamedMap {
     std::string unit;            ///< unit of the values
 };
 
+/// Options of DescriptorSearch.
 struct DescriptorOptions {
     bool curvature = false;              ///< true: add statistics of mean and Gaussian curvature
     bool thickness = false;              ///< true: add statistics of the thickness (shape diameter)

@@ -14,6 +14,7 @@ struct AnnotationSummary {
     double area = 0;           ///< area of a region, in the mesh's unit squared; 0 for other types
     double length = 0;         ///< perimeter of a region, or length of a line, in the mesh's unit
 };
+/// Computes the size figures of an annotation.
 AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation);
 
 /// Checks a set of annotations. Defects: empty selections, repeated points, poly-lines that traverse an edge twice, missing tags,

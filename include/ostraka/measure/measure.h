@@ -30,11 +30,12 @@ struct Evaluated {
     double spread = 0;         ///< sample standard deviation of the values of the repeats; 0 for a single picking
     std::size_t pickings = 1;  ///< number of pickings
 };
+/// Value and standard deviation of a measure.
 Evaluated evaluate_with_uncertainty(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
 
 /// Merges the measures of an annotation that have the same name, tool, number of pins and direction: the first of these measures
-/// is kept and gets the pins of the others as repeats; `refresh_measures` must then recompute its value and uncertainty. Measures
-/// with locations are not changed. Returns the number of measures merged into others.
+/// is kept and gets the pins of the other measures as repeats; `refresh_measures` must then recompute its value and uncertainty.
+/// Measures with locations are not changed. Returns the number of measures merged into others.
 std::size_t merge_pickings(Annotation& annotation);
 
 /// Value of a scalar descriptor by name: "area", "perimeter", "circularity" (perimeter^2 / area), "volume" and others of a
@@ -65,6 +66,7 @@ std::vector<Point> path_of_measure(PathSearch& search, const Mesh& mesh, const M
 /// Adds the measure as an attribute of this name, with a new id.
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);
 
+/// Result of `refresh_measures`.
 struct RefreshResult {
     std::size_t computed = 0;        ///< number of recomputed values
     std::size_t stale = 0;           ///< number of values that could not be computed, marked as stale

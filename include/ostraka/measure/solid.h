@@ -30,10 +30,11 @@ double closed_volume(const Mesh& mesh);
 /// of range and if there are no faces.
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// Size of the convex hull of points; zeros if they are coplanar.
+/// Size of the convex hull of points; zeros if the points are coplanar.
 struct HullSize {
     double volume = 0, area = 0;  ///< volume and surface area of the hull
 };
+/// Volume and surface area of the convex hull of points.
 HullSize hull_size(const std::vector<Point>& points);
 
 }  // namespace ostraka

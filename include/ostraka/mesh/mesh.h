@@ -60,9 +60,9 @@ std::array<Vertex, 3> corners(const Mesh& mesh, Face face);
 
 /// Area vector of a face: half the cross product of two edges (length = area, direction = outward normal).
 Vector area_vector(const Mesh& mesh, Face face);
-double face_area(const Mesh& mesh, Face face);
-double surface_area(const Mesh& mesh);  ///< sum of the areas of all faces
-Point centroid(const Mesh& mesh, Face face);
+double face_area(const Mesh& mesh, Face face);  ///< area of a face
+double surface_area(const Mesh& mesh);          ///< sum of the areas of all faces
+Point centroid(const Mesh& mesh, Face face);    ///< mean of the corners of a face
 
 /// Sum of the adjacent faces' area vectors weighted by the corner angle, normalised (Thuermer and Wuethrich 1998); the null
 /// vector if the sum is null.
@@ -70,7 +70,7 @@ Vector vertex_normal(const Mesh& mesh, Vertex vertex);
 
 /// Axis-aligned bounding box of the vertices with faces (of all vertices if no vertex has a face).
 CGAL::Bbox_3 bounding_box(const Mesh& mesh);
-/// Length of the diagonal of the bounding box; all relative tolerances refer to it.
+/// Length of the diagonal of the bounding box; all relative tolerances refer to this length.
 double box_diagonal(const Mesh& mesh);
 /// Mean edge length; 0 for a mesh without edges.
 double mean_edge_length(const Mesh& mesh);
