@@ -1,4 +1,4 @@
-// Allocator whose addresses ascend in the order of the requests.
+// Allocator that returns ascending addresses in the order of the requests, so that containers sorted by address are reproducible.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 namespace ostraka::detail {
 
 /// Memory for the small objects that AscendingAllocator creates on this thread during the lifetime of this object. Freed memory
-/// is reused, last first, so that the order of addresses depends on the requests alone. Beyond `bytes`, memory comes from the
-/// heap.
+/// is reused, the block freed last first, so that the order of addresses depends on the requests alone. Requests beyond the total
+/// of `bytes` are served from the heap.
 class AscendingMemory {
 public:
     explicit AscendingMemory(std::size_t bytes)
@@ -25,12 +25,13 @@ public:
     AscendingMemory(const AscendingMemory&) = delete;
     AscendingMemory& operator=(const AscendingMemory&) = delete;
 
+    /// The innermost object alive on this thread; null if there is none.
     static AscendingMemory*& current() {
         thread_local AscendingMemory* memory = nullptr;
         return memory;
     }
 
-    /// Null if there is no room.
+    /// Allocates a block; null if there is no room.
     void* take(std::size_t bytes) {
         bytes = rounded(bytes);
         std::vector<std::byte*>& free = free_[bytes];
@@ -44,7 +45,7 @@ public:
         next_ += bytes;
         return p;
     }
-    /// False if the memory is not from here.
+    /// Returns a block for reuse; false if this object did not allocate the block.
     bool give_back(void* p, std::size_t bytes) {
         auto* address = static_cast<std::byte*>(p);
         if (std::less<>()(address, begin_) || !std::less<>()(address, end_)) return false;
@@ -62,6 +63,7 @@ private:
     std::map<std::size_t, std::vector<std::byte*>> free_;
 };
 
+/// Standard allocator that uses the thread's current AscendingMemory, or the heap if there is none.
 template <class T>
 struct AscendingAllocator {
     using value_type = T;

@@ -10,11 +10,11 @@ namespace ostraka::cage {
 
 using Triangle = std::array<Vertex, 3>;
 
-/// True if two triangles intersect elsewhere than at the vertices and edges that they share. Exact.
+/// True if two triangles intersect elsewhere than at the vertices and edges that they share; decided in exact arithmetic.
 bool overlap(const Triangle& s, const std::array<Point, 3>& points_s, const Triangle& t, const std::array<Point, 3>& points_t);
 
-/// Hash grids of doubling cell sizes: a triangle lies in the grid whose cells are at least as large as its bounding box, in at
-/// most eight cells.
+/// A hierarchy of hash grids whose cell sizes double from level to level. A triangle is stored in the level whose cells are at
+/// least as large as its bounding box, in at most eight cells.
 class TriangleGrid {
 public:
     explicit TriangleGrid(double cell) : cell_(cell) {}
@@ -35,8 +35,8 @@ public:
             if (faces.empty()) grid.cells.erase(key);
         });
     }
-    /// Calls `visit(face)` for each triangle whose cells meet the box, possibly more than once, until it returns true. Returns
-    /// whether it did.
+    /// Calls `visit(face)` for each triangle stored in a cell that meets the box, possibly more than once, until a call returns
+    /// true. Returns true if a call did.
     template <class Visit>
     bool any(const CGAL::Bbox_3& box, Visit&& visit) const {
         for (const auto& [level, grid] : levels_) {

@@ -1,4 +1,4 @@
-// Trained classifiers.
+// Training and validation of the classifiers of forming techniques.
 #pragma once
 
 #include "ostraka/collection/technique_study.h"
@@ -9,37 +9,41 @@
 
 namespace ostraka {
 
-/// Values of a classifier's descriptors: one row per object that has all of them, logarithms of positive descriptors.
+/// Values of a classifier's descriptors for the objects that have all of these descriptors.
 struct DescriptorTable {
-    Eigen::MatrixXd values;
-    std::vector<std::size_t> objects;  ///< index of the object of each row
-    bool logarithm = false;            ///< whether the first column is a logarithm
+    Eigen::MatrixXd values;            ///< one row per object, one column per descriptor; logarithms of positive descriptors
+    std::vector<std::size_t> objects;  ///< for each row: index of the object
+    bool logarithm = false;            ///< true if the first column holds logarithms
 };
 DescriptorTable descriptor_table(const std::vector<TechniqueObject>& objects, const std::vector<std::string>& descriptors);
 
-/// Rows of a table whose objects are labelled, with their ground truth.
+/// The rows of a DescriptorTable whose objects are labelled, and their true classes.
 struct Labelled {
-    std::vector<std::size_t> rows;
-    std::vector<bool> truth;  ///< one per row of the table; false if the object has no label
+    std::vector<std::size_t> rows;  ///< indices of the labelled rows
+    /// For each row of the table: true if the object's label is the positive class; false if it has no label.
+    std::vector<bool> truth;
+    /// Number of labelled rows of the positive class.
     [[nodiscard]] std::size_t positives() const {
         return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t row) { return truth[row]; }));
     }
+    /// True if each class has at least two rows.
     [[nodiscard]] bool enough() const { return positives() >= 2 && rows.size() - positives() >= 2; }
 };
 Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorTable& table, const std::string& positive);
 
-/// Smaller values are replaced by this one before taking logarithms: identical slices have no variance.
+/// Values smaller than `min_positive` are replaced by it before taking logarithms, because identical slices have variance 0.
 inline constexpr double min_positive = 1e-12;
 
 /// Linear classifier with score weights . (x - middle) - limit; an object is positive if its score is at least 0.
 struct TechniqueModel {
-    Eigen::VectorXd weights, middle;
-    double limit = 0;
-    std::optional<Threshold> threshold;  ///< single column only
+    Eigen::VectorXd weights, middle;  ///< one entry per column: weight, and reference value
+    double limit = 0;                 ///< threshold of the weighted sum
+    /// Threshold in the descriptor's unit; none unless there is a single column.
+    std::optional<Threshold> threshold;
     [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle) - limit; }
 };
-/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur. Scores are scaled to standard
-/// deviation 1 over the rows about their class means.
+/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur. Scores are scaled so that their
+/// standard deviation about the class means is 1 over the rows.
 TechniqueModel learn(const Eigen::MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows);
 
 /// Cross-validation of one classifier, with its uncertainty and receiver operating characteristic (technique_validation.cpp).

@@ -12,25 +12,28 @@
 
 namespace ostraka::coords {
 
+/// An edge of the cage.
 struct CageEdge {
-    Index from, to;
-    Vector3 along;  ///< to - from
-    double length;
+    Index from, to;  ///< vertices of the edge
+    Vector3 along;   ///< to - from
+    double length;   ///< length of `along`
 };
 
-/// Edge k of a face lies opposite to its corner k; it runs from corner k + 1 to corner k + 2 if its sign is 1, else the other
-/// way.
+/// A face of the cage. Edge k of the face lies opposite to its corner k. The edge runs from corner k + 1 to corner k + 2 if sign
+/// k is 1, and in the other direction if sign k is -1.
 struct CageFace {
-    std::array<Index, 3> corner, edge;
-    Vector3 sign;
-    Vector3 normal;      ///< twice the area vector
-    double double_area;  ///< its length
+    std::array<Index, 3> corner, edge;  ///< indices of vertices and edges
+    Vector3 sign;                       ///< direction of each edge: 1 or -1
+    Vector3 normal;                     ///< twice the area vector
+    double double_area;                 ///< length of `normal`: twice the area of the face
 };
 
-/// The cage as arrays. Lengths are scaled by a power of two, which is exact, so that the diagonal is close to one.
+/// The cage as flat arrays. Lengths are multiplied by `scale`, a power of two (without rounding), so that the diagonal is close
+/// to one.
 struct CageArrays {
-    double scale = 1, diagonal = 1;  ///< the diagonal is scaled
-    std::vector<Vector3> points;     ///< not scaled
+    /// Factor from input lengths to scaled lengths; scaled diagonal of the bounding box.
+    double scale = 1, diagonal = 1;
+    std::vector<Vector3> points;  ///< positions of the vertices, not scaled
     std::vector<CageEdge> edges;
     std::vector<CageFace> faces;
 
@@ -41,7 +44,8 @@ struct CageArrays {
 
 inline Vector3 vector3(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-/// Loads eight points at a time into `work.x`, calls `compute(work)`, then `store(work, l, i)` for the point i in lane l.
+/// Loads eight points at a time into `work.x`, calls `compute(work)`, then calls `store(work, l, i)` for each lane l, where i is
+/// the index of the point in the lane.
 template <class Work, class Compute, class Store>
 void for_each_point(const CageArrays& cage, const std::vector<Point>& points, const Compute& compute, const Store& store) {
     parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -13,14 +13,14 @@
 
 namespace ostraka::coords {
 
-/// A point in the interior as a convex combination of nodes.
+/// A point inside a cage as a convex combination of the corners of a tetrahedron.
 struct InteriorPlace {
-    std::array<Index, 4> nodes{};
-    std::array<double, 4> weights{};
+    std::array<Index, 4> nodes{};     ///< indices of the corners
+    std::array<double, 4> weights{};  ///< one per corner, with sum 1
 };
 
-/// Tetrahedra that fill a cage and include its vertices and edges (CGAL's mesher, without optimisation). The cage is moved to
-/// the origin by its middle and scaled to diagonal 1.
+/// Tetrahedra that fill a cage and include the vertices and edges of the cage (CGAL's mesher, without optimisation). In unit
+/// coordinates the middle of the cage is the origin and its diagonal is 1.
 class CageInterior {
 public:
     /// Meshes the cage with approximately `nodes` nodes. Throws Error (input) that names the kind of coordinates for a cage
@@ -30,18 +30,21 @@ public:
     CageInterior(const CageInterior&) = delete;
     CageInterior& operator=(const CageInterior&) = delete;
 
+    /// Positions in unit coordinates.
     [[nodiscard]] const std::vector<Eigen::Vector3d>& nodes() const { return nodes_; }
+    /// Tetrahedra: indices of four nodes.
     [[nodiscard]] const std::vector<std::array<Index, 4>>& cells() const { return cells_; }
-    /// For each node its position on the cage; no face for nodes in the interior.
+    /// For each node: its position on the cage; `face` is no_index for nodes in the interior.
     [[nodiscard]] const std::vector<SurfaceHit>& on_cage() const { return on_cage_; }
+    /// True for nodes in the interior.
     [[nodiscard]] bool is_within(Index node) const { return on_cage_[node].face == no_index; }
-    /// The tetrahedron and weights of a point inside the cage, in unit coordinates. For a point outside all tetrahedra, those
-    /// of the closest position in one of them.
+    /// The tetrahedron and weights of a point inside the cage, in unit coordinates. For a point outside all tetrahedra: the
+    /// tetrahedron and weights of the closest position in a tetrahedron.
     [[nodiscard]] InteriorPlace locate(const Eigen::Vector3d& p) const;
 
 private:
     struct Mesher;
-    /// Returns false if the mesher fails.
+    /// Fills the cage with tetrahedra of about this size; returns false if the mesher fails.
     static bool fill(const Mesh& cage, double size, Mesher& mesher);
     std::unique_ptr<Mesher> mesher_;
     std::vector<Eigen::Vector3d> nodes_;
@@ -49,14 +52,15 @@ private:
     std::vector<SurfaceHit> on_cage_;
 };
 
-/// The cage, moved so that its middle is the origin, and scaled to diagonal 1.
+/// A cage in unit coordinates: moved so that the middle of its bounding box is the origin, and scaled to diagonal 1.
 struct UnitCage {
     explicit UnitCage(const Mesh& cage);
+    /// Converts a point to unit coordinates.
     [[nodiscard]] Eigen::Vector3d unit(const Point& p) const;
-    Mesh mesh;
-    std::vector<Eigen::Vector3d> corners;
-    Point middle{0, 0, 0};
-    double diagonal = 1;
+    Mesh mesh;                             ///< the cage in unit coordinates
+    std::vector<Eigen::Vector3d> corners;  ///< vertices of the cage in unit coordinates
+    Point middle{0, 0, 0};                 ///< middle of the bounding box, in input coordinates
+    double diagonal = 1;                   ///< diagonal of the bounding box, in input units
 };
 
 }  // namespace ostraka::coords

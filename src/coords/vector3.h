@@ -1,4 +1,4 @@
-// Vectors of three numbers, and one in each lane.
+// Vectors of three numbers, alone and in lanes of eight.
 #pragma once
 
 #include "coords/lanes.h"
@@ -20,12 +20,12 @@ OSTRAKA_INLINE Vector3 cross(const Vector3& a, const Vector3& b) {
 }
 inline double length(const Vector3& a) { return std::sqrt(dot(a, a)); }
 
-/// `a` if the condition holds, else `b`, chosen by component so that loops over lanes are vectorised.
+/// Returns `a` if the condition holds, else `b`; components are selected one by one so that loops over lanes are vectorised.
 OSTRAKA_INLINE Vector3 select(bool condition, const Vector3& a, const Vector3& b) {
     return {condition ? a[0] : b[0], condition ? a[1] : b[1], condition ? a[2] : b[2]};
 }
 
-/// A vector in each lane, stored by component.
+/// Eight vectors, one per lane, stored by component.
 struct VectorLanes {
     Lanes component[3];
     [[nodiscard]] OSTRAKA_INLINE Vector3 at(int lane) const {

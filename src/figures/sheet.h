@@ -23,14 +23,15 @@ Rgb series_colour(std::size_t index);
 /// The colour mixed with the paper colour: 0 is the colour, 1 is paper.
 Rgb lighter(const Rgb& colour, double fraction);
 
+/// A rectangle on the sheet.
 struct Box {
-    double left = 0, top = 0, right = 0, bottom = 0;
-    [[nodiscard]] bool meets(const Box& other) const {
+    double left = 0, top = 0, right = 0, bottom = 0;    ///< sides of the rectangle
+    [[nodiscard]] bool meets(const Box& other) const {  ///< true if the rectangles overlap
         return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
     }
 };
 
-/// Lengths are in points of the SVG, y points downwards.
+/// A drawing surface. Lengths are in points of the SVG, and y points downwards.
 class Sheet {
 public:
     enum class Format { svg, png, pdf };
@@ -41,26 +42,30 @@ public:
 
     void line(double x1, double y1, double x2, double y2, const Rgb& colour, double width, bool dashed = false);
     void polyline(const std::vector<std::array<double, 2>>& places, const Rgb& colour, bool dashed = false, double width = 1.8);
-    /// Closed curves, filled by the even-odd rule.
+    /// Fills the area inside closed curves by the even-odd rule.
     void fill(const std::vector<std::vector<std::array<double, 2>>>& curves, const Rgb& colour);
+    /// Fills a rectangle.
     void rectangle(const Box& box, const Rgb& colour);
+    /// Draws the border of a rectangle.
     void frame(const Box& box, const Rgb& colour, double width);
+    /// Draws a filled circle.
     void dot(double x, double y, const Rgb& colour, double radius = 3);
-    /// A mark identified by its shape: dot, square, triangle, rhomb, cross, ring ...
+    /// Draws mark number `form`, each with its own shape: dot, square, triangle, rhomb, cross, ring and others. ... ...
     void mark(double x, double y, std::size_t form, const Rgb& colour);
 
+    /// Width of a text in points.
     [[nodiscard]] double width_of(const std::string& words, double size = text_size);
-    /// `anchor`: fraction of the text's width to the left of x. y is the base line.
+    /// Draws a text with base line y; the fraction `anchor` of its width lies to the left of x.
     void text(const std::string& words, double x, double y, double anchor, double size = text_size, const Rgb& colour = ink);
-    /// Text rotated to read upwards; `anchor` is the fraction of its length below y.
+    /// Draws a text rotated to read upwards; the fraction `anchor` of its length lies below y.
     void upward_text(const std::string& words, double x, double y, double anchor = 0.5, double size = text_size);
-    /// The text, shortened with an ellipsis to fit the width.
+    /// The text, shortened with an ellipsis if needed to fit the width.
     [[nodiscard]] std::string fitted(const std::string& words, double width, double size = text_size);
 
-    void clip(const Box& box);
+    void clip(const Box& box);  ///< restricts drawing to the box until unclip()
     void unclip();
 
-    /// The file's bytes; nothing may be drawn afterwards. Throws Error (failure) if drawing failed.
+    /// Ends drawing and returns the bytes of the file. Throws Error (failure) if drawing failed.
     std::string finish();
 
 private:

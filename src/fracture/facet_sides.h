@@ -9,12 +9,12 @@
 
 namespace ostraka {
 
-/// Cosine of the angle between each patch's normal and the direction away from the object's axis of rotation or, without an
-/// axis, its middle; estimated from the patches `sides`. Reports the method in `notes`.
+/// Cosine of the angle between each patch's normal and the direction away from the object's axis of rotation or, without an axis,
+/// from the middle of the object; both are estimated from the patches `sides`. `notes` report the method.
 std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const std::vector<Index>& sides,
                                 std::vector<std::string>& notes);
 
-/// Weighted median of (value, weight) pairs; 0 for none.
+/// Weighted median of (value, weight) pairs; 0 if there are no pairs.
 double weighted_median(std::vector<std::pair<double, double>> values);
 
 }  // namespace ostraka

@@ -9,13 +9,13 @@
 namespace ostraka {
 
 /// Unit normals averaged with similar neighbours in `steps` one-ring iterations, so that sharp edges stay (bilateral normal
-/// filtering, Zheng et al. 2011). `areas`: area vectors. Null vectors where the area is 0.
+/// filtering, Zheng et al. 2011). `areas`: area vectors. The normal is a null vector where the area is 0.
 std::vector<Vector> filtered_normals(const std::vector<Vector>& areas, const std::vector<std::pair<Index, Index>>& neighbours,
                                      int steps);
-/// Number of steps that cover about `length` where neighbours are `spacing` apart.
+/// Number of filter iterations that reach about `length` if neighbours are `spacing` apart.
 int filter_steps(double length, double spacing);
 
-/// Filtered normals of the faces, over about `length`.
+/// Filtered normals of the faces of a mesh, averaged over distances of about `length`.
 std::vector<Vector> filtered_normals(const Mesh& mesh, double length);
 
 }  // namespace ostraka

@@ -7,10 +7,10 @@
 
 namespace ostraka {
 
-/// Aligns the second fragment's fracture and rim with those of the first.
+/// Aligns the fracture and rim of a second fragment with the fracture and rim of a first fragment.
 class FractureAligner {
 public:
-    /// The first fragment with its search trees; both must outlive the aligner.
+    /// The first fragment with its search trees. Fragment and trees must outlive the aligner.
     struct Target {
         const FractureSide& side;
         const PointTree &fracture, &frames;
@@ -26,15 +26,18 @@ public:
           frames_(a.frames),
           surface_(a.surface) {}
 
-    /// ICP, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps. With
-    /// `anchor_weight`, a constraint of that weight keeps the intact surface where `start` has it, up to sliding along itself.
+    /// ICP, point to plane, with at most `samples` points of the fracture; the search radius falls from its initial to its last
+    /// value over `steps` steps. A constraint of weight `anchor_weight` keeps the intact surface where `start` places it, except
+    /// that the surface may slide along itself.
     [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps, double anchor_weight = 0) const;
-    /// Contact is weighted by its distance, with a standard deviation of `close` times the last search radius.
+    /// Scores a pose. Contact is weighted by a Gaussian of the distance, with a standard deviation of `close` times the last
+    /// search radius.
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 
 private:
-    /// Calls visit(place, frame, squared distance) for each frame of the second fragment that, posed, continues a frame of the
-    /// first within 1.5 search radii: its position, and the frame of the first.
+    /// Calls visit(place, frame, squared distance) for each rim frame of the second fragment that, after the motion `pose`,
+    /// continues a rim frame of the first fragment within 1.5 search radii. `place`: moved position of the second fragment's
+    /// frame; `frame`: the first fragment's frame.
     template <class Visit>
     void for_each_continued(const Motion& pose, double search_radius, Visit&& visit) const;
 
@@ -44,9 +47,9 @@ private:
     const SurfaceSearch* surface_;
 };
 
-/// Search trees of a side for one alignment.
+/// Search trees of one fragment, as target of alignments.
 struct FractureTrees {
-    /// With an empty mesh, penetration is not tested.
+    /// Builds the trees; with an empty mesh, penetration is not tested.
     FractureTrees(Mesh mesh, const FractureSide& side);
     [[nodiscard]] FractureAligner::Target target() const { return {side_, fracture_, frames_, surface_.get()}; }
 

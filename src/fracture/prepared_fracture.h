@@ -8,34 +8,36 @@
 
 namespace ostraka {
 
+/// The precomputed data.
 struct PreparedFracture::Parts {
-    Mesh mesh;
-    std::string name;
+    Mesh mesh;                                         ///< surface of the fragment
+    std::string name;                                  ///< name of the fragment
     double size = 0;                                   ///< square root of the surface area
-    double width = 0;                                  ///< of the fracture: see PreparedFracture::width
+    double width = 0;                                  ///< width of the fracture (PreparedFracture::width)
     std::size_t faces = 0;                             ///< number of fracture faces
-    double relief = 0;                                 ///< root mean square deviation of the fracture from its quadric
-    double noise = 0;                                  ///< noise of the intact surface, a length: see surface_noise
+    double relief = 0;                                 ///< root mean square deviation of the fracture from a quadric fitted to it
+    double noise = 0;                                  ///< noise of the intact surface, a length (surface_noise)
     double edge = 0;                                   ///< mean edge length of the mesh
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< centroid of the intact surface
-    LineComplex lines;                                 ///< of the normals of the intact surface, relative to the centroid
-    double off_axis = 0;                               ///< root mean square distance of these normals from their best axis
-    FractureSide side;
-    PointTree fracture, frames;
-    std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface
-    std::unique_ptr<SampleGrid> grid;              ///< over `places`
-    std::unique_ptr<SurfaceSearch> surface;
+    LineComplex lines;  ///< line complex fitted to the normals of the intact surface, relative to `middle`
+    /// Root mean square distance of the normals of the intact surface from the axis fitted to them.
+    double off_axis = 0;
+    FractureSide side;                             ///< samples and rim of the fracture
+    PointTree fracture, frames;                    ///< search trees of the fracture samples and of the rim frames
+    std::vector<Eigen::Vector3d> places, normals;  ///< samples of the fracture surface, then of the intact surface
+    std::unique_ptr<SampleGrid> grid;              ///< grid that finds entries of `places`
+    std::unique_ptr<SurfaceSearch> surface;        ///< search tree of the mesh
 };
 
-/// How much farther the normals of two intact surfaces are from the best common axis, b moved by `pose`, than from an axis
-/// each: root of the difference of the mean squares, so that noise cancels.
+/// How much worse one common axis fits the normals of two intact surfaces (b moved by `pose`) than one axis each: root of the
+/// difference of the mean squared distances, so that noise cancels.
 double common_axis_deviation(const PreparedFracture::Parts& a, const PreparedFracture::Parts& b, const Motion& pose);
 
-/// Deviation of an intact surface from quadrics over small neighbourhoods: effect of scanner, grain and coarse triangles.
-/// Median of root mean squares; 0 for fewer than ten samples.
+/// Noise of an intact surface (scanner, grain, coarse triangles): median over small neighbourhoods of the root mean square
+/// deviation from a quadric; 0 for fewer than ten samples.
 double surface_noise(const SurfaceSamples& intact);
 
-/// Root mean square deviations of points from their plane and from their quadric; 0 for fewer than ten points.
+/// Root mean square deviations of points from the fitted plane and from the fitted quadric; 0 for fewer than ten points.
 std::pair<double, double> deviations(const std::vector<Eigen::Vector3d>& places);
 
 }  // namespace ostraka

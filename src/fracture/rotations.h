@@ -10,14 +10,16 @@
 
 namespace ostraka {
 
-/// Points on the profile of a surface of revolution about the vertical axis, as cells of the half plane (radius, height).
+/// Numbers the cells of the half plane (radius, height) that the profile of a surface of revolution about the vertical axis
+/// meets.
 class ProfileCells {
 public:
     ProfileCells(const SurfaceSearch& surface, double width) : surface_(surface), width_(width) {}
-    /// The cell of the nearest surface point to `p` with a similar normal; -1 if it is farther than `search_radius`.
+    /// Number of the cell that contains the surface point nearest to `p` with a similar normal; -1 if that surface point is
+    /// farther than `search_radius`.
     int row(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double search_radius);
-    [[nodiscard]] double width() const { return width_; }
-    [[nodiscard]] std::size_t rows() const { return cell_rows_.size(); }
+    [[nodiscard]] double width() const { return width_; }                 ///< width of a cell
+    [[nodiscard]] std::size_t rows() const { return cell_rows_.size(); }  ///< number of cells numbered so far
 
 private:
     const SurfaceSearch& surface_;
@@ -25,15 +27,15 @@ private:
     std::map<std::pair<long, long>, int> cell_rows_;
 };
 
-/// The area that a sherd covers at each of `steps` angles.
+/// The cells of the vessel's surface that a sherd covers: profile cells times `steps` angles.
 class RotationMap {
 public:
-    /// Points closer than `margin` to the sherd's own fracture are covered, but do not count as overlap.
+    /// Points closer than `margin` to the sherd's own fracture count as covered, but not as overlap.
     RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Eigen::Vector3d>& fracture, int steps,
                 double margin, double search_radius);
-    /// Area that this sherd shares with `other`, for `other` rotated by each step against this sherd.
+    /// For each step: area that both this sherd and `other` cover when `other` is rotated by that many steps against this sherd.
     [[nodiscard]] std::vector<double> shared(const RotationMap& other) const;
-    [[nodiscard]] double area() const { return area_; }
+    [[nodiscard]] double area() const { return area_; }  ///< area of the sherd
 
 private:
     struct Place {
@@ -42,48 +44,50 @@ private:
     int steps_;
     double area_ = 0, area_per_sample_ = 0;
     std::vector<Place> deep_;
-    std::vector<std::vector<bool>> covered_;  ///< per row; empty: nowhere
+    /// Per profile cell: true for the covered angles; empty: none covered.
+    std::vector<std::vector<bool>> covered_;
 };
 
-/// A sherd in the frame whose vertical axis through the origin is the vessel's axis.
+/// A sherd in the frame in which the vessel's axis is the vertical line through the origin.
 struct UprightSherd {
-    Mesh mesh;
-    FractureSide side;  ///< without fracture: it meets no other sherd
-    double radius = 0;  ///< root mean square distance from the axis
-    std::unique_ptr<RotationMap> map;
+    Mesh mesh;                         ///< surface of the sherd
+    FractureSide side;                 ///< fracture and rim; a sherd without fracture meets no other sherd
+    double radius = 0;                 ///< root mean square distance of the sherd from the axis
+    std::unique_ptr<RotationMap> map;  ///< cells that the sherd covers
 };
 
 /// A rotation of the second sherd at which the two sherds meet.
 struct MeetingRotation {
-    double rotation = 0;  ///< radians
-    double value = 0;     ///< area of the fracture that meets, with the rim, less the area inside the other sherd
-    PairCandidate fit;    ///< its pose is the second sherd's, with the first fixed
+    double rotation = 0;  ///< rotation of the second sherd relative to the first, in radians
+    double value = 0;     ///< score: area of fracture and rim that meet, less the area inside the other sherd
+    PairCandidate fit;    ///< refined result; its pose moves the second sherd and leaves the first fixed
 };
 
-/// Scores of two sherds.
+/// Scores of the relative rotations of two sherds.
 struct RotationPair {
-    std::vector<MeetingRotation> meetings;  ///< best first
-    std::vector<double> shared;             ///< per step: area that both would cover
-    double tolerance = 0;                   ///< radians within which a rotation belongs to a meeting
+    std::vector<MeetingRotation> meetings;  ///< rotations at which the sherds meet, by descending value
+    std::vector<double> shared;             ///< for each step of rotation: area that both sherds would cover
+    double tolerance = 0;                   ///< max difference in radians between a rotation and a meeting that belongs to it
 
-    /// Score of a rotation of the second sherd against the first: area that meets less area that both cover.
+    /// Score of a rotation of the second sherd against the first: fracture area that meets less surface area that both cover.
     [[nodiscard]] double value(double rotation) const { return met(rotation) - shared_at(rotation); }
-    /// The area that meets, without the shared area.
+    /// Fracture area that meets at a rotation, without subtracting the shared area.
     [[nodiscard]] double met(double rotation) const;
-    [[nodiscard]] double shared_at(double rotation) const;
-    /// The meeting at a rotation; none: nullptr.
+    [[nodiscard]] double shared_at(double rotation) const;  ///< surface area that both sherds cover at a rotation
+    /// The meeting to which a rotation belongs; null if there is none.
     [[nodiscard]] const MeetingRotation* meeting(double rotation) const;
 };
 
-/// The angle in [-pi, pi].
+/// The equivalent angle in [-pi, pi].
 double wrapped(double angle);
-Motion rotated_by(double angle);
-/// The rotation about the vertical axis that is nearest to a motion.
+Motion rotated_by(double angle);  ///< rotation about the vertical axis
+/// Angle of the rotation about the vertical axis that is closest to a motion.
 double rotation_about_axis(const Motion& motion);
 
+/// Scores all relative rotations of two sherds; `wall`: wall thickness.
 RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, double wall, const RotationMatchOptions& options);
 
-/// Scores of all pairs: for i < j the rotation of j against i.
+/// Scores of all pairs of sherds: for i < j, of the rotation of sherd j against sherd i.
 class RotationPairs {
 public:
     RotationPairs(std::size_t count, std::vector<RotationPair> pairs) : count_(count), pairs_(std::move(pairs)) {}
@@ -91,7 +95,7 @@ public:
     [[nodiscard]] const RotationPair& at(std::size_t i, std::size_t j) const {
         return pairs_[std::min(i, j) * count_ + std::max(i, j)];
     }
-    /// The relative rotation of two sherds in the convention of their pair.
+    /// Relative rotation of sherds i and j: of the sherd with the larger index against the other.
     [[nodiscard]] static double between(std::size_t i, std::size_t j, double rotation_i, double rotation_j) {
         return i < j ? rotation_j - rotation_i : rotation_i - rotation_j;
     }
@@ -101,28 +105,32 @@ public:
 
 private:
     std::size_t count_;
-    std::vector<RotationPair> pairs_;  ///< count x count; only i < j is used
+    std::vector<RotationPair> pairs_;  ///< entry i * count + j: scores of sherds i < j; other entries are unused
 };
 
+/// Rotations of all sherds of a vessel.
 struct RotationAssembly {
-    std::vector<double> rotations;  ///< per sherd
-    std::vector<bool> joined;       ///< per sherd: meets other sherds
-    double value = 0;
+    std::vector<double> rotations;  ///< per sherd: rotation in radians
+    std::vector<bool> joined;       ///< per sherd: true if the sherd meets other sherds
+    double value = 0;               ///< sum of the scores over all pairs
 };
 
-/// The rotations with the largest sum over all pairs, starting from `root` and the sherds that are `fixed` (at 0): each step
-/// adds one sherd to the best assemblies so far (a beam search). A sherd that meets no other is placed where it overlaps least.
+/// Searches the rotations of all sherds with the largest sum of scores over all pairs, by a beam search that starts from `root`
+/// and the `fixed` sherds (rotation 0): each step adds one sherd to the `beam` assemblies of the highest sums. A sherd that meets
+/// no other sherd is placed where the overlap is smallest.
 RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vector<bool>& fixed, std::size_t root, int beam);
 
-/// Rotates the sherds in `side` against all others: the value of all pairs across at the current rotations, and the max area
-/// that meets at any other rotation, whether or not there is room.
+/// How well the current rotation of one side of an assembly against the other side is determined.
 struct RotationLead {
+    /// Score across the sides at the current rotation; max area that meets at any other, ignoring overlap.
     double current = 0, best_other = 0;
 };
+/// Rotates the sherds with `side` true against all other sherds with `counts` true, in `steps` steps.
 RotationLead rotation_lead(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                            const std::vector<bool>& side, int steps);
 
-/// The rotation of one sherd at which it overlaps least with the others that count.
+/// The rotation of one sherd at which its overlap with the other sherds (those with `counts` true) is smallest; `shared` receives
+/// this overlap.
 double least_shared_rotation(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                              std::size_t sherd, double& shared);
 

@@ -4,7 +4,7 @@
 
 namespace ostraka {
 
-/// Triangles of any topology as polygons.
+/// Converts triangles of any topology to a polygon soup.
 inline PolygonSoup as_polygons(TriangleSoup triangles, MeshExtras extras) {
     PolygonSoup soup;
     soup.points = std::move(triangles.points);

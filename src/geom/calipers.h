@@ -9,7 +9,8 @@
 
 namespace ostraka::detail {
 
-/// The corners of the convex hull, counter-clockwise (Andrew 1979); `left(a, b, c)`: c lies strictly to the left of a -> b.
+/// The corners of the convex hull of points, counter-clockwise (Andrew 1979). `left(a, b, c)`: true if c lies strictly to the
+/// left of the line from a to b.
 template <class Left>
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> p, Left&& left) {
     using Eigen::Vector2d;
@@ -28,12 +29,12 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> p, Left&& 
     return hull;
 }
 
-/// Limits of a rectangle around a convex polygon.
+/// Limits of a rectangle around a convex polygon, in the coordinates of its axes.
 struct Extent {
-    double x0, x1, y0, y1;
+    double x0, x1, y0, y1;  ///< min and max along the first and along the second axis
 };
 
-/// Extent along the unit vector `a` and perpendicular to it, computed from all corners.
+/// Extent of a polygon along the unit vector `a` and perpendicular to `a`, computed from all corners.
 inline Extent extent_along(const Eigen::Vector2d& a, const std::vector<Eigen::Vector2d>& hull) {
     Extent e{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
              std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -44,12 +45,13 @@ inline Extent extent_along(const Eigen::Vector2d& a, const std::vector<Eigen::Ve
     return e;
 }
 
-/// Rotating calipers: as the rectangle is aligned with successive sides of a counter-clockwise convex polygon, the corners that
-/// touch it only advance. Three of them are tracked; the fourth side of the rectangle is the polygon side itself (Toussaint
-/// 1983).
+/// Rotating calipers (Toussaint 1983): while a bounding rectangle is aligned with successive sides of a counter-clockwise convex
+/// polygon, the polygon corners that touch the rectangle only advance. Three touching corners are tracked; the fourth side of the
+/// rectangle lies on the polygon side itself.
 class Calipers {
 public:
     explicit Calipers(const std::vector<Eigen::Vector2d>& hull) : hull_(hull) {}
+    /// Extent of the rectangle aligned with polygon side number `side`, whose unit vector is `a`; sides must be passed in order.
     Extent along(std::size_t side, const Eigen::Vector2d& a) {
         const Eigen::Vector2d b(-a[1], a[0]);
         if (!started_) right_ = top_ = left_ = side;

@@ -18,16 +18,18 @@ namespace ostraka::detail {
 
 using PlainTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
 
+/// Remedy in messages about memory.
 inline constexpr const char* coarser = "measure along edges, up to a limit, or on a coarser copy (ostraka mesh simplify)";
 
-/// Memory of the windows of a search: at least 6 kB per face on a rough surface, where windows end soon; on a smooth surface,
-/// it grows with the power 1.5 of the number of faces (measured: 11 kB per face at 40 thousand faces, 17 at 90, 31 at 400).
+/// Checks that memory suffices for the windows of a search: at least 6 kB per face on a rough surface, where windows end soon; on
+/// a smooth surface the memory grows with the power 1.5 of the number of faces (measured: 11 kB per face at 40 thousand faces, 17
+/// kB at 90 thousand, 31 kB at 400 thousand).
 inline void require_for_search(double faces) {
     require_memory(std::max(6e3 * faces, 15 * std::pow(faces, 1.5)),
                    "the exact shortest way over " + std::to_string(static_cast<long long>(faces)) + " faces", coarser);
 }
 
-/// Checks for cancellation and, now and then, the memory limit.
+/// Checks for cancellation at every call and, every 262 144 calls, the memory limit.
 class SearchCheck {
 public:
     void operator()() {
@@ -43,7 +45,7 @@ private:
     unsigned steps_ = 0;
 };
 
-/// Calls the check whenever a window is propagated across an edge.
+/// Traits of CGAL's search that call a SearchCheck whenever a window is propagated across an edge.
 struct WatchedTraits : PlainTraits {
     [[nodiscard]] Construct_triangle_3_along_segment_2_flattening construct_triangle_3_along_segment_2_flattening_object() const {
         check();
@@ -52,8 +54,8 @@ struct WatchedTraits : PlainTraits {
     mutable SearchCheck check;
 };
 
-/// Memory pool of the events of a search. CGAL leaks pending events if it is interrupted; here they are freed with the pool.
-/// One search at a time per thread.
+/// Memory pool of the events of a search. CGAL leaks pending events if a search is interrupted; with this pool, pending events
+/// are freed with the pool. Each thread may run one search at a time.
 class EventMemory {
 public:
     EventMemory() : outer_(current) { current = this; }
@@ -72,7 +74,7 @@ private:
 
 }  // namespace ostraka::detail
 
-/// CGAL's event, allocated in the memory pool of the search.
+/// CGAL's event of a search, allocated in the EventMemory of the search.
 // NOLINTBEGIN(readability-identifier-naming): the names that CGAL uses.
 template <>
 struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostraka::detail::WatchedTraits> {
@@ -97,8 +99,8 @@ struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostra
 
 namespace ostraka::detail {
 
-/// Shortest paths from sources on a mesh. Throws Error (failure) if they would need too much memory. Building may throw Error
-/// (cancelled, failure); the object must not be used after that.
+/// Exact shortest paths from sources on a mesh. Throws Error (failure) if the search would need too much memory. Building the
+/// search may throw Error (cancelled, failure); the object must not be used afterwards.
 class ExactSearch : private EventMemory, public CGAL::Surface_mesh_shortest_path<WatchedTraits> {
 public:
     explicit ExactSearch(const Mesh& mesh) : Surface_mesh_shortest_path(checked(mesh)) {}

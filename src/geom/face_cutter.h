@@ -10,34 +10,37 @@
 
 namespace ostraka {
 
-/// Assigns a vertex to each point of the curves, which must outlive this object (old vertices keep their indices, new ones
-/// follow), and subdivides single faces.
+/// Subdivides single faces of a mesh along curves. Each point of the curves gets a vertex: old vertices keep their indices, and
+/// new vertices follow. Mesh and curves must outlive this object.
 class FaceCutter {
 public:
     FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
 
-    /// Vertex at each point, per curve.
+    /// For each curve and each of its points: index of the vertex.
     [[nodiscard]] const std::vector<std::vector<Index>>& node_vertex() const { return node_vertex_; }
-    /// The same with the vertices in between: other vertices on an edge that a piece follows, and crossings of curves inside a
-    /// face that has already been cut.
+    /// All vertices along a curve: the vertices at its points, other vertices on an edge that a piece follows, and crossings of
+    /// curves inside faces that have already been cut.
     [[nodiscard]] std::vector<Index> path(std::size_t curve) const;
     /// Faces that curves cross or touch at a point on an edge, ascending.
     [[nodiscard]] std::vector<Index> faces() const;
-    /// The triangles that replace a face; crossings of curves inside it may add vertices.
+    /// The triangles that replace a face, as indices of vertices; crossings of curves inside the face may add vertices.
     std::vector<std::array<Index, 3>> cut(Index face);
-    /// The new vertices, in index order: their places and coordinates.
+    /// For each new vertex, in index order: its position on the uncut mesh.
     [[nodiscard]] const std::vector<SurfacePoint>& new_points() const { return points_; }
+    /// Coordinates of each new vertex.
     [[nodiscard]] const std::vector<Point>& new_positions() const { return positions_; }
-    /// Old edge -> the new vertices on it with their fractions along its first halfedge, ascending.
+    /// Index of an old edge -> (fraction along the edge's first halfedge, index) of each new vertex on the edge, by ascending
+    /// fraction.
     [[nodiscard]] const std::map<Index, std::vector<std::pair<double, Index>>>& on_edge() const { return on_edge_; }
+    /// Coordinates of an old or new vertex.
     [[nodiscard]] const Point& point(Index v) const {
         return v < mesh_.number_of_vertices() ? mesh_.point(Vertex(v)) : positions_[v - mesh_.number_of_vertices()];
     }
 
 private:
-    /// Elements inside one face.
+    /// Vertices and segments to insert into one face.
     struct Cut {
-        std::vector<Index> inner;                       ///< vertices strictly inside
+        std::vector<Index> inner;                       ///< vertices strictly inside the face
         std::vector<std::pair<Index, Index>> segments;  ///< pieces of curves, as pairs of vertices
     };
     Index add_point(const SurfacePoint& p);
@@ -51,12 +54,12 @@ private:
     std::vector<Point> positions_;
     std::vector<std::vector<Index>> node_vertex_;
     std::map<Index, std::vector<std::pair<double, Index>>>
-        on_edge_;  ///< vertices on an edge, by fraction along its first halfedge
+        on_edge_;  ///< index of an old edge -> (fraction along its first halfedge, vertex), by ascending fraction
     std::map<std::pair<Index, double>, Index> edge_vertex_;
     std::map<std::tuple<Index, double, double>, Index> face_vertex_;
     std::map<Index, Cut> cuts_;
     std::map<std::pair<Index, Index>, std::vector<Index>>
-        crossed_;  ///< pieces crossed by others: the vertices between their ends
+        crossed_;  ///< pieces that others cross, by their ends -> vertices between the ends
 };
 
 }  // namespace ostraka

@@ -8,17 +8,17 @@
 
 namespace ostraka {
 
-/// Non-degenerate faces sorted by the Morton codes of their centroids, so that faces close in space are close in the order.
-/// Faces with the same first 3k bits lie in one cube of side 1 / 2^k of the box diagonal.
+/// Non-degenerate faces sorted by the Morton codes of their centroids, so that faces close in space are close in the order. Faces
+/// whose codes agree in the first 3k bits lie in one cube of side 1 / 2^k times the diagonal of the bounding box.
 struct FaceOrder {
-    std::unique_ptr<std::uint64_t[]> codes;  ///< ascending, 63 bits
-    std::unique_ptr<Index[]> faces;          ///< for equal codes, the lower face first
-    std::uint32_t count = 0;
-    double area = 0;  ///< of all faces
+    std::unique_ptr<std::uint64_t[]> codes;  ///< Morton code of each face, 63 bits; ascending
+    std::unique_ptr<Index[]> faces;          ///< index of each face; for equal codes the smaller index comes first
+    std::uint32_t count = 0;                 ///< number of non-degenerate faces
+    double area = 0;                         ///< area of all faces
 };
 
-/// `middle`: centre of the bounding box of the mesh; `diagonal`: its diagonal. O(n), on all threads; 12 bytes per face, and as
-/// many again while sorting.
+/// `middle`: centre of the bounding box of the mesh; `diagonal`: its diagonal. Time: O(n), on all threads. Memory: 12 bytes per
+/// face, and 12 more while sorting.
 FaceOrder order_faces(const Mesh& mesh, const Point& middle, double diagonal);
 
 }  // namespace ostraka

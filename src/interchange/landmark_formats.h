@@ -20,8 +20,8 @@ std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& option
 std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_file, Notes& notes);
 std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& options, const Provenance& provenance);
 
-/// Converts a position from `file_space` (nullopt: that of the mesh) to the space of the mesh: x and y are negated between LPS
-/// and RAS.
+/// Converts a position from `file_space` (nullopt: the space of the mesh) to the space of the mesh: x and y are negated between
+/// LPS and RAS.
 std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
                                     AnatomicalSpace mesh_space);
 

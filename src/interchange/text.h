@@ -20,7 +20,7 @@ std::string one_line(std::string_view text);
 /// True if `one_line` would change the text.
 bool has_control(std::string_view text);
 
-/// The numbers separated by blanks; those that are not integers are written by `digits`.
+/// The numbers as text, separated by blanks; floating-point numbers are written by `digits`.
 template <class Numbers>
 std::string joined_numbers(const Numbers& numbers) {
     std::string text;
@@ -32,10 +32,10 @@ std::string joined_numbers(const Numbers& numbers) {
     return text;
 }
 
-/// JSON as by `to_text`, with < > & escaped, so that it cannot end the script element of an HTML page.
+/// JSON text as written by `to_text`, with < > & escaped, so that the text cannot end the script element of an HTML page.
 std::string json_text(const JsonValue& value);
 
-/// The value as a list of three finite numbers, or nullopt.
+/// The three numbers of a JSON value; nullopt unless the value is a list of three finite numbers.
 std::optional<std::array<double, 3>> triple(const JsonValue* value);
 
 }  // namespace ostraka::interchange

@@ -1,10 +1,10 @@
-// Terms of the W3C model and of our additions, shared by writer and reader.
+// Terms of the W3C model of annotations and of our additions, shared by writer and reader.
 #pragma once
 
 namespace ostraka::interchange::web {
 
 inline constexpr const char* context = "http://www.w3.org/ns/anno.jsonld";
-/// The names of our additions are in a private namespace, which is never looked up.
+/// Private namespace of our additions, which is never looked up on the web.
 inline constexpr const char* terms = "urn:x-ostraka:terms:";
 inline constexpr const char* index_selector = "ostraka:IndexSelector";
 inline constexpr const char* place_selector = "ostraka:PlaceSelector";

@@ -7,7 +7,7 @@
 
 namespace ostraka::io {
 
-// Readers: `bytes` is the whole file and may be modified; `file` is its name for messages.
+// Readers of mesh files: `bytes` is the content of the whole file and may be modified; `file` is the file name for messages.
 PolygonSoup read_obj(std::string& bytes, const std::string& file);
 PolygonSoup read_off(std::string& bytes, const std::string& file);
 PolygonSoup read_ply(const std::string& bytes, const std::string& file);
@@ -15,18 +15,18 @@ PolygonSoup read_stl(std::string& bytes, const std::string& file);
 PolygonSoup read_medit(std::string& bytes, const std::string& file);
 PolygonSoup read_vtu(const std::string& bytes, const std::string& file);
 
-/// True if the content has the format, whatever the name of the file.
+/// True if the content is a PLY file, whatever the name of the file.
 bool looks_like_ply(std::string_view bytes);
-bool looks_like_off(std::string_view bytes);
-bool looks_like_stl(std::string_view bytes);
+bool looks_like_off(std::string_view bytes);  ///< true if the content is an OFF file
+bool looks_like_stl(std::string_view bytes);  ///< true if the content is an STL file
 
 /// Completes a polygon whose corners were appended to `soup.corners`; throws Error if the number of corners no longer fits an
 /// Index.
 void close_polygon(PolygonSoup& soup, const std::string& file);
 
-/// Colour channels from a file, given as 0..1 or as 0..255. NaN and values out of range are clamped and counted in
-/// `out_of_range`.
+/// Colour channel from a value between 0 and 1. NaN and values out of range are clamped and counted in `out_of_range`.
 std::uint8_t channel_from_unit(double value, std::size_t& out_of_range);
+/// Colour channel from a value between 0 and 255. NaN and values out of range are clamped and counted in `out_of_range`.
 std::uint8_t channel_from_byte(double value, std::size_t& out_of_range);
 
 inline constexpr Colour white{255, 255, 255, 255};
@@ -35,7 +35,9 @@ inline constexpr Colour white{255, 255, 255, 255};
 class WrittenFaces {
 public:
     WrittenFaces(const TriangleSoup& soup, const WriteOptions& options) : soup_(soup), options_(options) {}
+    /// Number of faces.
     [[nodiscard]] std::size_t size() const { return polygons() ? options_.polygons.size() : soup_.triangles.size(); }
+    /// Indices of the vertices of a face.
     [[nodiscard]] std::span<const Index> corners(std::size_t face) const {
         if (polygons()) return options_.polygons[face];
         return soup_.triangles[face];
@@ -47,7 +49,7 @@ private:
     const WriteOptions& options_;
 };
 
-// Writers: `extras` must be empty or complete. They return notes on data that the format cannot store.
+// Writers of mesh files: `extras` must be empty or complete. Each writer returns notes about data that the format cannot store.
 using Notes = std::vector<std::string>;
 Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);

@@ -14,18 +14,20 @@
 
 namespace ostraka::io {
 
-/// Elements as lines of words.
+/// Reads the elements of a text PLY file: one line of words per element.
 class AsciiRows {
 public:
     AsciiRows(std::string_view bytes, std::size_t start, const std::string& file) : reader_(bytes, file, 0) {
         reader_.set_position(bytes.data() + start);
         reader_.skip_space();
     }
+    /// Starts to read an element; throws Error if the file ends.
     void begin(const PlyElement& element, std::size_t row) {
         if (element.properties.empty()) return;
         if (!reader_.skip_space())
             reader_.fail(fmt::format("the file ends at {} {} of {}", element.name, row, element.count), "the file is cut off");
     }
+    /// Ends an element; throws Error if its line has further values.
     void end(const PlyElement& element, std::size_t row) {
         if (!reader_.line_done()) reader_.fail(fmt::format("{} {} has more values than the header declares", element.name, row));
     }
@@ -35,7 +37,7 @@ public:
         if (integer < -largest_whole || integer > largest_whole) reader_.fail("a whole number does not fit 32 bits");
         return static_cast<double>(integer);
     }
-    /// Minimum number of bytes for `count` values.
+    /// Minimum number of bytes that `count` values take in the file.
     static std::size_t minimum(PlyType, std::size_t count) { return 2 * count; }
     void skip(PlyType, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i)
@@ -43,14 +45,14 @@ public:
     }
     [[nodiscard]] std::size_t remaining() const { return reader_.remaining() + 1; }  // the last line end may be missing
     [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) { reader_.fail(problem, remedy); }
-    bool only_space_left() { return !reader_.skip_space(); }
+    bool only_space_left() { return !reader_.skip_space(); }  ///< true if nothing but blanks follows
 
 private:
     static constexpr std::int64_t largest_whole = 0xFFFFFFFF;
     TextReader reader_;
 };
 
-/// Elements as packed bytes; `swapped` if their order is not the machine's.
+/// Reads the elements of a binary PLY file; `swapped` is true if the byte order of the file is not that of the machine.
 template <bool swapped>
 class BinaryRows {
 public:

@@ -8,22 +8,25 @@
 
 namespace ostraka::io {
 
-/// Quality of a triangulation.
+/// Quality of the triangulation of one polygon: clean; crossing: triangles overlap; gave_up: too expensive, rest divided by
+/// halving.
 enum class CutResult : std::uint8_t { clean, crossing, gave_up };
 
-/// Reuses its working arrays for successive polygons.
+/// Divides polygons into triangles, reusing working arrays for successive polygons.
 class PolygonCutter {
 public:
-    using Triple = std::array<std::uint32_t, 3>;  ///< positions in the list of corners
+    /// Positions of the triangle's corners in the polygon's list of corners.
+    using Triple = std::array<std::uint32_t, 3>;
 
-    /// Appends the triangles over `points[corners[i]]`, i in [0, count), to `triangles`, all with the orientation of the
-    /// polygon. No triangle repeats a vertex. Quadrilaterals are split along the shorter diagonal that keeps both triangles
-    /// upright (the one at the first corner if equal), strictly convex polygons into a fan from the first corner, those of more
-    /// than a thousand corners by halving (every second corner, then every fourth, ...), all others by ear clipping (Meisters
-    /// 1975) in the coordinate plane of the largest projected area. A grid finds the corners that could lie in an ear, so that
-    /// the time is nearly linear in practice. `crossing`: no ear was left, so triangles overlap. `gave_up`: a budget of a
-    /// million tests (twenty million for many corners) and 200 per corner is exhausted, where a test in exact arithmetic counts
-    /// as 16; the rest is halved. O(count) memory.
+    /// Divides the polygon with the corners `points[corners[i]]`, i in [0, count), and appends its triangles to `triangles`, all
+    /// with the orientation of the polygon. No triangle repeats a vertex. A quadrilateral is split along the shorter diagonal
+    /// that keeps both triangles upright (at equal lengths, the diagonal at the first corner). A strictly convex polygon becomes
+    /// a fan from the first corner, or with more than a thousand corners is halved (every second corner, then every fourth, ...).
+    /// All other polygons are divided by ear clipping (Meisters 1975) in the coordinate plane of the largest projected area. A
+    /// grid finds the corners that could lie in an ear, so that the time is nearly linear in practice. Result `crossing`: no ear
+    /// was left, so triangles overlap. Result `gave_up`: a budget of a million tests (twenty million for many corners) plus 200
+    /// per corner is exhausted, where a test in exact arithmetic counts as 16; the rest of the polygon is halved. Memory:
+    /// O(count).
     CutResult cut(const std::vector<std::array<double, 3>>& points, const std::uint32_t* corners, std::size_t count,
                   std::vector<Triple>& triangles);
 
@@ -43,9 +46,12 @@ private:
 
     std::vector<std::uint32_t> kept_;  ///< positions of corners that differ from their predecessor
     std::vector<Point2> flat_;         ///< projections of the kept corners, scaled by a power of two, counter-clockwise
+    /// For each kept corner: its neighbours in the remaining polygon.
     std::vector<std::uint32_t> next_, previous_;
-    std::vector<std::uint32_t> candidates_, waiting_, round_of_;   ///< corners to try in this and the next round
-    std::vector<std::uint32_t> reflex_, cell_begin_, cell_items_;  ///< grid of corners that are not strictly convex
+    /// Corners to try as ears in this round and in the next round; round in which a corner last changed.
+    std::vector<std::uint32_t> candidates_, waiting_, round_of_;
+    /// Corners that are not strictly convex, and the grid that finds them.
+    std::vector<std::uint32_t> reflex_, cell_begin_, cell_items_;
     std::vector<char> alive_;
     Point2 grid_low_{}, grid_size_{1, 1};
     std::size_t cells_ = 1;  ///< number of cells per side

@@ -6,17 +6,19 @@
 
 namespace ostraka::detail {
 
-/// A soup that tracks the origin of its elements. "Source" is the identical old element (for the maps), no_index for new
-/// elements; "like" is the old element that provides colour, label and texture coordinates.
+/// A triangle soup under repair that tracks the old elements from which its elements come.
 struct RepairSoup {
     TriangleSoup soup;
+    /// Per vertex: the identical old vertex (no_index: new); the old vertex that provides the attributes.
     std::vector<Index> vertex_source, vertex_like;
+    /// Per triangle: the identical old triangle (no_index: new); the old one that provides the attributes.
     std::vector<Index> face_source, face_like;
-    std::vector<std::array<Index, 3>> corner_like;  ///< 3 * old triangle + old corner
-    std::vector<std::uint8_t> flipped;              ///< per triangle: orientation reversed since reading
-    std::vector<std::uint8_t> touched;              ///< per vertex: belongs to a triangle that was cut out
-    std::vector<Index> merged_into;                 ///< old vertex -> old vertex it was merged into (or itself)
-    std::vector<Index> duplicate_of;                ///< old triangle -> old triangle kept instead (or itself)
+    /// Per triangle corner: 3 * old triangle + old corner that provides the texture coordinates.
+    std::vector<std::array<Index, 3>> corner_like;
+    std::vector<std::uint8_t> flipped;  ///< per triangle: 1 if its orientation was reversed
+    std::vector<std::uint8_t> touched;  ///< per vertex: 1 if it belonged to a triangle that was cut out
+    std::vector<Index> merged_into;     ///< for each old vertex: the old vertex into which it was merged, or itself
+    std::vector<Index> duplicate_of;    ///< for each old triangle: the old triangle that was kept instead, or itself
 
     explicit RepairSoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
@@ -24,39 +26,44 @@ struct RepairSoup {
     void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
                       bool is_flipped);
     void flip(Index triangle);
+    /// Removes the triangles whose flag is 0.
     void keep_triangles(const std::vector<std::uint8_t>& keep);
-    /// Drops vertices without triangles; with `keep_original`, one copy of each original vertex is kept. Returns the number of
-    /// dropped vertices.
+    /// Drops vertices without triangles; with `keep_original`, one copy of each old vertex is kept. Returns the number of dropped
+    /// vertices.
     std::size_t drop_isolated(bool keep_original);
 };
 
 using Counts = std::vector<std::pair<std::string, std::size_t>>;
 
-/// Opposite halfedge of each halfedge of a manifold soup; no_index on the border.
+/// For each halfedge of a manifold soup: its opposite halfedge; no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
+/// Distances within which points are merged.
 struct MergeDistances {
-    double distance;  ///< in the mesh's unit
+    double distance;  ///< points closer than this are merged; in the mesh's unit
     double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
 };
-/// `crack`: receives the width of cracks along the edges, 0 if there are none.
+/// Merges points on open borders. `crack` receives the width of cracks along the edges; 0 if there are none.
 Counts merge_points(RepairSoup& work, const MergeDistances& limits, double& crack);
-/// Width of cracks if nine in ten border vertices have a mate closer than half of their shortest edge; else 0.
+/// Width of cracks in the surface if nine in ten border vertices have a mate closer than half of the shortest edge at the vertex;
+/// else 0.
 double crack_width(const TriangleSoup& soup);
-/// Inserts border vertices into triangle edges on which they lie within the tolerance (T-junctions).
+/// Inserts border vertices into triangle edges on which the vertices lie within the tolerance (T-junctions).
 Counts sew_junctions(RepairSoup& work, double tolerance);
-Counts drop_invalid_triangles(RepairSoup& work);
-Counts orient_patches(RepairSoup& work);
+Counts drop_invalid_triangles(RepairSoup& work);  ///< triangles with a repeated corner, and duplicates
+Counts orient_patches(RepairSoup& work);          ///< orients triangles consistently across manifold edges
 /// Joins triangles at edges in pairs and gives each fan of triangles its own vertex.
 Counts separate_nonmanifold(RepairSoup& work);
+/// Drops components with a smaller fraction of the area, or all but the largest component.
 Counts drop_components(RepairSoup& work, bool only_largest, double smallest_share);
-Counts flip_degenerate(RepairSoup& work);
-Counts orient_outwards(RepairSoup& work);
+Counts flip_degenerate(RepairSoup& work);  ///< removes degenerate triangles by edge flips
+Counts orient_outwards(RepairSoup& work);  ///< orients closed components outwards, except cavities
 
+/// Which holes are filled.
 struct HoleLimits {
-    std::size_t edges;
-    double share;       ///< maximum width, as a fraction of the component's diagonal
-    bool only_touched;  ///< only holes created by cutting out triangles
+    std::size_t edges;  ///< maximum number of border edges
+    double share;       ///< maximum width of a hole, as a fraction of the component's diagonal
+    bool only_touched;  ///< true: fill only holes created by cutting out triangles
 };
 Counts fill_holes(RepairSoup& work, const HoleLimits& limits);
 

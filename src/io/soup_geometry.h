@@ -20,20 +20,23 @@ inline double sixfold_volume(const TriangleSoup& soup, const std::array<Index, 3
     return CGAL::cross_product(point(soup, t[0]) - apex, point(soup, t[1]) - apex) * (point(soup, t[2]) - apex);
 }
 
-/// Whether the corners of a triangle are exactly collinear or coincide.
+/// True if the corners of a triangle are exactly collinear or coincide.
 bool has_no_area(const TriangleSoup& soup, const std::array<Index, 3>& t);
-/// 1 for each triangle with `has_no_area`.
+/// For each triangle: 1 if `has_no_area`, else 0.
 std::vector<std::uint8_t> triangles_without_area(const TriangleSoup& soup);
 
 /// Bounding box of the vertices with triangles.
 CGAL::Bbox_3 box_of_triangles(const TriangleSoup& soup);
-double diagonal(const CGAL::Bbox_3& box);
+double diagonal(const CGAL::Bbox_3& box);  ///< length of the diagonal
 
+/// Finds intersecting pairs of triangles. `place`: for each vertex, the first vertex with the same position; `without_area`: for
+/// each triangle, 1 if it is ignored.
 SelfIntersections self_intersections(const TriangleSoup& soup, const std::vector<Index>& place,
                                      const std::vector<std::uint8_t>& without_area, std::size_t limit);
 
-/// For each of the closed components listed in `inner`, whether it lies completely inside another closed component: tested by a
-/// ray from one of its triangles; their boxes must be nested. `closed`: for each component, whether it is closed.
+/// For each closed component listed in `inner`: 1 if the component lies completely inside another closed component. Components
+/// with nested bounding boxes are tested by a ray from one triangle. `closed`: for each component, true if the component is
+/// closed.
 std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
                                               const std::vector<bool>& closed, const std::vector<Index>& inner);
 

@@ -24,40 +24,42 @@ public:
     bool next_line();
     /// Skips blanks, comments and line ends; false at the end of the text.
     bool skip_space();
-    /// True if there are no more words on this line.
+    /// True if there are no more words on the current line.
     bool line_done() {
         skip_blanks();
         return position_ == end_ || *position_ == '\n' || (comment_ != 0 && *position_ == comment_);
     }
-    /// The next word of this line; empty if there is none.
+    /// Reads the next word of the current line; empty if there is none.
     std::string_view word();
-    /// The remaining text of this line up to its end or a comment, without trailing blanks.
+    /// The remaining text of the current line up to the line's end or a comment, without trailing blanks.
     std::string_view rest_of_line();
 
-    /// The next word of this line as a number. Throws Error if it is missing, malformed, too large for a double, infinite or
-    /// NaN.
+    /// Reads the next word of the current line as a number. Throws Error if the word is missing, malformed, too large for a
+    /// double, infinite or NaN; `quantity` names the expected number in the message.
     double finite(const char* quantity);
-    /// As above, but accepts infinities and NaN (colours are checked by their reader).
+    /// Reads the next word of the current line as a number that may be infinite or NaN (for colours, which their reader checks).
     double number(const char* quantity);
-    /// The next word of this line as a 64-bit integer.
+    /// Reads the next word of the current line as a 64-bit integer.
     std::int64_t integer(const char* quantity);
-    /// An integer at the current position; blanks before it are not skipped, and any character may follow.
+    /// Reads an integer at the current position; blanks before the integer are not skipped, and any character may follow the
+    /// integer.
     std::int64_t integer_part(const char* quantity);
-    /// Consumes the next character if it is `c`.
+    /// Consumes the next character if it is `c`, and returns true if so.
     bool take(char c) {
         if (position_ == end_ || *position_ != c) return false;
         ++position_;
         return true;
     }
-    /// True if the current position is a digit or a sign.
+    /// True if a digit or a sign is at the current position.
     [[nodiscard]] bool at_integer() const {
         return position_ != end_ && ((*position_ >= '0' && *position_ <= '9') || *position_ == '-' || *position_ == '+');
     }
-    /// True if a word ends here.
+    /// True if a word ends at the current position.
     [[nodiscard]] bool at_word_end() const { return position_ == end_ || is_blank(*position_) || *position_ == '\n'; }
 
     [[nodiscard]] const char* position() const { return position_; }
     void set_position(const char* position) { position_ = position; }
+    /// Number of bytes left.
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
     [[nodiscard]] const std::string& file() const { return file_; }
 

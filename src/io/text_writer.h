@@ -9,6 +9,7 @@
 
 namespace ostraka::io {
 
+/// Collects text or bytes and writes them in blocks to an atomic file.
 class TextWriter {
 public:
     explicit TextWriter(const Path& file) : file_(file) { buffer_.reserve(block + 512); }
@@ -18,13 +19,14 @@ public:
         flush_if_full();
     }
     void character(char c) { buffer_.push_back(c); }
-    /// Shortest digits that read back to the same number.
+    /// Writes a number with the shortest digits that read back to the same number.
     template <class T>
     void number(T value) {
         char digits[32];
         const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
         buffer_.append(digits, end);
     }
+    /// Writes numbers, each with a blank in front.
     template <class T>
     void numbers(std::initializer_list<T> values) {
         for (const T value : values) {
@@ -32,7 +34,7 @@ public:
             number(value);
         }
     }
-    /// The bytes of a value; the machine is little-endian (checked in core/mesh.cpp).
+    /// Writes the bytes of a value; the machine is little-endian (checked at compile time).
     template <class T>
     void bytes(const T& value) {
         buffer_.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -60,7 +62,7 @@ private:
     std::string buffer_;
 };
 
-/// A comment as one line of printable characters.
+/// A comment as one line: control characters become blanks.
 inline std::string one_line(std::string_view comment) {
     std::string line(comment);
     for (char& c : line)

@@ -9,33 +9,36 @@
 
 namespace ostraka::detail {
 
-/// Triangles are sorted along a space-filling (Morton) curve; four consecutive ones form a leaf, four nodes form a node of the
-/// next level. Boxes have single precision in coordinates scaled to the object's box and are rounded outwards, so that no
-/// overlap is missed. Construction takes linear time in the number of triangles. The soup must outlive the tree.
+/// A tree of bounding boxes. Triangles are sorted along a space-filling (Morton) curve; four consecutive triangles form a leaf,
+/// and four consecutive nodes form a node of the next level. Boxes have single precision in coordinates scaled to the object's
+/// box and are rounded outwards, so that no overlap is missed. Construction takes linear time in the number of triangles. The
+/// soup must outlive the tree.
 class TriangleTree {
 public:
     explicit TriangleTree(const TriangleSoup& soup) : TriangleTree(soup, {}) {}
-    /// `groups`: group of each triangle; `left_out` excludes a triangle from the tree; triangles of the same non-zero group are
-    /// not reported as pairs. Triangles of a group are stored consecutively, so that branches within one group are skipped.
+    /// `groups`: for each triangle the number of its group, or `left_out` to exclude the triangle from the tree (empty: no
+    /// groups). Triangles of the same non-zero group are not reported as pairs. Triangles of a group are stored consecutively, so
+    /// that branches within one group are skipped.
     TriangleTree(const TriangleSoup& soup, std::vector<Index> groups);
-    static constexpr Index left_out = no_index;
+    static constexpr Index left_out = no_index;  ///< group number of triangles that are not in the tree
 
-    static constexpr Index fan = 4;
+    static constexpr Index fan = 4;  ///< number of children of a node
+    /// Number of leaves.
     [[nodiscard]] Index leaf_count() const { return levels_.empty() ? 0 : static_cast<Index>(levels_.front().size()); }
 
-    /// Calls visit(a, b) for each pair of triangles with overlapping boxes where `a` lies in the given leaf and `b` comes later
-    /// on the curve, always in the same order. Stops when `visit` returns false or after about `max_boxes` comparisons of boxes.
-    /// Over all leaves, each pair is visited once. Returns the number of comparisons.
+    /// Calls visit(a, b) for each pair of triangles with overlapping boxes where `a` lies in the given leaf and `b` comes after
+    /// `a` on the curve; the order of the calls is always the same. Stops when `visit` returns false or after about `max_boxes`
+    /// comparisons of boxes. Over all leaves, each pair is visited once. Returns the number of comparisons.
     std::size_t pairs_of_leaf(Index leaf, std::size_t max_boxes, const std::function<bool(Index, Index)>& visit) const;
 
     /// Calls visit(t) for each triangle whose box intersects the segment; stops after about `max_boxes` boxes.
     void along_segment(const Point& from, const Point& to, std::size_t max_boxes, const std::function<void(Index)>& visit) const;
 
     struct Nearest {
-        Index triangle = no_index;
-        double squared_distance = 0;
+        Index triangle = no_index;    ///< index of the triangle
+        double squared_distance = 0;  ///< squared distance of the query point from the triangle
     };
-    /// The triangle nearest to the point (for equal distances, the lowest index); no_index if there are no triangles.
+    /// The triangle closest to the point (at equal distances, the smallest index); no_index if there are no triangles.
     [[nodiscard]] Nearest nearest(const Point& query) const;
 
 private:
@@ -50,13 +53,14 @@ private:
     void group_nodes();
 
     const TriangleSoup& soup_;
-    std::array<double, 3> corner_{};  ///< lower corner of the object's box
-    double scale_ = 1;                ///< 1 / longest side of the object's box
-    std::vector<Index> order_;        ///< triangles in the order of the curve
-    std::vector<Box> boxes_;          ///< boxes of the triangles in that order
-    std::vector<std::vector<Box>> levels_;
-    std::vector<Index> groups_;                     ///< per triangle, or empty
-    std::vector<std::vector<Index>> level_groups_;  ///< per node: the common group of its triangles, else 0
+    std::array<double, 3> corner_{};        ///< lower corner of the object's box
+    double scale_ = 1;                      ///< 1 / longest side of the object's box
+    std::vector<Index> order_;              ///< indices of the triangles in the order of the curve
+    std::vector<Box> boxes_;                ///< boxes of the triangles in the order of the curve
+    std::vector<std::vector<Box>> levels_;  ///< boxes of the nodes, level by level, leaves first
+    std::vector<Index> groups_;             ///< per triangle: number of its group; empty: no groups
+    /// Per level and node: group of all triangles of the node; 0 if they have no common group.
+    std::vector<std::vector<Index>> level_groups_;
 };
 
 /// Squared distance from a point to a triangle, which may be degenerate.

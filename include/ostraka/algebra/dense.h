@@ -10,7 +10,7 @@ namespace ostraka {
 
 template <int N>
 class SymmetricEigen;
-/// Eigenvalues (ascending) and vectors of A x = lambda B x, A symmetric, B symmetric and positive definite.
+/// Eigenvalues (ascending) and eigenvectors of A x = lambda B x, for a symmetric A and a symmetric, positive definite B.
 SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix; only its lower triangle is read. N: 2, 3 or
@@ -20,9 +20,11 @@ class SymmetricEigen {
 public:
     using Matrix = Eigen::Matrix<double, N, N>;
     using Vector = Eigen::Matrix<double, N, 1>;
+    /// Computes the decomposition at once.
     explicit SymmetricEigen(const Matrix& symmetric);
 
-    [[nodiscard]] const Vector& eigenvalues() const { return values_; }
+    [[nodiscard]] const Vector& eigenvalues() const { return values_; }  ///< ascending
+    /// Unit columns, in the order of the eigenvalues.
     [[nodiscard]] const Matrix& eigenvectors() const { return vectors_; }
     /// False if the iteration did not converge, for example because an entry is not finite.
     [[nodiscard]] bool found() const { return found_; }
@@ -42,7 +44,7 @@ SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric);
 extern template class SymmetricEigen<3>;
 extern template class SymmetricEigen<Eigen::Dynamic>;
 
-/// The eigenvalues only, ascending.
+/// The three eigenvalues of a symmetric 3 x 3 matrix, ascending.
 Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric);
 
 /// Singular value decomposition (Jacobi) of a 3 x 3 matrix: U diag(s) V^T, singular values descending.
@@ -66,7 +68,7 @@ private:
 /// The singular values of a 2 x 2 matrix, descending.
 Eigen::Vector2d singular_values(const Eigen::Matrix2d& matrix);
 
-/// Singular value decomposition (Jacobi) of any matrix; U thin, V thin or full.
+/// Singular value decomposition (Jacobi) of any matrix, with the thin U; V is thin or, with `full_v`, full.
 class SvdX {
 public:
     explicit SvdX(const Eigen::MatrixXd& matrix, bool full_v = false);
@@ -81,8 +83,8 @@ private:
     Eigen::VectorXd values_;
 };
 
-/// The rotation by the smallest angle that maps the direction of `from` to the direction of `to` (non-zero vectors). For
-/// opposite directions: a half turn about an axis perpendicular to them.
+/// The rotation by the smallest angle that maps the direction of `from` to the direction of `to` (non-zero vectors). Opposite
+/// directions give a half turn about an axis perpendicular to both.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Solves A x = b for a symmetric, positive or negative semidefinite A by LDL^T. N: 3, 4, 6 or Eigen::Dynamic.
@@ -93,8 +95,8 @@ extern template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&
 extern template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
 extern template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
 
-/// The minimiser x of |A x - b| with the smallest norm, by a complete orthogonal decomposition. `threshold`: pivots below this
-/// fraction of the largest pivot count as zero; 0: Eigen's default.
+/// Least-squares solution x of A x = b with the smallest norm, by a complete orthogonal decomposition. `threshold`: pivots below
+/// this fraction of the largest pivot count as zero; 0: Eigen's default.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold = 0);
 
 /// The X that minimises |A X - B| for an A of full rank with more rows than columns (Householder).
@@ -109,7 +111,7 @@ public:
     Cholesky(Cholesky&&) noexcept;
     Cholesky& operator=(Cholesky&&) noexcept;
 
-    void compute(const Eigen::MatrixXd& a);
+    void compute(const Eigen::MatrixXd& a);  ///< factorises `a`
     /// False if the matrix is not positive definite.
     [[nodiscard]] bool found() const;
     /// Estimate of the reciprocal condition number.

@@ -15,7 +15,7 @@ public:
 
     /// False if a pivot is zero.
     [[nodiscard]] bool found() const;
-    /// b, solution: one row per row of the matrix, one column per right-hand side.
+    /// Solves A x = b. The arguments and the solution have one row per row of the matrix and one column per right-hand side.
     [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
 private:

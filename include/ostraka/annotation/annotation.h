@@ -12,41 +12,48 @@
 
 namespace ostraka {
 
-/// A measure and the pins (picked vertices) that define it (Appendix B.1).
+/// A measure with the pins (picked vertices) that define the measure (Appendix B.1).
 struct Measure {
-    std::string tool;                     ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;            ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
-    std::vector<SurfacePoint> locations;  ///< empty, or the exact place of the pin for each of `points`, in a face
+    std::string tool;           ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;  ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
+    /// For each entry of `points`: exact position of the pin, inside a face; empty: the pins are at the vertices.
+    std::vector<SurfacePoint> locations;
     std::optional<std::array<double, 3>> direction;  ///< direction of a bounding measure
-    std::optional<double> value;                     ///< in `unit`; the mean over the repeated pickings
-    std::string unit;
+    /// Measured value in `unit` (mean over the repeated pickings); none if not yet computed.
+    std::optional<double> value;
+    std::string unit;    ///< unit of `value`
     bool stale = false;  ///< true: the mesh or the pins changed and the value was not recomputed
-    bool exact = false;  ///< a tape: along the geodesic across faces ("geodesic": "exact") instead of along edges
-    std::vector<std::vector<Index>> repeats = {};      ///< repeated pickings, each as many vertices as `points`
-    std::optional<double> uncertainty = std::nullopt;  ///< standard deviation of the value, in `unit`
+    /// Tape only: true if the tape follows the exact geodesic across faces ("geodesic": "exact"), false if it follows edges.
+    bool exact = false;
+    /// Repeated pickings of the pins, each with one vertex per entry of `points`.
+    std::vector<std::vector<Index>> repeats = {};
+    /// Standard deviation of `value` over the pickings, in `unit`; none if unknown.
+    std::optional<double> uncertainty = std::nullopt;
     bool operator==(const Measure&) const = default;
 };
 
 /// A quantity that is not a measure: area, curvature map, thickness ...
 struct Descriptor {
-    std::vector<double> values;
-    bool is_list = false;  ///< written as a list, even if it has one value
-    std::string file;      ///< instead of values: map (array: .npy, .txt) or axis (.json), relative to the annotation file
-    std::string unit;
-    bool stale = false;
-    std::string sha256 = {};  ///< checksum of the contents of `file`; empty: unknown
+    std::vector<double> values;  ///< the numbers; empty if `file` is given
+    bool is_list = false;        ///< true: `values` is written as a list even if there is only one value
+    std::string file;            ///< instead of values: map (array: .npy, .txt) or axis (.json), relative to the annotation file
+    std::string unit;            ///< unit of `values`
+    bool stale = false;          ///< true: the mesh or the annotation changed and the values were not recomputed
+    std::string sha256 = {};     ///< checksum of the contents of `file`; empty: unknown
     bool operator==(const Descriptor&) const = default;
 };
 
+/// How the value of an attribute is given.
 enum class AttributeType { semantic, measure, descriptor };
 
+/// A named attribute of an annotation.
 struct Attribute {
-    int id = 0;
-    std::string name;
+    int id = 0;        ///< unique among the attributes of the annotation
+    std::string name;  ///< name of the attribute
     AttributeType type = AttributeType::semantic;
-    std::string note;       ///< text of a semantic attribute
-    Measure measure;        ///< for a measure
-    Descriptor descriptor;  ///< for a descriptor
+    std::string note;       ///< text of a semantic attribute; empty for the other types
+    Measure measure;        ///< used if `type` is measure
+    Descriptor descriptor;  ///< used if `type` is descriptor
     std::string origin{};   ///< derivation of an inferred semantic attribute, e.g. the rule and its inputs
 };
 
@@ -54,7 +61,7 @@ struct Attribute {
 struct Information {
     enum class Kind { text, image, link, file } kind = Kind::text;
     std::string value;   ///< the text, or the location of the image, link or file: URL or path relative to the annotation file
-    std::string title;   ///< title for display; may be empty
+    std::string title;   ///< title for display; may be left empty
     std::string sha256;  ///< checksum of the contents of a local image or file; empty: unknown
     bool operator==(const Information&) const = default;
     /// True for an image or a file whose location is not a URL.
@@ -62,32 +69,37 @@ struct Information {
 };
 std::string to_string(Information::Kind kind);
 
+/// What an annotation selects on the mesh.
 enum class AnnotationType { point, line, region };
 
-/// The colour of annotations that distinguish no part: the whole object.
+/// Colour (grey) of annotations that cover the whole object and thus distinguish no part.
 inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 
 /// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used.
 /// A free annotation has its own curves, which need not follow the edges; its selection then holds the elements nearest to the
 /// curves (curves.h).
 struct Annotation {
-    int id = 0;
-    std::string tag;
+    int id = 0;                                  ///< unique among the annotations of the set
+    std::string tag;                             ///< name of the annotated part
     std::array<int, 3> colour = neutral_colour;  ///< red, green, blue, 0 to 255
     AnnotationType type = AnnotationType::region;
-    std::vector<Index> points;                  ///< vertices, in the order given
-    std::vector<std::vector<Index>> polylines;  ///< consecutive vertices connected by edges; closed if first = last
-    std::vector<Index> faces;                   ///< faces of the region, ascending, without repeats
-    /// Curves of a free annotation, made of stored points (stored_point); consecutive ones lie in a common face. Region:
-    /// outlines with the interior to the left, closed (the first point is repeated) or from border to border. Line: poly-lines,
-    /// closed if first = last. Point: one point each.
+    std::vector<Index> points;  ///< point annotation: vertices, in the order given
+    /// Line annotation: vertices of each poly-line, consecutive ones connected by an edge; closed if the first vertex is repeated
+    /// at the end.
+    std::vector<std::vector<Index>> polylines;
+    std::vector<Index> faces;  ///< region: indices of its faces, ascending, without repeats
+    /// Curves of a free annotation, each a list of stored points (stored_point); consecutive points lie in a common face. Curves
+    /// of a region are outlines with the interior to the left, closed (the first point is repeated) or from border to border of
+    /// the mesh. Curves of a line are poly-lines, closed if the first point is repeated. Curves of a point annotation have one
+    /// point each.
     std::vector<std::vector<SurfacePoint>> curves;
-    bool all = false;  ///< the region is the whole mesh: `faces` lists every face
-    std::vector<Attribute> attributes;
-    std::vector<Information> information;
-    std::string note;  ///< changes that a transfer or a simplification made to the annotation, if any
+    bool all = false;                      ///< true: the region is the whole mesh, and `faces` lists every face
+    std::vector<Attribute> attributes;     ///< semantic attributes, measures and descriptors of the annotation
+    std::vector<Information> information;  ///< texts, links and files attached to the annotation
+    std::string note;                      ///< changes that a transfer or a simplification made to the annotation, if any
 };
 
+/// All annotations of one mesh.
 struct AnnotationSet {
     AnnotationSet() = default;
     AnnotationSet(const AnnotationSet& other);
@@ -95,14 +107,14 @@ struct AnnotationSet {
     AnnotationSet(AnnotationSet&&) = default;
     AnnotationSet& operator=(AnnotationSet&&) = default;
 
-    std::string object_class;  ///< "class" in the file
-    std::string unit;
-    std::optional<std::array<double, 3>> up;
-    std::vector<Annotation> annotations;
-    Json provenance;                 ///< as read; null if none
-    std::vector<std::string> notes;  ///< remarks by the reader or by functions that adapted the set to a changed mesh
+    std::string object_class;                 ///< class of the object ("class" in the file); empty if unknown
+    std::string unit;                         ///< unit of the mesh's coordinates; empty if unknown
+    std::optional<std::array<double, 3>> up;  ///< upward direction of the object; none if unknown
+    std::vector<Annotation> annotations;      ///< in the order of the file
+    Json provenance;                          ///< provenance as read from the file; null if the file has none
+    std::vector<std::string> notes;           ///< remarks by the reader or by functions that adapted the set to a changed mesh
 
-    [[nodiscard]] const Annotation* find(int id) const;
+    [[nodiscard]] const Annotation* find(int id) const;  ///< the annotation with this id; null if there is none
     [[nodiscard]] Annotation* find(int id);
 };
 
@@ -110,30 +122,31 @@ std::string to_string(AnnotationType type);
 /// The annotation as named in messages: "annotation 3 ('spout')".
 std::string name_of(const Annotation& annotation);
 
-/// The annotation of the whole object: a region with `all`. If there is none, it is inserted as the first annotation, with the
-/// class as its tag ("object" if the class is unknown) and a free id. It holds the attributes of the object itself (total
-/// height, site of excavation ...).
+/// The annotation of the whole object: a region with `all`. If the set has no such annotation, one is inserted as the first
+/// annotation, with the class as its tag ("object" if the class is unknown) and a free id. The attributes of this annotation are
+/// the attributes of the object itself (total height, site of excavation and so on).
 Annotation& ensure_root(AnnotationSet& set, const Mesh& mesh);
 
-/// An unused id: one more than the largest, 0 for an empty set.
+/// An annotation id that the set does not use: one more than the largest id, or 0 for an empty set.
 int free_id(const AnnotationSet& set);
 
 /// The vertices of an annotation, ascending, without repeats: its points, the vertices of its poly-lines or the corners of its
 /// faces.
 std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotation);
 
-/// The vertices of a measure: its points and those of its repeats.
+/// The vertices that a measure refers to: its pins, and the pins of its repeated pickings.
 std::vector<Index> pins_of(const Measure& measure);
 
-/// The common part of measures and descriptors; empty for a semantic attribute.
+/// Values of a measure or descriptor attribute; empty for a semantic attribute.
 struct Figures {
-    std::vector<double> values;  ///< at most one for a measure
-    std::string unit;
-    bool stale = false;
+    std::vector<double> values;  ///< values of the attribute; a measure has at most one
+    std::string unit;            ///< unit of `values`
+    bool stale = false;          ///< true: the mesh or the pins changed and the values were not recomputed
 };
+/// The numbers of a measure or descriptor attribute.
 Figures figures_of(const Attribute& attribute);
 
-/// For each face of the mesh, whether it belongs to the region.
+/// For each face of the mesh: true if the face is listed in `faces`.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);
 /// Total area of the faces, added up in the given order.
 double area_of(const Mesh& mesh, const std::vector<Index>& faces);

@@ -8,41 +8,56 @@
 
 namespace ostraka {
 
+/// Options of `read_annotations`.
 struct ReadAnnotationsOptions {
-    bool force_mesh = false;  ///< accept a file made for another mesh; indices and edges are still checked
+    bool force_mesh = false;  ///< true: accept a file made for another mesh; indices and edges are still checked
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// Reads the annotations of `mesh` from our files, the thesis's files (no format and no mesh member) or, as far as possible and
-/// with notes, the prototype's files (.ant). Checks the schema, indices, edges, ids, and whether the file was made for this
-/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Linear in the size of the file and the
-/// selections.
+/// Reads the annotations of `mesh` from a file of ours, of the thesis (no format and no mesh member) or of the prototype (.ant;
+/// notes report what could not be converted). Checks the schema, indices, edges, ids, and whether the file was made for this
+/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Linear in the size of the file and the selections.
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options = {});
 
-/// The same for a document in memory; `where` is its name in error messages.
+/// Reads the annotations of `mesh` from a JSON document in memory; `where` names the document in error messages.
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options = {});
 
+<<<<<<< ours
 /// Writes the annotations atomically; the same object, name and provenance give the same bytes. Only the file name of `mesh_file`
 /// is stored, not its folder. Throws Error if a selection does not fit the mesh.
 void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
+||||||| base
+/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. Only the file name of `mesh_file` is
+/// stored, not its folder. Throws Error if a selection does not fit the mesh.
+void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
+                       const Provenance& provenance);
+Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
+=======
+/// Writes an annotation file atomically; the same set, mesh, mesh file name and provenance give the same bytes. Only the file
+/// name of `mesh_file` is stored, not its folder. Throws Error if a selection does not fit the mesh.
+void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
+                       const Provenance& provenance);
+/// The document that `write_annotations` writes.
+Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
+>>>>>>> theirs
 
-/// Reads a list of attributes, which recipes contain as well. `list` must have been validated against a schema; pins are not
+/// Reads a list of attributes from an annotation file or a recipe. `list` must have been validated against a schema; pins are not
 /// checked. `pointer`: JSON pointer of the list in the document.
 std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::string& where, const std::string& pointer);
 
-/// Applies the checks of the reader to a set in memory: ids, colours, indices, edges, pins. Throws Error (input) whose message
-/// begins with `where`.
+/// Checks a set in memory as `read_annotations` checks a file: ids, colours, indices, edges, pins. Throws Error (input) whose
+/// message begins with `where`.
 void check_annotations(AnnotatedMeshView object, const std::string& where);
 
 /// Reads the `information` of an annotation file. Throws Error (input) if anything other than a local file has a checksum.
 std::vector<Information> information_from_json(const JsonValue::ConstArray& list, const std::string& where,
                                                const std::string& pointer);
 
-/// Checks the local files that annotations and their attributes refer to, relative to `folder`. Defects: a file is missing,
-/// lies outside the folder or does not match its checksum. Remarks: the checksum is unknown. The array (.npy) of an attribute
+/// Checks the local files that annotations and their attributes refer to, relative to `folder`. Defects: a file is missing, lies
+/// outside the folder or does not match its checksum. Remark: the checksum of a file is unknown. The array (.npy) of an attribute
 /// must have one number per vertex or per face of `mesh`; an axis file (.json) must contain an axis.
 std::vector<Finding> check_files(AnnotatedMeshView object, const Path& folder);
 

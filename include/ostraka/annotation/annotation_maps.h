@@ -8,47 +8,53 @@
 
 namespace ostraka {
 
-/// Names of the maps. Each map holds, per element, the number of a set of annotation ids in the table. 0 is the empty set and
-/// the value of elements added by an edit. Faces store regions, edges store poly-lines, vertices store points.
+/// Names of the property maps. Each map holds, per element, the index of a set of annotation ids in the AnnotationTable. Index 0
+/// is the empty set, which elements added by an edit have as well. Faces store regions, edges store poly-lines, vertices store
+/// points.
 inline constexpr const char* vertex_annotations = "v:annotations";
 inline constexpr const char* edge_annotations = "e:annotations";
 inline constexpr const char* face_annotations = "f:annotations";
-/// Per face, the regions whose free outlines cut it. Such a face counts as inside a region if most of its area is inside.
+/// Map that gives, per face, the regions whose free outlines cut the face. A face cut by free outlines counts as inside a region
+/// if most of the face's area is inside.
 inline constexpr const char* face_cuts = "f:annotation-cuts";
 
 /// The distinct sets of annotation ids, and the data that cannot be recovered from an edited mesh.
 class AnnotationTable {
 public:
     AnnotationTable();
-    /// The number of a set; `ids` must be ascending without repeats.
+    /// The index of this set of ids, which is added if it is new; `ids` must be ascending without repeats.
     std::uint32_t intern(const std::vector<int>& ids);
+    /// The annotation ids in set number `set`.
     [[nodiscard]] const std::vector<int>& ids(std::uint32_t set) const { return sets_.at(set); }
+    /// True if set number `set` contains the annotation id.
     [[nodiscard]] bool contains(std::uint32_t set, int id) const;
-    [[nodiscard]] std::size_t size() const { return sets_.size(); }
+    [[nodiscard]] std::size_t size() const { return sets_.size(); }  ///< number of distinct sets
 
-    std::map<int, std::vector<Outline>> outlines;  ///< outlines of each region at the time of attaching, by annotation id
+    /// Annotation id -> outlines of the region when it was attached.
+    std::map<int, std::vector<Outline>> outlines;
 
 private:
     std::vector<std::vector<int>> sets_;
     std::map<std::vector<int>, std::uint32_t> numbers_;
 };
 
-/// Writes the set into the maps of `mesh`, which are created if missing and overwritten otherwise. An edit that splits a face
-/// or an edge copies its number to the parts; an edge between two faces with different numbers lies on an outline. Linear in
-/// the size of the mesh and the selections.
+/// Writes the annotations into the property maps of `mesh`; existing maps are overwritten. An edit that splits a face or an edge
+/// copies the index of its set to the parts; an edge between two faces with different sets lies on an outline. Linear in the size
+/// of the mesh and the selections.
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 
-/// Reads the annotations back from an edited mesh without garbage. `before`: the attached set, which provides tags, colours and
-/// attributes. `vertex_map`: for each vertex of the mesh before the edits, its vertex now (no_index: removed). Regions are read
-/// from the faces. Points and poly-lines follow the vertex map and keep their order; with an empty map they are read from the
-/// vertices and edges in index order, and pins keep their indices. Consecutive poly-line vertices that coincide after the edits
-/// are merged; a segment that was split is followed along the edges that carry the annotation. A region without remaining faces
-/// becomes a line or a point and keeps its tag; `note` reports it. Free annotations lose their curves; `project_curves`
-/// recomputes them. Values of measures and descriptors are marked stale; `refresh_measures` recomputes them.
+/// Reads the annotations back from the property maps of an edited mesh, which must be free of garbage (collect_garbage).
+/// `before`: the attached set, which provides tags, colours and attributes. `vertex_map`: for each vertex of the mesh before the
+/// edits, the index of the same vertex after them (no_index: removed). Regions are read from the faces. Points and poly-lines
+/// follow the vertex map and keep their order; with an empty `vertex_map`, points and poly-lines are read from the vertices and
+/// edges in index order, and pins keep their indices. Consecutive poly-line vertices that coincide after the edits are merged; a
+/// segment that was split is followed along the edges that carry the annotation. A region without remaining faces becomes a line
+/// or a point and keeps its tag; the annotation's `note` reports the change. Free annotations lose their curves, which
+/// `project_curves` recomputes. Values of measures and descriptors are marked stale; `refresh_measures` recomputes the values.
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map = {});
 
-/// Removes the maps.
+/// Removes the annotation maps from the mesh.
 void detach_annotations(Mesh& mesh);
 
 /// Maps the pins of an annotation's measures by `vertex_map` (empty: unchanged) to a mesh of `vertex_count` vertices and marks

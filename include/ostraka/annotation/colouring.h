@@ -9,23 +9,23 @@ namespace ostraka {
 /// Colour `index` of a muted palette (render: category_colour); the first nine can be distinguished by colour-blind readers.
 std::array<int, 3> distinct_colour(std::size_t index);
 
-/// Whether the region covers the whole mesh or at least 95 % of its faces.
+/// True if the region covers the whole mesh or at least 95 % of its faces.
 bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 
 /// A colour for an annotation about to be added to the set: neutral if it covers nearly all of the mesh, else the first colour
 /// of the palette not used in the set.
 std::array<int, 3> fresh_colour(AnnotatedMeshView object, const Annotation& joining);
 
-/// Assigns colours to the regions of a set without common faces: distinct colours as long as the palette lasts, different hues
-/// for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
+/// Assigns colours to the regions of a set; no two of these regions may share a face. Result: distinct colours as long as the
+/// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
 void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
-/// The regions of a set, by descending area; for equal areas, the later one in the set first. Painting them in this order
-/// leaves the smallest (then the earliest) region on top.
+/// The regions of a set, by descending area; of regions of equal area, the later region in the set comes first. Painting the
+/// regions in this order leaves the smallest (then the earliest) region on top.
 std::vector<const Annotation*> regions_largest_first(AnnotatedMeshView object);
 
-/// Colours each face by the smallest region that covers it (grey: none), each vertex likewise, and then the vertices of
-/// poly-lines and points by their annotation. Linear in the size of the mesh and the selections.
+/// Colours each face and each vertex by the smallest region that covers it (grey: none), and the vertices of line and point
+/// annotations by the colour of their annotation. Linear in the size of the mesh and the selections.
 MeshExtras colour_by_annotation(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -8,22 +8,23 @@
 
 namespace ostraka {
 
-/// A stretch of curve between junctions, or a loop without junctions, which repeats its first place.
+/// A stretch of a curve between two junctions, or a whole closed curve without junctions.
 struct CurveStrand {
-    std::vector<SurfacePoint> places;  ///< in the same order for all curves that share the strand
-    bool closed = false;
+    /// Places along the strand; a closed strand repeats its first place at the end.
+    std::vector<SurfacePoint> places;
+    bool closed = false;  ///< true: a loop without junctions
 };
 
-/// A strand as part of a curve.
+/// Reference to a strand from a curve that contains the strand.
 struct StrandUse {
-    std::size_t strand;
-    bool backwards;
+    std::size_t strand;  ///< index of the strand
+    bool backwards;      ///< true: the curve follows the strand in reverse order
 };
 
 /// Splits the curves of the chosen annotations at junctions: places whose number of neighbours is not two, ends of curves, and
-/// vertices at the border of the mesh. Equal stretches become one strand, regardless of direction. Appends the strands to
-/// `strands` and returns, by annotation and curve, the sequence of its strands; empty for annotations that are not chosen and
-/// for curves of one place. O(k log k) for k places.
+/// vertices at the border of the mesh. Equal stretches of several curves become one strand, even if their directions are
+/// opposite. Appends the strands to `strands`. Returns for each annotation and each of its curves the sequence of strands; the
+/// sequence is empty for annotations that are not chosen and for curves of one place. O(k log k) for k places.
 std::vector<std::vector<std::vector<StrandUse>>> separate_nonmanifold(
     const Mesh& mesh, const std::vector<std::vector<std::vector<SurfacePoint>>>& curves, const std::vector<bool>& chosen,
     std::vector<CurveStrand>& strands);

@@ -10,18 +10,18 @@
 
 namespace ostraka {
 
-/// Whether the annotation has its own curves.
+/// True if the annotation is free: it has its own curves, which need not follow edges.
 inline bool is_free(const Annotation& annotation) { return !annotation.curves.empty(); }
-bool any_free(const AnnotationSet& set);
+bool any_free(const AnnotationSet& set);  ///< true if at least one annotation is free
 
-/// The curve through vertices; a closed one repeats its first point.
+/// The curve through the vertices of `path`; a closed curve repeats its first point.
 std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path, bool closed = false);
 
-/// The curves of a free annotation with the faces of their pieces. Throws Error (input), naming the annotation, if they do not
-/// fit the mesh.
+/// The curves of a free annotation, with the face in which each straight piece lies. Throws Error (input), naming the annotation,
+/// if the curves do not fit the mesh.
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation);
 
-/// For each face, whether it is inside, outside or partly inside a free region.
+/// Classifies each face of the mesh as inside, outside or partly inside a free region.
 CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation);
 
 /// Computes the elements of a free annotation nearest to its curves. Region: faces with at least half of their area inside, and
@@ -29,18 +29,20 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation);
 /// (input) as `curves_on` does, and if outlines contradict each other.
 void settle_elements(const Mesh& mesh, Annotation& annotation);
 
-/// Area and perimeter of a region; for a free region, computed from its curves.
+/// Area and perimeter of a region; those of a free region are computed from its curves.
 RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation);
-/// Area of a region; 0 for other types.
+/// Area of a region; 0 for points and lines.
 double area_of(const Mesh& mesh, const Annotation& annotation);
 
-/// The faces of a region, ascending, each with the fraction of its area inside: 1, or less if a free outline cuts the face.
+/// The faces of a region, ascending, each with the fraction of its area that lies inside the region: 1, or less if a free outline
+/// cuts the face.
 std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region);
-/// Length of a line; for a free line, computed from its curves.
+/// Length of a line annotation; that of a free line is computed from its curves.
 double length_of(const Mesh& mesh, const Annotation& annotation);
 /// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation);
 
+<<<<<<< ours
 /// A mesh cut along the free curves of its annotations, so that all curves follow edges. The surface is unchanged. The old
 /// vertices come first and keep their indices; the annotations have no curves, and their measures keep the pins.
 struct CutMesh : AnnotatedMesh {
@@ -50,7 +52,35 @@ struct CutMesh : AnnotatedMesh {
     std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
 
     /// Vertex values interpolated at the new vertices; face values copied to the parts of the face.
+||||||| base
+/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
+struct CutMesh {
+    Mesh mesh;                         ///< old vertices first, with unchanged indices
+    AnnotationSet annotations;         ///< without curves; measures keep their pins
+    std::vector<Index> face_origin;    ///< new face -> old face, ascending
+    std::vector<SurfacePoint> points;  ///< for each new vertex, its place on the old mesh
+    std::size_t old_vertices = 0;
+    std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
+
+    /// Vertex values interpolated at the new vertices; face values copied to the parts of the face.
+=======
+/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
+struct CutMesh {
+    /// The cut mesh: the vertices of the uncut mesh first, with unchanged indices, then the new vertices.
+    Mesh mesh;
+    /// The annotations along edges of the cut mesh, without free curves; measures keep their pins.
+    AnnotationSet annotations;
+    /// For each face of the cut mesh: face of the uncut mesh that contains it; ascending.
+    std::vector<Index> face_origin;
+    std::vector<SurfacePoint> points;  ///< for each new vertex: its place on the uncut mesh
+    std::size_t old_vertices = 0;      ///< number of vertices of the uncut mesh
+    /// For each curve of `more` (cut_along_curves): the vertices along the curve.
+    std::vector<std::vector<Index>> more_paths;
+
+    /// Values per vertex of the cut mesh from values per vertex of the uncut mesh `before`, interpolated at the new vertices.
+>>>>>>> theirs
     [[nodiscard]] std::vector<double> vertex_values(const Mesh& before, const std::vector<double>& values) const;
+    /// Values per face of the cut mesh: each part of a face gets the value of the uncut face.
     template <class Value>
     [[nodiscard]] std::vector<Value> face_values(const std::vector<Value>& values) const {
         std::vector<Value> parts;
@@ -60,27 +90,36 @@ struct CutMesh : AnnotatedMesh {
     }
 };
 
-/// Cuts along the curves of the annotations and along `more`. Linear in the size of the mesh plus O(k log k) per face with k
-/// nodes; if two outlines intersect, also in the sizes of both.
+/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Linear in the size of the mesh plus O(k log k)
+/// per face with k
+/// nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
+<<<<<<< ours
 /// An annotated mesh in which all annotations follow edges, for read-only use: the given one if no annotation is free, else the
 /// cut one. The argument must outlive this object.
+||||||| base
+/// Mesh and annotations in which all annotations follow edges, for read-only use: the given ones if no annotation is free, else
+/// cut ones. The arguments must outlive this object.
+=======
+/// Read-only access to a mesh and annotations that all follow edges: the given mesh and set if no annotation is free, otherwise
+/// the mesh cut along the free curves. The constructor's arguments must outlive this object.
+>>>>>>> theirs
 class AlongEdges {
 public:
     explicit AlongEdges(AnnotatedMeshView given) : given_(given) {
         if (any_free(given.annotations)) cut_.emplace(cut_along_curves(given));
     }
     [[nodiscard]] AnnotatedMeshView object() const { return cut_ ? AnnotatedMeshView(*cut_) : given_; }
-    [[nodiscard]] const std::optional<CutMesh>& cut() const { return cut_; }
+    [[nodiscard]] const std::optional<CutMesh>& cut() const { return cut_; }  ///< none if no annotation is free
 
 private:
     AnnotatedMeshView given_;
     std::optional<CutMesh> cut_;
 };
 
-/// Maps an annotation of the cut mesh back to the original mesh. It becomes free unless it follows edges of the original mesh.
-/// Places in the interior of a straight piece are dropped.
+/// Maps an annotation of the cut mesh back to the original mesh. The annotation becomes free unless it follows edges of the
+/// original mesh. Places in the interior of a straight piece are dropped.
 void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation);
 
 }  // namespace ostraka

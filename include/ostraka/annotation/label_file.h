@@ -13,9 +13,10 @@ namespace ostraka {
 inline constexpr std::int32_t no_label = -1;
 
 /// Reads a label file: one integer per line, one line per face of the mesh file; blank lines at the end are ignored.
-/// `triangle_polygon` maps triangles to the file's polygons (empty: all polygons are triangles); the number of lines may be
-/// that of the polygons or that of the triangles. Returns one label per triangle. Throws Error (input) with file and line.
+/// `triangle_polygon` maps triangles to the file's polygons (empty: all polygons are triangles); the file may have one line per
+/// polygon or one line per triangle. Returns one label per triangle. Throws Error (input) with file and line.
 std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, const std::vector<Index>& triangle_polygon = {});
+/// Writes a label file: one label per line.
 void write_labels(const Path& file, const std::vector<std::int32_t>& labels);
 
 /// Names of labels: a JSON object {"0": "head", ...} or list ["head", ...]. Throws Error (input).
@@ -26,17 +27,18 @@ std::map<std::int32_t, std::string> read_label_names(const Path& file);
 AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
                                   const std::map<std::int32_t, std::string>& names = {});
 
-/// The label of at least two corners of the face; that of the first corner if all three differ.
+/// For each face, the label that at least two of its corners have; if all three corners differ, the label of the first corner.
 std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std::vector<std::int32_t>& vertex_labels);
 
-/// Labels of faces, and the fraction of the area with a wrong label because free outlines cut faces.
+/// Labels of the faces of a mesh.
 struct FaceLabels {
-    std::vector<std::int32_t> of_face;
-    double lost = 0;
+    std::vector<std::int32_t> of_face;  ///< one label per face
+    double lost = 0;                    ///< fraction of the mesh's area with a wrong label, because free outlines cut faces
 };
-/// For each face, the id of the smallest region (by area, then by position in the set) that covers it, ignoring the whole
-/// object. A face that free outlines cut gets the id that covers most of its area.
+/// For each face, the id of the smallest region (by area, then by position in the set) that covers the face; regions of the whole
+/// object are ignored. A face cut by free outlines gets the id of the region that covers most of its area.
 FaceLabels face_labels(AnnotatedMeshView object);
+/// One label per face: `of_face` of `face_labels`.
 std::vector<std::int32_t> labels_of(AnnotatedMeshView object);
 
 }  // namespace ostraka

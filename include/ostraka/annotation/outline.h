@@ -8,46 +8,50 @@
 
 namespace ostraka {
 
-/// A closed path of vertices, without repeating the first; the interior lies to the left of each edge.
+/// A closed path of vertices that does not repeat its first vertex; the interior of the region lies to the left of each edge.
 using Outline = std::vector<Index>;
 
-/// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, it is split so that
-/// the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed once).
-/// Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
+/// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, the outline is split
+/// so that the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed
+/// once). Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
 /// halfedge. Linear in the number of selected faces, except for one pass over the flags.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected);
+/// The outlines of a set of faces, given by their indices.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// A path of vertices along an outline: all of it, or a stretch from border to border of the mesh.
+/// A path of vertices along an outline: the whole outline, or a stretch between two vertices on the border of the mesh.
 struct OutlinePath {
-    std::vector<Index> vertices;
-    bool closed = false;  ///< without repeating the first vertex
+    std::vector<Index> vertices;  ///< along the path, in order
+    bool closed = false;          ///< true: the whole outline, without repeating its first vertex
 };
-/// The outlines of faces without the edges on the border of the mesh, which split them into open paths.
+/// The outlines of a set of faces, without their edges on the border of the mesh; where such edges are left out, an outline is
+/// split into open paths.
 std::vector<OutlinePath> outline_paths(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// The walk without repeats and without "a, b, a"; if `closed`, also across the end. A closed path of fewer than three vertices
-/// becomes empty.
+/// Removes from a walk over vertices immediate repeats ("a, a") and spikes ("a, b, a"); if the walk is `closed`, also across its
+/// end. A closed walk of fewer than three vertices becomes empty.
 std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed);
 
-/// The interior of a set of outlines.
+/// The faces inside a set of outlines.
 struct Filling {
-    std::vector<bool> selected;  ///< one flag per face
-    std::size_t conflicts = 0;   ///< faces left of one outline edge and right of another: the outlines intersect
+    std::vector<bool> selected;  ///< one flag per face: true if the face is inside
+    /// Number of faces left of one outline edge and right of another; not 0 if the outlines intersect.
+    std::size_t conflicts = 0;
 };
 
-/// Grows the region from the faces left of the outline edges, without crossing an outline edge. Edges that are traversed in
-/// both directions are not boundaries and are ignored. Throws Error (input) with the outline and the edge if an index is out of
-/// range, an edge does not exist or an outline has fewer than three vertices.
+/// Selects the faces inside the outlines by growing from the faces left of outline edges, without crossing an outline edge. Edges
+/// that are traversed in both directions are not boundaries and are ignored. Throws Error (input) with the outline and the edge
+/// if an index is out of range, an edge does not exist or an outline has fewer than three vertices.
 Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines);
 
-/// The same for directed edges that need not form closed paths: they may end on the border of the mesh.
+/// Selects the faces inside directed edges like `fill_outlines`, but the paths that the edges form may also start and end on the
+/// border of the mesh.
 Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges);
 
-/// Selects faces by winding number: crossing an edge from right to left adds the net number of its traversals in `edges`. Also
-/// defined for intersecting outlines: among the sets "winding number at least k", including the empty set, returns the one
-/// whose area is nearest to `expected_area`; this is done per connected component. Returns nullopt if the numbers contradict
-/// each other (the edges are not a boundary). Linear in the size of the mesh.
+/// Selects faces by winding number: crossing an edge from right to left adds the net number of its traversals in `edges`. The
+/// result is defined for intersecting outlines too: in each connected component, among the sets "faces with winding number at
+/// least k" and the empty set, the set whose area is closest to `expected_area`. Returns nullopt if the winding numbers
+/// contradict each other (the edges are not a boundary). Linear in the size of the mesh.
 std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::vector<Halfedge>& edges, double expected_area);
 
 /// Area and perimeter of a region.
@@ -56,8 +60,9 @@ struct RegionMeasures {
     double perimeter = 0;  ///< sum of the lengths of the outline edges
     [[nodiscard]] double circularity() const {
         return area > 0 ? perimeter * perimeter / area : 0;
-    }  ///< P^2 / A, 4 pi for a disc
+    }  ///< perimeter^2 / area: 4 pi for a disc; 0 without area
 };
+/// Area and perimeter of a set of faces.
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

@@ -7,22 +7,25 @@
 namespace ostraka {
 
 /// Reads a file {"format": "ostraka-map", "version": 1, "kind": "vertex" | "face", "from": count, "to": count, "map": [...]}:
-/// for each old element its new index, -1 (no_index) if it was removed. Throws Error (input) with file, position and remedy
-/// unless kind and counts have the given values.
+/// `map` gives for each old element its new index, or -1 (read as no_index) if the element was removed. Throws Error (input) with
+/// file, position and remedy unless the kind and the two counts in the file equal the arguments.
 std::vector<Index> read_index_map(const Path& file, const std::string& kind, std::size_t from, std::size_t to);
 
-/// Maps the annotations of `before` to `after`. Faces are mapped by `face_map`, or by their corners if it is empty. Points and
-/// poly-lines are mapped by `vertex_map`; a poly-line is split where consecutive vertices are no longer connected, and a region
-/// without faces becomes a line or a point; notes report both. Values of measures are marked stale.
+/// Maps the annotations of `before` to `after`. Faces are mapped by `face_map`, or, if `face_map` is empty, by the corners of the
+/// faces. Points and poly-lines are mapped by `vertex_map`; a poly-line is split where consecutive vertices are no longer
+/// connected, and a region without faces becomes a line or a point; notes report split lines and converted regions. Values of
+/// measures are marked stale.
 AnnotationSet remap_annotations(AnnotatedMeshView before, const Mesh& after, const std::vector<Index>& vertex_map,
                                 const std::vector<Index>& face_map = {});
 
-/// The annotations of `whole` on a piece of it; `vertices` and `faces` are the indices in `whole` of the elements of the piece.
-/// Point annotations with a missing vertex are dropped, and lines and regions of which neither a line nor a region remains.
+/// Restricts the annotations of `whole` to a piece of the mesh; `vertices` and `faces` give for each vertex and face of the piece
+/// its index in `whole`. Point annotations with a vertex outside the piece are dropped, as are lines and regions of which neither
+/// a line nor a region remains.
 AnnotationSet annotations_of_piece(AnnotatedMeshView whole, const Mesh& piece, const std::vector<Index>& vertices,
                                    const std::vector<Index>& faces);
 
-/// Maps labels of faces; new faces without an old face get `no_label`.
+/// Maps labels of old faces to the `face_count` new faces by `face_map` (for each old face, its new face); new faces without an
+/// old face get `no_label`.
 std::vector<std::int32_t> remap_labels(const std::vector<std::int32_t>& labels, const std::vector<Index>& face_map,
                                        std::size_t face_count);
 

@@ -1,4 +1,5 @@
-// Axes of objects and of annotated parts: principal, of slices, of rotation, of the skeleton; or the reason why there is none.
+// Axes of objects and of annotated parts by four methods (principal, slices, rotation, skeleton), or the reason why there is
+// none.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -9,82 +10,92 @@
 
 namespace ostraka {
 
+/// Method by which an axis is found.
 enum class AxisMethod { rotation, slices, skeleton, principal };
 std::string to_string(AxisMethod method);
 
+/// Options of `find_axis`.
 struct AxisOptions {
-    AxisMethod method = AxisMethod::rotation;
+    AxisMethod method = AxisMethod::rotation;  ///< how the axis is computed
+    /// Rotation: max distance of a point on the revolved profile, as a fraction of the largest diameter.
     double tolerance = 0.02;
-    double min_quality = 0.7;
-    int slices = 24;
-    int trials = 300;
-    int smoothing = 2;
-    std::uint64_t seed = 1;
+    double min_quality = 0.7;  ///< rotation: min fraction of the surface that lies on the revolved profile
+    int slices = 24;           ///< slices: number of planes across the part
+    int trials = 300;          ///< rotation: number of random sets of normals (RANSAC)
+    int smoothing = 2;         ///< rotation: number of rounds in which normals are averaged over neighbours
+    std::uint64_t seed = 1;    ///< rotation: random seed
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
 /// A number that describes the axis; lengths are in the mesh's unit.
 struct AxisFigure {
-    std::string name;
-    double value;
+    std::string name;  ///< name of the number in reports
+    double value;      ///< in `unit`
     std::string unit;  ///< "length", "degree", "%" or empty for a ratio
 };
 
+/// An axis that was found, or the reason why there is none.
 struct Axis {
-    bool found = false;
-    std::string reason;                     ///< why there is no axis
-    Point point{0, 0, 0};                   ///< point of the straight axis nearest to the part's centroid
-    Vector direction{0, 0, 1};              ///< unit vector whose largest component is positive
-    std::vector<std::vector<Point>> lines;  ///< the curved axis, or the branches of a skeleton with the longest path first
-    double quality = 0;                     ///< 0 to 1; its meaning depends on the method
-    std::vector<AxisFigure> figures;
+    bool found = false;         ///< true if there is an axis
+    std::string reason;         ///< why there is no axis; empty if there is one
+    Point point{0, 0, 0};       ///< the point of the straight axis closest to the part's centroid
+    Vector direction{0, 0, 1};  ///< unit vector whose largest component is positive
+    /// Poly-lines of the curved axis, or the branches of a skeleton with the longest path first.
+    std::vector<std::vector<Point>> lines;
+    double quality = 0;               ///< quality of the axis, 0 to 1; each method defines its own
+    std::vector<AxisFigure> figures;  ///< further numbers about the axis, which depend on the method
+    /// The figure of this name; null if there is none.
     [[nodiscard]] const AxisFigure* figure(const std::string& name) const;
 };
 
-/// The axis of a set of faces by the method in the options. Throws Error (input) if there are no faces with area.
+/// Finds the axis of a set of faces by the method in the options. Throws Error (input) if there are no faces with area.
 Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Axis of the best-fitting surface of revolution. Every normal of such a surface meets the axis: the linear line complex of
-/// Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all with
-/// reweighting. The result is refined so that radii agree along parallels (robust least squares over heights), which needs no
-/// normals; the refinement starts from the axis of the normals and from their principal directions, and the best result is
-/// kept. Quality: the share of the area (without parts that face along the axis) within `tolerance` of the revolved profile. No
-/// axis: flat parts, spheres (infinitely many), shapes that are not rotationally symmetric, that fit about several lines, or
-/// whose relative error of the diameter exceeds half (short arcs). Figures: largest diameter, per cent of the circle preserved,
-/// rms distance, standard errors of the direction and of the diameter. Linear in faces.
+/// Axis of the surface of revolution fitted to the faces. Every normal of a surface of revolution meets the axis: the linear line
+/// complex of Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all
+/// normals with reweighting. The result is refined so that radii agree along parallels (robust least squares over heights), which
+/// needs no normals; the refinement starts from the axis fitted to the normals and from the principal directions of the normals,
+/// and the result of the highest quality is kept. Quality: the fraction of the area (without parts that face along the axis)
+/// within `tolerance` of the revolved profile. No axis is found for flat parts, spheres (infinitely many), shapes that are not
+/// rotationally symmetric or that fit about several lines, and short arcs (relative error of the diameter above one half).
+/// Figures: largest diameter, per cent of the circle preserved, rms distance from the profile, standard errors of the direction
+/// and of the diameter. Linear in faces.
 Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// For tubular parts: centroids of slices across the longest principal direction, then again across the local tangent. For a
-/// slice that covers less than 300 degrees, the centre of its circle is used. The straight axis is fitted to the centres.
-/// Quality: 1 - mean radius / length. No axis: parts that are not longer than wide. Figures: length, mean radius, rms distance
-/// of the centres from the straight axis. O(slices x faces).
+/// Axis of a tubular part through the centroids of slices, which are cut across the longest principal direction and then again
+/// across the local tangent of the curve. A slice that covers less than 300 degrees contributes the centre of its fitted circle
+/// instead. The straight axis is fitted to these centres. Quality: 1 - mean radius / length. No axis is found for parts that are
+/// not longer than wide. Figures: length, mean radius, rms distance of the centres from the straight axis. O(slices x faces).
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
 /// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest component, with its holes filled. The axis is the
-/// longest path in the skeleton, or its loop. Quality: the share of the skeleton's length on that path. No axis: parts that
-/// contract to a point. Figures: length, branches, rms distance from the straight axis. At most 200 000 faces.
+/// longest path in the skeleton, or its loop. Quality: the fraction of the skeleton's length on the longest path. No axis is
+/// found for parts that contract to a point. Figures: length, number of branches, rms distance of the path from the straight
+/// axis. The part may have at most 200 000 faces.
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Principal axes of the area: the longest one as direction; `lines` holds all three, longest first, each with the extent of
-/// the part along it. Quality: 1 - (second / first variance). No axis: the first two variances agree within a tenth.
+/// Principal axes of the surface area. `direction` is the axis of the largest variance; `lines` holds all three axes, longest
+/// first, each as long as the extent of the part in its direction. Quality: 1 - (second / first variance). No axis is found if
+/// the first two variances differ by less than a tenth.
 Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
 /// Circle through the vertices of a curve (for example the rim of a sherd): its axis, its diameter with the 95 % interval
-/// (`fit_arc`; without an upper bound if a straight line fits too) and the per cent of the circle that is preserved. Quality: 1
-/// - rms distance / radius. No axis: fewer than three vertices, or collinear vertices.
+/// (`fit_arc`; without an upper bound if a straight line fits too) and the preserved part of the circle in per cent. Quality: 1 -
+/// rms distance / radius. No axis is found for fewer than three points or for collinear points.
 Axis circle_axis(const std::vector<Point>& points);
 
-/// The poly-lines of an axis as a Wavefront OBJ file: exact coordinates, one "l" element each.
+/// The poly-lines of an axis as a Wavefront OBJ file: coordinates without rounding, one "l" element per poly-line.
 std::string to_obj(const Axis& axis);
 
-/// Centroid and covariance of the area of the faces, exact for triangles.
+/// Centroid and covariance of the surface area of faces, integrated exactly over the triangles.
 struct AreaMoments {
-    double area = 0;
-    Point centroid{0, 0, 0};
-    std::array<double, 3> variances{};  ///< descending
-    std::array<Vector, 3> directions;   ///< unit eigenvectors of the variances, right-handed
+    double area = 0;                    ///< total area
+    Point centroid{0, 0, 0};            ///< centroid of the area
+    std::array<double, 3> variances{};  ///< variances along `directions`, descending
+    std::array<Vector, 3> directions;   ///< unit eigenvectors of the covariance, a right-handed frame
 };
+/// Integrates the moments of the area of faces.
 AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces);
 
 }  // namespace ostraka

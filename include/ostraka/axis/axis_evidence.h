@@ -1,4 +1,4 @@
-// Evidence of a part on an approximately known axis of rotation: the best correction, with its information matrix.
+// What one part of an object says about an approximately known axis of rotation: least-squares correction and information matrix.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -10,18 +10,25 @@
 
 namespace ostraka {
 
-/// A line at which the evidence is evaluated, with two orthogonal unit vectors across it that define the directions of steps.
+/// A candidate axis at which the evidence is evaluated.
 struct AxisGuess {
+    /// Point and unit direction of the line; u, w: orthogonal unit vectors across the line, the directions of steps.
     Eigen::Vector3d point, direction, u, w;
 };
 
+/// How well a line fits a part as axis of rotation, and how to improve the line.
 struct AxisEvidence {
-    double round = 0;     ///< share of the area consistent with the axis: on the profile about it, with normals that meet it
-    double residual = 0;  ///< standard deviation from that profile after the best step, in the mesh's unit
-    double samples = 0;   ///< effective number of independent samples of the surface
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< point of the line nearest to the part's centroid: origin of the steps
-    /// Normal equations: the best step solves `information` x step = -`gradient`; `information` is its inverse covariance. A
-    /// step translates the line along u and w, in the mesh's unit, and tilts it towards u and w, in radians.
+    /// Fraction of the area that is consistent with the axis: on the profile revolved about the axis, with normals that meet the
+    /// axis.
+    double round = 0;
+    /// Standard deviation of the distances from the profile after the least-squares step, in the mesh's unit.
+    double residual = 0;
+    double samples = 0;  ///< effective number of independent samples of the surface
+    /// The point of the line closest to the part's centroid: origin of the steps.
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    /// Normal equations: the least-squares step solves `information` * step = -`gradient`; `information` is the inverse
+    /// covariance of the step. A step translates the line along u and w (in the mesh's unit) and tilts the line towards u and w
+    /// (in radians).
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
 };
@@ -34,17 +41,17 @@ public:
     ~AxisEvidenceEvaluator();
     AxisEvidenceEvaluator(AxisEvidenceEvaluator&&) noexcept;
 
-    /// The equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
-    /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance
-    /// of patch means to that of single samples. `round` is small for parts that are no surface of revolution about any nearby
-    /// line.
+    /// Normal equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
+    /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance of
+    /// patch means to the variance of single samples. `round` is small for parts that are no surface of revolution about any
+    /// nearby line.
     [[nodiscard]] AxisEvidence at(const AxisGuess& guess) const;
 
-    /// Whether there are enough faces for `at`.
+    /// True if the part has enough faces for `at`.
     [[nodiscard]] bool enough() const;
-    [[nodiscard]] const Eigen::Vector3d& centroid() const;
-    [[nodiscard]] double area() const;
-    [[nodiscard]] double diagonal() const;  ///< diagonal of the part's bounding box
+    [[nodiscard]] const Eigen::Vector3d& centroid() const;  ///< centroid of the part
+    [[nodiscard]] double area() const;                      ///< area of the part
+    [[nodiscard]] double diagonal() const;                  ///< diagonal of the part's bounding box
 
 private:
     struct State;

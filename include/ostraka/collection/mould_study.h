@@ -7,33 +7,37 @@
 
 namespace ostraka {
 
+/// Heads grouped by mould.
 struct MouldStudy {
     MouldMatrices matrices;
-    Eigen::MatrixXd distances;
+    Eigen::MatrixXd distances;  ///< distances between heads, symmetric, 0 to 1
     MouldGroups groups;
-    std::vector<ClusterStability> stability;  ///< one per group
+    std::vector<ClusterStability> stability;  ///< stability of each group under resampling
     std::vector<double> sizes;                ///< size of each head relative to the mean of its group
 
-    [[nodiscard]] int group_count() const;
+    [[nodiscard]] int group_count() const;  ///< number of groups
     /// Mean distance of a head to the members of a group, excluding the head itself; NaN if there is no other member.
     [[nodiscard]] double mean_distance(std::size_t head, int group) const;
-    /// The nearest group other than the head's own and the mean distance to it; -1 if there is no other group.
+    /// Among the groups other than the head's own, the index of the group with the smallest mean distance to the head, and this
+    /// distance; -1 if there is no other group.
     [[nodiscard]] std::pair<int, double> second_group(std::size_t head) const;
 };
 
-/// Computes distances from a similarity, the groups, their stability, and the relative sizes of the heads. Throws the errors of
-/// the functions in moulds.h.
+/// Computes the distances from a similarity (mould_similarities), then the groups of heads, the stability of the groups, and the
+/// relative sizes of the heads. Throws the errors of the functions in moulds.h.
 MouldStudy study_moulds(MouldMatrices matrices, const std::string& similarity, const GroupOptions& group = {},
                         const StabilityOptions& stability = {});
 
+/// Summary of one group of heads.
 struct MouldGroupSummary {
-    std::vector<std::string> members;
-    std::optional<double> within;      ///< mean distance between members; none for a single head
-    std::optional<int> nearest;        ///< group with the smallest mean distance; none if there is no other group
-    std::optional<double> to_nearest;  ///< mean distance to the nearest group
+    std::vector<std::string> members;  ///< names of the heads in the group
+    std::optional<double> within;      ///< mean distance between two members; none for a group of one head
+    /// Index of the other group with the smallest mean distance; none if there is no other group.
+    std::optional<int> nearest;
+    std::optional<double> to_nearest;  ///< mean distance between the members of this group and of `nearest`
     double silhouette = 0;             ///< mean silhouette of the members
 };
-std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study);
+std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study);  ///< one per group
 
 /// Adjusted Rand index between groups and known labels, over the heads whose label is known (not empty).
 double agreement_with_answers(const std::vector<int>& groups, const std::vector<std::string>& answers);

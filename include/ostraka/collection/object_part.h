@@ -9,38 +9,44 @@
 
 namespace ostraka {
 
+/// Which part of each object is analysed.
 struct PartOptions {
+    /// Ids or tags of the regions that form the part; empty: the whole object.
     std::vector<std::string> annotations;
-    std::vector<std::string> without;
+    std::vector<std::string> without;  ///< ids or tags of regions that are removed from the part
+    /// Part that is detected instead of annotated.
     enum class Proposal { none, tube, top, segment } proposed = Proposal::none;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
 /// The part of an object that a study examines.
 struct ObjectPart {
-    Mesh mesh;
+    Mesh mesh;                                ///< the part as a mesh
     std::vector<std::int32_t> face_labels;    ///< one per face, if the file has labels
     std::optional<std::array<double, 3>> up;  ///< up direction from the annotations
-    std::exception_ptr annotations_error;     ///< why the annotations cannot be read, if not needed; null if read
+    /// Why the annotations could not be read, if they were not needed; null if they were read.
+    std::exception_ptr annotations_error;
 };
 
+/// Reads objects of a collection and cuts out the part that a study examines.
 class ObjectParts {
 public:
     /// `words_checksum` is the checksum of the vocabulary in `words`. Throws Error (usage) if both a proposal and annotations
     /// are requested.
     explicit ObjectParts(PartOptions options = {}, TagMatcher words = TagMatcher(), std::string words_checksum = {});
 
-    /// Whether whole objects are selected.
+    /// True if whole objects are selected, not parts.
     [[nodiscard]] bool whole() const;
-    /// The options that stored results depend on.
+    /// The options on which stored results depend, as texts for ResultStore::key.
     [[nodiscard]] std::vector<std::string> key() const;
-    /// Reads an object and cuts out the selected part along its outlines: the regions of any of `annotations` (all of the mesh
-    /// if the list is empty) minus those of `without`, which the object need not have. A proposed part is cut off across `up`
-    /// (otherwise across the up direction of the annotations, otherwise z). "tube" is the tubular part (slicing/slice_axes.h)
-    /// found with 100 slices. "top" is the part above the neck: the slice in the upper half with the smallest radius relative
-    /// to the largest radii below and above it, at most 0.8 of both. "segment" is the largest segment by thickness
-    /// (select/scalars.h) of a closed object. Throws Error (input), naming the file, if the object has no such part.
+    /// Reads an object and cuts out the selected part along its outlines: the regions of any of `annotations` (all of the mesh if
+    /// the list is empty) minus the regions of `without`, which the object need not have. A proposed part is cut off across `up`,
+    /// or if `up` is not given across the up direction in the annotations, or else across z. "tube" is the tubular part
+    /// (slicing/slice_axes.h) found with 100 slices. "top" is the part above the neck. The neck is the slice in the upper half
+    /// with the smallest radius relative to the largest radii below and above the slice; its radius must be at most 0.8 of both.
+    /// "segment" is the largest segment by thickness (select/scalars.h) of a closed object. Throws Error (input), naming the
+    /// file, if the object has no such part.
     [[nodiscard]] ObjectPart read(const CollectionObject& object, const std::optional<std::array<double, 3>>& up = {}) const;
 
 private:

@@ -8,27 +8,29 @@
 
 namespace ostraka {
 
+/// Options of `propose_proportions`.
 struct ProposalOptions {
-    bool stable = false;
-    double weight = 1;
-    bool hard = false;
+    bool stable = false;  ///< true: propose stable ratios too, not only fixed ratios
+    double weight = 1;    ///< weight of the proposed constraints
+    bool hard = false;    ///< true: propose hard constraints
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
+/// Constraints proposed from the fixed proportions of a collection.
 struct Proposals {
-    AnnotationSet set;    ///< annotations of the template, with the measures that the constraints refer to
-    RelationGraph graph;  ///< the existing relationships, and a constraint "proportion" for each proposal
-    std::size_t proposed = 0;
-    std::vector<std::string> notes;  ///< messages on ratios that are not proposed
+    AnnotationSet set;               ///< annotations of the template, with the measures that the constraints refer to
+    RelationGraph graph;             ///< the existing relationships, and a constraint "proportion" for each proposal
+    std::size_t proposed = 0;        ///< number of proposed constraints
+    std::vector<std::string> notes;  ///< messages about ratios that were not proposed
 };
 
-/// For each fixed ratio (with `stable`, also each stable ratio), proposes the constraint that the smaller measure stays in
-/// proportion to the larger one, between the observed quantiles of the ratio. The part that changes is the annotation of the
-/// smaller measure; the reference is the annotation of the larger one. Measures that the template's annotations do not carry
-/// yet are taken and added. Notes report ratios that cannot be proposed: a measure does not have its own annotation (the whole
-/// object, descriptors, two measures of one annotation) or cannot be taken on the template. `existing` may be empty;
-/// constraints that it already contains are not repeated.
+/// For each fixed ratio (with option `stable`, also for each stable ratio), proposes a constraint that keeps the ratio of the
+/// smaller to the larger measure between the observed quantiles of this ratio. The part that changes is the annotation of the
+/// smaller measure; the reference is the annotation of the larger measure. Measures that the template's annotations do not have
+/// yet are taken on the template and added. Notes report ratios that cannot be proposed: a measure does not have its own
+/// annotation (the whole object, descriptors, two measures of one annotation) or cannot be taken on the template. `existing` may
+/// be empty; constraints that `existing` already contains are not repeated.
 Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph existing, const MeasureDefinitions& definitions,
                               const ProportionStudy& study, const ProposalOptions& options = {});
 

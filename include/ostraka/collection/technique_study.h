@@ -1,4 +1,4 @@
-// Which objects of a collection are wheel-made and which hand-made: learnt from objects of known technique, or found without
+// Classifies the objects of a collection as wheel-made or hand-made: learnt from objects of known technique, or found without
 // labels (thesis, section 3.2.1).
 #pragma once
 
@@ -11,108 +11,127 @@
 
 namespace ostraka {
 
+/// An object of the study.
 struct TechniqueObject {
-    std::string name;
+    std::string name;   ///< name of the object
     std::string label;  ///< the known technique; empty if unknown
     TechniqueMeasures measures;
 };
 
-/// A classifier trained on labelled objects: one descriptor with the threshold of the best F1, or several descriptors
-/// (logarithms of positive ones, standardised) with Fisher's linear discriminant, also thresholded at the best F1.
+/// A classifier to be trained on labelled objects: one descriptor with the threshold of the largest F1, or several descriptors
+/// (standardised, positive descriptors as logarithms) with Fisher's linear discriminant and the threshold of the largest F1.
 struct TechniqueClassifier {
-    std::string name;
-    std::vector<std::string> descriptors;
-    std::string words;  ///< text for messages: the descriptors used
+    std::string name;                      ///< name of the classifier
+    std::vector<std::string> descriptors;  ///< names of the descriptors used
+    std::string words;                     ///< the descriptors used, as text for messages
 };
-/// Classifiers of the thesis: "roundness", "roundness variance", "roundness mean and variance", the same for "eccentricity",
-/// "both means", "both" (means and variances of both). Others: "equivalent roundness", "ovality", "marks", "coherence",
-/// "straightness", "upright straightness", "wall variation", "outside" (ovality, marks, coherence and straightness), "outside
-/// and wall".
+/// All classifiers. From the thesis: "roundness", "roundness variance", "roundness mean and variance", "eccentricity",
+/// "eccentricity variance", "eccentricity mean and variance", "both means", "both" (means and variances of roundness and
+/// eccentricity). Further classifiers: "equivalent roundness", "ovality", "marks", "coherence", "straightness", "upright
+/// straightness", "wall variation", "outside" (ovality, marks, coherence and straightness), "outside and wall".
 const std::vector<TechniqueClassifier>& technique_classifiers();
 
+/// Options of `study_technique`.
 struct TechniqueStudyOptions {
-    std::string positive;
-    std::string answer_by = "both";
-    int folds = 10, repeats = 10;
-    int resamples = 300;
-    int simulations = 999;
+    std::string positive;            ///< label of the positive class of F1; empty: the class with the rounder bodies
+    std::string answer_by = "both";  ///< name of the classifier that gives the answers
+    int folds = 10, repeats = 10;    ///< folds of the cross-validation; number of random divisions into folds
+    int resamples = 300;             ///< number of resampled collections that classify each object
+    int simulations = 999;           ///< number of simulated collections of one group, for the p-value of a split
+    /// Min distance, in robust standard deviations of a descriptor, at which an object is out-of-class.
     double unlike_from = 6;
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1;  ///< random seed
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
+/// Validation of one classifier on the labelled objects.
 struct ClassifierResult {
     TechniqueClassifier classifier;
     std::size_t objects = 0;  ///< number of labelled objects that have all descriptors of the classifier
-    bool validated = false;   ///< false if a label has fewer than two objects; the members below are then undefined
-    CrossValidation validation;
-    double trivial_f1 = 0;               ///< F1 of classifying every object as positive
-    Interval f1_interval;                ///< 95 % interval of the F1 when objects are resampled within each label
-    bool better = false;                 ///< whether the interval lies above the trivial F1
-    double error = 1;                    ///< (wrong + 1) / (answers + 2) of held-out objects, mean over the repeats (Laplace)
-    RocCurve roc;                        ///< one descriptor: its values; several: held-out scores of the objects
-    std::optional<Threshold> threshold;  ///< one descriptor only: learnt from all objects, in the descriptor's unit
+    /// False if a label has fewer than two objects; the members after this one are then undefined.
+    bool validated = false;
+    CrossValidation validation;  ///< scores on held-out objects
+    double trivial_f1 = 0;       ///< F1 of classifying every object as positive
+    Interval f1_interval;        ///< 95 % interval of the F1 when objects are resampled within each label
+    bool better = false;         ///< true if `f1_interval` lies above `trivial_f1`
+    /// Error rate on held-out objects, (wrong + 1) / (answers + 2) (Laplace), mean over the repeats.
+    double error = 1;
+    /// ROC curve of the descriptor's values (one descriptor) or of the held-out scores (several descriptors).
+    RocCurve roc;
+    /// Threshold learnt from all objects, in the descriptor's unit; none for several descriptors.
+    std::optional<Threshold> threshold;
 };
 
-/// A split into two groups by a single variable: the split with the smallest within-group variance (Otsu 1979).
+/// A split of the objects into two groups by one variable, at the threshold with the smallest within-group variance (Otsu 1979).
 struct TechniqueSplit {
-    std::string descriptor;              ///< or "first component": of all descriptors of the outside, logarithms, standardised
-    std::size_t objects = 0, lower = 0;  ///< total number, and number in the lower group
-    double threshold = 0;                ///< midpoint between the groups
-    double share = 0;          ///< fraction of the variance (of logarithms, where positive) that lies between the groups
-    double p_value = 1;        ///< fraction of collections simulated from one normal distribution that split at least as well
-    std::vector<int> group;    ///< one per object of the study: 0 lower, 1 upper, -1 unknown
-    std::optional<double> f1;  ///< the better of the two assignments of labels to groups, if both labels occur
+    /// Name of the variable: a descriptor, or "first component" (first principal component of the standardised outside
+    /// descriptors).
+    std::string descriptor;
+    std::size_t objects = 0, lower = 0;  ///< number of objects with a value, and of objects in the lower group
+    double threshold = 0;                ///< value halfway between the two groups
+    /// Fraction of the variance that lies between the groups (of logarithms for positive descriptors).
+    double share = 0;
+    double p_value = 1;      ///< fraction of collections simulated from one normal distribution that split at least as well
+    std::vector<int> group;  ///< for each object of the study: 0 lower group, 1 upper group, -1 unknown
+    /// F1 of the split, with labels assigned to groups so that F1 is larger; none unless both labels occur.
+    std::optional<double> f1;
 };
 
-/// The descriptor by which an object is out-of-class.
+/// The descriptor by which an object is out-of-class, with its value and range.
 struct TechniqueOutlier {
     std::string descriptor;
-    double value = 0;
-    double low = 0, high = 0;  ///< min and max of the labelled objects, excluding the object itself
-    double distance = 0;       ///< beyond the nearer of the two class medians, in robust standard deviations
+    double value = 0;          ///< value of the object
+    double low = 0, high = 0;  ///< min and max value of the labelled objects, excluding the object itself
+    /// Outward distance of the value from the closer of the two class medians, in robust standard deviations.
+    double distance = 0;
 };
 
+/// The technique found for one object.
 struct TechniqueAnswer {
-    std::string name, label;
-    std::string answer;     ///< empty if there is no answer
-    std::string certainty;  ///< clear, likely or doubtful; no answer: undecided, unlike, not told apart; empty: unknown
-    std::optional<TechniqueOutlier> unlike;
-    bool positive = false;
-    double score = 0;                   ///< positive if at least 0; in standard deviations of the labelled objects' scores
+    std::string name, label;  ///< name of the object; its known technique (empty: unknown)
+    std::string answer;       ///< label or group given by the study; empty if there is no answer
+    /// "clear", "likely" or "doubtful"; for no answer "undecided", "unlike" or "not told apart"; empty: unknown.
+    std::string certainty;
+    std::optional<TechniqueOutlier> unlike;  ///< descriptor by which the object is out-of-class; none if it is not
+    bool positive = false;                   ///< true: the answer is the positive class
+    /// Score of the classifier, in standard deviations of the labelled objects' scores; at least 0 for the positive class.
+    double score = 0;
     double agreement = 0;               ///< fraction of the resampled collections without this object that give the same answer
     int asked = 0;                      ///< number of the resampled collections without this object
     std::optional<Interval> roundness;  ///< 95 % interval of the mean roundness, from resampled blocks of slices
-    std::string words;                  ///< the reason, in one sentence
+    std::string words;                  ///< reason for the answer, in one sentence
     [[nodiscard]] bool wrong() const { return !answer.empty() && !label.empty() && answer != label; }
 };
 
+/// Result of `study_technique`.
 struct TechniqueStudy {
-    std::string positive, negative;  ///< labels; "rounder" and "less round" in a study without labels
-    bool learned = false;            ///< true if trained on labels, false if split without labels
-    std::string answered_by;
-    std::vector<ClassifierResult> classifiers;  ///< empty without labels
-    std::vector<TechniqueSplit> splits;
-    /// Whether the answering classifier is better than trivial; without labels, whether the split has p <= 0.05.
+    /// Labels of the two classes; "rounder" and "less round" in a study without labels.
+    std::string positive, negative;
+    bool learned = false;                       ///< true if trained on labels, false if split without labels
+    std::string answered_by;                    ///< classifier or descriptor that gave the answers
+    std::vector<ClassifierResult> classifiers;  ///< one per classifier; empty without labels
+    std::vector<TechniqueSplit> splits;         ///< one per variable
+    /// True if the classifier that gives the answers is better than the trivial one; without labels, true if the split has p <=
+    /// 0.05.
     bool separated = false;
-    std::vector<TechniqueAnswer> answers;  ///< one per object, in their order
+    std::vector<TechniqueAnswer> answers;  ///< one per object, in the order of the objects
 };
 
-/// Trains, validates and applies the classifiers. A labelled object is classified by a model trained without it. There is no
-/// answer if the classifier is not better than classifying every object as positive, if the object is out-of-class (see
-/// `unlike_from`: outward distance from the nearer of the two class medians, over the median absolute deviation from them times
-/// 1.4826), or if fewer than half of the resampled collections agree. An answer is clear with an agreement of at least 0.95 and
-/// an error of at most 0.05, likely with 0.8 and 0.2, otherwise doubtful. Without labels the objects are split by the first
-/// descriptor of `answer_by` ("outside": by the first principal component), and answers are given only if the split is better
-/// than splits of a single group (p at most 0.05). Throws Error (usage) for an unknown classifier or label; Error (input)
-/// without objects or with more than two distinct labels.
+/// Trains, validates and applies the classifiers. A labelled object is classified by a model trained on the other objects. There
+/// is no answer if the classifier is not better than classifying every object as positive, if the object is out-of-class (see
+/// `unlike_from`: outward distance from the closer of the two class medians, divided by 1.4826 times the median absolute
+/// deviation from the class medians), or if fewer than half of the resampled collections agree. An answer is clear with an
+/// agreement of at least 0.95 and an error of at most 0.05, likely with an agreement of at least 0.8 and an error of at most 0.2,
+/// and doubtful otherwise. Without labels the objects are split by the first descriptor of `answer_by` ("outside": by the first
+/// principal component), and answers are given only if the split is better than splits of a single group (p at most 0.05). Throws
+/// Error (usage) for an unknown classifier or label; Error (input) without objects or with more than two distinct labels.
 TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options = {});
 
-/// The split of `values` with the smallest within-group variance: its threshold and its between-group fraction of the variance;
-/// 0 if all values are equal.
+/// The split of values into two groups with the smallest within-group variance: threshold, and fraction `share` of the variance
+/// between the groups (0 if all values are equal).
 struct TwoGroups {
-    double threshold = 0, share = 0;
+    double threshold = 0, share = 0;  ///< value that separates the groups; fraction of the variance between them
 };
 TwoGroups divide_in_two(std::vector<double> values);
 

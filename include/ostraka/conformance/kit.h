@@ -10,85 +10,98 @@
 
 namespace ostraka {
 
-/// How one output, or the report, is compared with the expected result.
+/// How one output of a case, or its report, is compared with the expected result.
 struct Comparison {
-    std::string output;  ///< "report", an output, or OUTPUT/FILE for a folder
-    std::string method;  ///< "mesh", "annotations", "array", "values", "bytes", "exists"
-    double tolerance = 0;
-    std::string scale = "absolute";          ///< scale of the tolerance: "absolute", "diagonal", "largest" or "value"
-    std::vector<std::string> freedoms;       ///< ignored properties of a mesh: "vertex order", "triangulation"
-    std::string mesh;                        ///< for annotations: their mesh, an input's file or an output
-    std::vector<std::string> only, ignored;  ///< for values: members to compare, or to ignore
-    std::string reason;                      ///< reason for the tolerance
+    /// What is compared: "report", the name of an output, or OUTPUT/FILE for a file in an output folder.
+    std::string output;
+    std::string method;    ///< "mesh", "annotations", "array", "values", "bytes", "exists"
+    double tolerance = 0;  ///< largest difference that counts as agreement, in multiples of `scale`
+    /// What `tolerance` is relative to: "absolute", "diagonal" (of the mesh), "largest" (value) or "value".
+    std::string scale = "absolute";
+    std::vector<std::string> freedoms;  ///< properties of a mesh that may differ: "vertex order", "triangulation"
+    /// For annotations: the mesh to which the annotations belong, as an input file or the name of an output.
+    std::string mesh;
+    /// For method "values": names of the members to compare, or of the members to ignore.
+    std::vector<std::string> only, ignored;
+    std::string reason;  ///< reason for the tolerance
 };
 
+/// One call of an operation, with its expected outcome.
 struct ConformanceCase {
-    std::string id, operation, about;
-    bool degenerate = false;
-    const JsonValue* with = nullptr;             ///< settings; files relative to the kit
-    std::map<std::string, std::string> outputs;  ///< outputs -> file names
+    std::string id, operation, about;            ///< id of the case, name of the operation, description
+    bool degenerate = false;                     ///< true: the case tests degenerate input
+    const JsonValue* with = nullptr;             ///< settings of the operation; file names are relative to the kit's folder
+    std::map<std::string, std::string> outputs;  ///< name of each output -> name of its file
     int code = 0;                                ///< expected exit code: 0, 1 (failed), 2 (wrong usage), 3 (the answer is no)
     std::vector<std::string> names;              ///< words that the error message must contain
-    std::vector<Comparison> comparisons;
+    std::vector<Comparison> comparisons;         ///< how each output is compared
 };
 
+/// The kit read from a folder.
 struct ConformanceKit {
-    Path folder;
-    std::string version;
-    std::shared_ptr<const Json> document;
-    std::vector<ConformanceCase> cases;
+    Path folder;                           ///< folder of the kit
+    std::string version;                   ///< version of the kit
+    std::shared_ptr<const Json> document;  ///< the parsed conformance.json, to which the cases point
+    std::vector<ConformanceCase> cases;    ///< in the order of the document
 };
 
 /// Reads FOLDER/conformance.json. Throws Error (input) that names the invalid case: operations, settings and outputs are
 /// checked against the table.
 ConformanceKit read_kit(const Path& folder, const FindOperation& find);
 
-/// The answer of a backend.
+/// The answer of a backend to one case.
 struct Answer {
     int code = -1;                       ///< exit code; 4: the operation is not supported; -1: crashed
     std::shared_ptr<const Json> result;  ///< result of the report; null if there is none
     std::string message;                 ///< error message
-    double seconds = 0;
+    double seconds = 0;                  ///< run time of the call
 };
 
-/// A backend; receives a case with absolute names of input and output files.
+/// A program under test.
 class Backend {
 public:
     virtual ~Backend();
+    /// Runs a case; `settings` has absolute names of input and output files, and `folder` is the working folder.
     virtual Answer run(const ConformanceCase& test_case, const JsonValue& settings, const Path& folder) = 0;
 };
 
-/// A program with the command-line interface WORDS... mesh info FILE --json. `arguments` produces the words of a call.
+/// Converts an operation and its settings to the words of a command line.
 using ArgumentsOf = std::function<std::vector<std::string>(const std::string& operation, const JsonValue& settings)>;
+/// Backend that starts the program `words` once per case, with the words from `arguments` appended. `time_limit`: in seconds.
 std::unique_ptr<Backend> command_backend(std::vector<std::string> words, ArgumentsOf arguments, double time_limit);
-/// A program that is started once and answers each line of JSON with a line of JSON (doc/conformance.md).
+/// Backend that starts the program `words` once; the program answers each line of JSON with a line of JSON (doc/conformance.md).
+/// `time_limit`: in seconds per case.
 std::unique_ptr<Backend> lines_backend(std::vector<std::string> words, double time_limit);
 
+/// Outcome of a case.
 enum class Outcome { agrees, differs, unsupported };
+/// Result of running a case.
 struct CaseResult {
     Outcome outcome = Outcome::differs;
-    std::vector<std::string> differences;  ///< descriptions; empty if it agrees
-    double seconds = 0;
+    std::vector<std::string> differences;  ///< descriptions of the differences; empty if the case agrees
+    double seconds = 0;                    ///< run time of the call
 };
 std::string to_string(Outcome outcome);
 
-/// Runs a case with the backend and compares its outputs with the expected ones. Each case has its own folder in `scratch`.
+/// Runs a case with the backend and compares the outputs with the expected outputs. Each case has its own folder in `scratch`.
 CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& test_case, Backend& backend, const Path& scratch,
                     const FindOperation& find);
-/// Runs a case and stores its outputs as the expected ones. Throws Error (failure) if the exit code differs from the expected
-/// one.
+/// Runs a case and stores its outputs in the kit as the expected outputs. Throws Error (failure) if the exit code differs from
+/// the expected exit code.
 void record_case(const ConformanceKit& kit, const ConformanceCase& test_case, Backend& backend, const Path& scratch,
                  const FindOperation& find);
 
-/// Settings of a case with absolute names: inputs from the kit, outputs in `folder`.
+/// Settings of a case with absolute file names: inputs in the kit, outputs in `folder`.
 Json settings_of(const ConformanceKit& kit, const ConformanceCase& test_case, const Path& folder, const FindOperation& find);
 
-/// Describes how the two differ, with numbers; empty if they agree. `expected`, `actual`: files; for "report" JSON documents.
+/// Describes how the actual file differs from the expected file, with numbers; empty if they agree. For the output "report" both
+/// are JSON documents.
 std::string difference(const Comparison& comparison, const Path& expected, const Path& actual, const Path& expected_mesh,
                        const Path& actual_mesh);
+/// Describes how two JSON documents differ, by the method "values"; empty if they agree.
 std::string difference_of_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& actual);
 
-/// JUnit XML of the results, one test case each.
+/// The results as JUnit XML, one test case per result.
 std::string junit_of(const ConformanceKit& kit, const std::vector<CaseResult>& results, const std::string& backend);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Measures how well cage coordinates satisfy their defining properties (partition of unity, linear precision, sign).
+// Measures how well cage coordinates satisfy their defining properties: partition of unity, linear precision, sign.
 #pragma once
 
 #include "ostraka/coords/coordinates.h"
@@ -10,32 +10,37 @@ namespace ostraka {
 
 /// Measured properties of cage coordinates. Lengths are relative to the diagonal of the cage's bounding box.
 struct CoordinateCertificate {
-    std::string kind;
-    std::size_t points = 0, vertices = 0, faces = 0;  ///< number of points, and size of the cage
+    std::string kind;                                 ///< kind of coordinates ("mean-value", ...)
+    std::size_t points = 0, vertices = 0, faces = 0;  ///< number of points, and of vertices and faces of the cage
 
-    double partition = 0;           ///< largest |sum of the vertex weights - 1|
-    double linear = 0;              ///< largest distance between a point and the combination of the rest cage by its weights
-    Index worst_linear = no_index;  ///< point with that distance
+    double partition = 0;  ///< largest |sum of the vertex weights of a point - 1|
+    /// Largest distance between a point and the combination of the undeformed cage with the point's weights.
+    double linear = 0;
+    Index worst_linear = no_index;  ///< index of the point with the distance `linear`
 
-    /// Properties of the kind in this cage, evaluated on the cage itself; absent for kinds that are not defined there. The
-    /// weights of coincident vertices are added.
-    std::optional<double> lagrange = {};  ///< at the vertices: largest deviation from 1 (own weight) or 0 (others)
-    std::optional<double> edges = {};     ///< at three points on each edge: largest deviation from linear weights
-    std::optional<double> on_faces = {};  ///< same at three points on each face
+    /// Largest deviation of the weights at cage vertices from 1 (own weight) or 0 (other weights). The weights of coincident
+    /// vertices are added. None for kinds that are not defined on the cage.
+    std::optional<double> lagrange = {};
+    /// Largest deviation from linear weights, at three points on each cage edge; none for kinds that are not defined on the cage.
+    std::optional<double> edges = {};
+    /// Largest deviation from linear weights, at three points on each cage face; none for kinds that are not defined on the cage.
+    std::optional<double> on_faces = {};
 
-    double negative = 0;       ///< share of the vertex weights that are negative
-    double negative_rows = 0;  ///< share of the points with a negative weight
-    double minimum = 0, maximum = 0;
-    double negative_sum = 0;   ///< largest sum of the absolute values of a point's negative weights
-    double carriers_mean = 0;  ///< mean number of weights that carry 95 % of the sum of absolute values at a point
-    Index carriers_max = 0;    ///< maximum of that number
+    double negative = 0;              ///< fraction of the vertex weights that are negative
+    double negative_rows = 0;         ///< fraction of the points with a negative weight
+    double minimum = 0, maximum = 0;  ///< smallest and largest vertex weight
+    double negative_sum = 0;          ///< largest sum of the absolute values of a point's negative weights
+    /// Smallest number of weights that carry 95 % of the sum of absolute weights of a point, mean over the points.
+    double carriers_mean = 0;
+    /// Smallest number of weights that carry 95 % of the sum of absolute weights, maximum over the points.
+    Index carriers_max = 0;
 
-    /// True if the sums of weights are 1 to 1e-10 and points are reproduced to 1e-9: usable for deformation.
+    /// True if the weights can be used for deformation: `partition` is at most 1e-10 and `linear` at most 1e-9.
     [[nodiscard]] bool holds() const { return partition <= 1e-10 && linear <= 1e-9; }
 };
 
-/// Measures coordinates of `points` in `cage`. Throws Error (usage) if the sizes do not match, Error (input) for a weight that
-/// is not finite. O(points x (vertices + faces)).
+/// Measures the properties of coordinates of `points` in `cage`. Throws Error (usage) if the sizes do not match, Error (input)
+/// for a weight that is not finite. O(points x (vertices + faces)).
 CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, const std::vector<Point>& points,
                               const CoordinateOptions& options = {});
 

@@ -8,51 +8,52 @@
 
 namespace ostraka {
 
-/// Files that belong to "weights.npy", all in the same folder: the header "weights.coordinates.json" and, for Green
+/// The files that belong to "weights.npy" are in the same folder: the header "weights.coordinates.json" and, for Green
 /// coordinates, the normal weights in "weights.normal.npy". Sparse coordinates are stored as compressed sparse rows:
 /// "weights.npy" holds the stored weights row by row, "weights.columns.npy" their columns, and "weights.rows.npy" the start of
 /// each row.
-Path coordinate_header_file(const Path& weights);
-Path normal_weights_file(const Path& weights);
-Path sparse_columns_file(const Path& weights);
-Path sparse_rows_file(const Path& weights);
+Path coordinate_header_file(const Path& weights);  ///< weights.coordinates.json
+Path normal_weights_file(const Path& weights);     ///< weights.normal.npy
+Path sparse_columns_file(const Path& weights);     ///< weights.columns.npy
+Path sparse_rows_file(const Path& weights);        ///< weights.rows.npy
 
 /// Content of a header (doc/schema/coordinates.schema.json).
 struct CoordinateHeader {
-    std::string kind;
+    std::string kind;  ///< kind of coordinates
     struct Array {
-        std::string file;  ///< name without folder
-        std::size_t rows = 0, columns = 0;
-        std::string sha256;  ///< checksum of the file's bytes
+        std::string file;                   ///< file name without folder
+        std::size_t rows = 0, columns = 0;  ///< size of the array
+        std::string sha256;                 ///< checksum of the file's bytes
     };
-    Array vertex;
-    std::optional<Array> normal;
-    /// Present for sparse weights, whose array then has one column.
+    Array vertex;                 ///< the vertex weights
+    std::optional<Array> normal;  ///< the normal weights; none for kinds without a normal term
+    /// Arrays of sparse weights; the array `vertex` then has one column.
     struct Sparse {
-        std::size_t columns = 0;  ///< number of columns of the matrix
-        Array column, row;        ///< column of each weight; start of each row, followed by the end of the last
+        std::size_t columns = 0;  ///< number of columns of the weight matrix
+        /// For each stored weight: its column; for each row: index of its first weight, followed by the end of the last row.
+        Array column, row;
     };
-    std::optional<Sparse> sparse;
+    std::optional<Sparse> sparse;  ///< none for dense weights
     struct Bound {
-        std::size_t vertices = 0, faces = 0;
-        std::string sha256;  ///< mesh_checksum
+        std::size_t vertices = 0, faces = 0;  ///< numbers of vertices and faces
+        std::string sha256;                   ///< checksum of the mesh (mesh_checksum)
     };
-    Bound mesh, cage;
+    Bound mesh, cage;  ///< the mesh and the cage for which the coordinates were computed
 };
 
-/// Writes the arrays (C order; float64, indices int64) and the header, each file atomically. Throws Error (usage) unless the
-/// file name ends in .npy and the coordinates match mesh and cage, Error (failure) for a weight that is not finite.
+/// Writes the arrays of coordinates (C order; float64, indices int64) and the header, each file atomically. Throws Error (usage)
+/// unless the file name ends in .npy and the coordinates match mesh and cage, Error (failure) for a weight that is not finite.
 void write_coordinates(const Path& weights, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage,
                        const CoordinateCertificate& certificate, const Provenance& provenance);
 
-/// Reads the header. Throws Error (input) with the file and the remedy if there is no header, it does not match its schema, its
-/// kind is unknown, or normal weights are missing or present in contradiction to its kind.
+/// Reads the header of a coordinate file. Throws Error (input) with the file and the remedy if there is no header, the header
+/// does not match its schema, the kind is unknown, or normal weights are present or missing contrary to the kind.
 CoordinateHeader read_coordinate_header(const Path& weights);
 
 /// Reads coordinates of this mesh in this cage. Throws Error (input) with the remedy if the header belongs to another mesh or
-/// cage (checksums of the indexed geometry), or if arrays were changed since, have another shape, or contain numbers that are
-/// not finite or rows that do not sum to 1 within 1e-6 (with normal weights also: rows that do not reproduce their point at
-/// rest).
+/// cage (checksums of the indexed geometry), or if the arrays were changed after writing, have another shape, or contain numbers
+/// that are not finite or rows that do not sum to 1 within 1e-6 (with normal weights also: rows that do not reproduce their point
+/// at rest).
 Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& cage);
 
 }  // namespace ostraka

@@ -15,57 +15,66 @@
 
 namespace ostraka {
 
-/// Dense weights, one row per point; rows are contiguous.
+/// Dense weights, one row per point; the weights of a row are contiguous in memory.
 using WeightMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Sparse weights, one row per point, stored row by row.
 using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
+/// Weights of points with respect to a cage.
 struct Coordinates {
-    std::string kind;           ///< "mean-value", "green" ...
-    WeightMatrix vertex;        ///< points x cage vertices, columns in the order of the cage's vertices
-    WeightMatrix normal;        ///< points x cage faces, in units of length; 0 x 0 for kinds without a normal term
-    SparseWeights sparse = {};  ///< copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for others
-    /// For kinds on tetrahedra, the seconds spent in each phase: tetrahedra, weights at their nodes, points.
+    std::string kind;     ///< "mean-value", "green" ...
+    WeightMatrix vertex;  ///< weight of each cage vertex (column) for each point (row)
+    /// Weight of each cage face normal (column) for each point (row), in units of length; 0 x 0 for kinds without a normal term.
+    WeightMatrix normal;
+    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for other kinds.
+    SparseWeights sparse = {};
+    /// For kinds computed on tetrahedra: name and seconds of each phase (tetrahedralisation, weights at the nodes, weights of the
+    /// points).
     std::vector<std::pair<std::string, double>> seconds = {};
-    [[nodiscard]] bool has_normals() const { return normal.size() > 0; }
-    [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }
-    /// The share of the weights that are stored; 1 for dense weights.
+    [[nodiscard]] bool has_normals() const { return normal.size() > 0; }  ///< true for kinds with a normal term
+    [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }    ///< true if `sparse` is filled
+    /// The fraction of the weights that are stored; 1 for dense weights.
     [[nodiscard]] double stored_share() const;
 };
 
+/// Options of `compute_coordinates`.
 struct CoordinateOptions {
-    /// A point closer than this to a vertex, an edge or a face of the cage counts as lying on it; relative to the cage's
-    /// diagonal.
+    /// A point closer than this distance to a vertex, an edge or a face of the cage counts as lying on that element; relative to
+    /// the cage's diagonal.
     double snap = 4e-15;
-    /// For kinds on tetrahedra inside the cage: approximate number of nodes, and the threshold below which weights are dropped.
+    /// Approximate number of nodes, for kinds computed on tetrahedra inside the cage.
     std::uint64_t nodes = 20000;
+    /// Weights below this value are dropped, for kinds with sparse weights.
     double drop = 1e-4;
-    /// For local coordinates: maximum number of iterations; they also stop when the total variation falls by less than this
-    /// share of itself in ten iterations.
+    /// Maximum number of iterations, for local coordinates.
     int iterations = 300;
+    /// Local coordinates: stop when ten iterations reduce the total variation by less than this fraction.
     double tolerance = 1e-4;
-    /// For nested cages: distance over which the influence of an inner cage rises from 0 to 1, starting where the mesh enters
-    /// it; relative to the inner cage's diagonal.
+    /// For nested cages: distance over which the influence of an inner cage rises from 0 (where the mesh enters the inner cage)
+    /// to 1; relative to the inner cage's diagonal.
     double fade = 0.15;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// A kind of coordinates. `compute` may assume a closed triangle cage without garbage and finite numbers.
+/// A kind of cage coordinates that can be computed by name.
 struct CoordinateKind {
-    std::string name, about;
-    bool on_cage = true;        ///< defined for points on the cage, and outside
-    bool with_normals = false;  ///< has a normal term: not for constrained deformation (thesis, equation 4.9)
+    std::string name, about;  ///< name of the kind; description for help texts
+    bool on_cage = true;      ///< true: defined also for points on the cage and outside
+    /// True: has a normal term and cannot be used for constrained deformation (thesis, equation 4.9).
+    bool with_normals = false;
+    /// Computes the coordinates; the cage is a closed triangle mesh without garbage, and all numbers are finite.
     std::function<Coordinates(const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions&)> compute;
 };
 
-/// Registers a kind under its name, replacing a kind of the same name. Not thread-safe: must not run while coordinates are
-/// computed.
+/// Registers a kind of coordinates under its name, replacing a kind of the same name. Not thread-safe: do not call while
+/// coordinates are computed.
 void add_coordinate_kind(CoordinateKind kind);
-/// The names of all kinds: "mean-value", "green", "harmonic", "local", "positive-mean-value" and the registered ones.
+/// The names of all kinds of coordinates: "mean-value", "green", "harmonic", "local", "positive-mean-value" and the registered
+/// ones.
 std::vector<std::string> coordinate_kinds();
-/// Looks up a kind. Throws Error (usage) that lists the kinds if there is none of that name.
+/// The kind of this name. Throws Error (usage) that lists all kinds if there is no kind of this name.
 const CoordinateKind& coordinate_kind(const std::string& name);
 
 /// Coordinates of `points` in `cage`. Time and memory are proportional to points x (vertices + faces); the result is the same
@@ -74,31 +83,32 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// not defined (the message names the first of them).
 ///
 /// mean-value: Ju, Schaefer and Warren, Mean value coordinates for closed triangular meshes, 2005, in vector form; for points
-/// inside, outside and on the cage. On a face, edge or vertex they are the linear interpolation there.
+/// inside, outside and on the cage. On a face, edge or vertex of the cage, mean value coordinates are linear interpolation.
 /// green: Lipman, Levin and Cohen-Or, Green coordinates, 2008; for points strictly inside; the cage is oriented outward.
-/// The other kinds are for points inside and on a cage without self-intersections. Their weights are sparse. Every row is
-/// projected, as a last step, to weights that are non-negative, sum to one and reproduce the point up to rounding.
-/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; by linear finite
-/// elements on tetrahedra inside the cage.
-/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; on the same tetrahedra, each
-/// gradient weighted by its distance from the cage vertex within the cage.
+/// The kinds harmonic, local and positive-mean-value are for points inside and on a cage without self-intersections. Their
+/// weights are sparse. As a last step, every row is projected to weights that are non-negative, sum to one and reproduce the
+/// point up to rounding.
+/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; computed by
+/// linear finite elements on tetrahedra inside the cage.
+/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; computed on the
+/// same tetrahedra; each gradient is weighted by its distance, within the cage, from the cage vertex.
 /// positive-mean-value: Lipman, Kopf, Cohen-Or and Levin, GPU-assisted positive mean value coordinates, 2007: mean value
-/// coordinates restricted to the part of the cage that is visible from the point, by evenly distributed rays.
+/// coordinates restricted to the part of the cage that is visible from the point, computed by evenly distributed rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
-/// As above, for the vertices of a mesh. In a cage that contains other cages the coordinates cover all of them
-/// (coords/nested.h).
+/// Coordinates of the vertices of a mesh in `cage`. If the cage contains other cages, the coordinates cover all nested cages
+/// (coords/nested.h). Errors and cost are those of `compute_coordinates` for points.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const Mesh& mesh,
                                 const CoordinateOptions& options = {});
 /// The points of a mesh, in the order of its vertices.
 std::vector<Point> points_of(const Mesh& mesh);
 
-/// The positions of the points after the vertices of the cage moved to `cage_points`. Green coordinates scale the normals by
-/// the stretch of their faces (section 3 of the paper). Throws Error (usage) if the sizes do not match.
+/// The positions of the points when the cage vertices are at `cage_points`. Green coordinates scale the normals by the stretch of
+/// their faces (section 3 of the paper). Throws Error (usage) if the sizes do not match.
 std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
-/// The face normals that the normal weights multiply; the length of each is the stretch of its face relative to the rest cage.
-/// Zero for faces without area at rest.
+/// The face normals that the normal weights multiply: the length of a normal is the stretch of its face relative to the
+/// undeformed cage. The normal of a face without area in the undeformed cage is zero.
 std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Angles are in radians inside the library, in degrees in its input and output.
+// Units of angles: radians inside the library, degrees in its input and output.
 #pragma once
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// The error type that all modules throw and only `main` catches.
+// The error type that all modules throw and `main` reports.
 #pragma once
 
 #include <stdexcept>
@@ -6,6 +6,7 @@
 
 namespace ostraka {
 
+/// Kind of an error, which determines the exit code.
 enum class ErrorKind {
     input,     ///< a file or a mesh is invalid (exit code 1)
     failure,   ///< the work could not be done: no disk space, no memory, no solution (exit code 1)
@@ -13,7 +14,7 @@ enum class ErrorKind {
     cancelled  ///< the caller cancelled the work (exit code 130)
 };
 
-/// The problem, its location (file, line, element) and the remedy.
+/// An error for the user: the problem, its location (file, line, element) and the remedy.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& where, const std::string& problem, const std::string& remedy = {});
@@ -30,9 +31,11 @@ private:
     std::string remedy_;
 };
 
-/// Shorthands that throw an Error, so that a check stays on one line.
+/// Throws an Error of kind input.
 [[noreturn]] void fail_input(const std::string& where, const std::string& problem, const std::string& remedy = {});
+/// Throws an Error of kind failure.
 [[noreturn]] void fail_work(const std::string& where, const std::string& problem, const std::string& remedy = {});
+/// Throws an Error of kind usage.
 [[noreturn]] void fail_usage(const std::string& problem, const std::string& remedy = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Findings of a check.
+// Findings of a check: defects and remarks.
 #pragma once
 
 #include <compare>
@@ -6,10 +6,11 @@
 
 namespace ostraka {
 
+/// A defect or a remark found by a check.
 struct Finding {
-    bool defect = false;  ///< false: a remark on something allowed
-    std::string where;    ///< JSON pointer
-    std::string text;
+    bool defect = false;  ///< true: a defect; false: a remark about something allowed
+    std::string where;    ///< location of the finding (a JSON pointer, for files)
+    std::string text;     ///< the finding in words
     auto operator<=>(const Finding&) const = default;
 };
 

@@ -21,12 +21,12 @@ std::string joined(const Texts& texts, std::string_view separator = ", ") {
     }
     return result;
 }
-/// The word of an enumerator; `words` are in the order of the enumerators.
+/// The name of an enumerator; `words` are the names in the order of the enumerators.
 template <class Enumeration, std::size_t count>
 const char* enum_name(Enumeration value, const char* const (&words)[count]) {
     return words[static_cast<std::size_t>(value)];
 }
-/// The same for `text_of(entry)` of each entry; `text_of` may be a pointer to a member.
+/// Joins the texts `text_of(entry)` of all entries by `separator`; `text_of` may be a pointer to a member.
 template <class Entries, class TextOf>
 std::string joined(const Entries& entries, std::string_view separator, const TextOf& text_of) {
     std::vector<std::string> texts;
@@ -34,13 +34,13 @@ std::string joined(const Entries& entries, std::string_view separator, const Tex
     for (const auto& entry : entries) texts.push_back(std::invoke(text_of, entry));
     return joined(texts, separator);
 }
-/// "07" for 7 of ten or more: all numbers from 1 to `count` get the same width.
+/// The number with leading zeros, so that all numbers from 1 to `count` have the same width: "07" for 7 of 10.
 inline std::string padded(std::size_t number, std::size_t count) {
     const std::string digits = std::to_string(number);
     return std::string(std::to_string(count).size() - digits.size(), '0') + digits;
 }
-/// Text from files, safe to print on a terminal: control characters are replaced by "?", and at most `maximum` columns are
-/// kept.
+/// Makes a text from a file safe to print on a terminal: control characters are replaced by "?", and at most `maximum` characters
+/// are kept.
 inline std::string printable(const std::string& text, std::size_t maximum = 10000) {
     std::string clean;
     std::size_t columns = 0;
@@ -54,7 +54,7 @@ inline std::string printable(const std::string& text, std::size_t maximum = 1000
     }
     return clean;
 }
-/// "1 slice", "2 slices".
+/// A count with its noun: "1 slice", "2 slices".
 inline std::string counted(std::size_t count, std::string_view noun) {
     return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
 }

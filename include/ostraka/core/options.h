@@ -24,27 +24,31 @@
 
 namespace ostraka {
 
+/// Rule of an option: any value is allowed.
 struct Anything {};
+/// Rule of an option: numbers from min to max are allowed.
 struct Range {
-    double min, max;
+    double min, max;  ///< both allowed
 };
+/// Rule of an option: only these names are allowed.
 struct Choices {
     std::vector<std::string> names;
     Choices(std::initializer_list<const char*> choices) : names(choices.begin(), choices.end()) {}
     explicit Choices(std::vector<std::string> choices) : names(std::move(choices)) {}
 };
-/// Words that are allowed besides other values; help and completion offer them.
+/// Rule of an option: these words are allowed besides other values. Help and completion offer the words.
 struct Words {
     std::vector<std::string> names;
     std::string others;  ///< description of the other values: "three numbers"
-    /// Throws Error (usage) for text that is neither; empty: the operation checks the value.
+    /// Throws Error (usage) for a text that is neither one of `names` nor another allowed value; empty: the operation checks the
+    /// text.
     std::function<void(const std::string&)> check = {};
 };
 using OptionRule = std::variant<Anything, Range, Choices, Words>;
 
 /// An enumeration with the values 0, 1, ..., named in this order by the option's Choices.
 struct EnumValue {
-    void* value;
+    void* value;  ///< address of the variable
     std::size_t (*get)(const void*);
     void (*set)(void*, std::size_t);
 };
@@ -81,52 +85,59 @@ public:
 /// Type of the value of an option; "texts", "numbers" and "integers" are lists.
 enum class OptionType { boolean, integer, number, text, choice, texts, numbers, integers };
 
+/// One option: a named reference to a variable, with help, rule and state.
 struct Option {
-    std::string name;  ///< the flag (--name) and the JSON key
-    OptionValue value;
-    std::string help;
-    OptionRule rule;
+    std::string name;            ///< the flag (--name) and the JSON key
+    OptionValue value;           ///< the variable that holds the value
+    std::string help;            ///< help text
+    OptionRule rule;             ///< allowed values
     std::string unit = {};       ///< unit of the value; empty: none, or stated in the help
     std::string group = {};      ///< heading in the help; empty: none
     std::string initial = {};    ///< default value as text; empty: none
-    bool needed = false;         ///< must be given
-    bool given = false;          ///< has been set by the caller
-    bool is_positional = false;  ///< given without the flag
-    bool affects_result = true;  ///< false: not recorded in the provenance
-    bool takes_words = false;    ///< a list option whose flag may be followed by several words
-    bool from_files = true;      ///< false: only the caller may set it, not a study, a kit or a session (doc/security.md)
+    bool needed = false;         ///< true: the caller must give a value
+    bool given = false;          ///< true: the caller has set the value
+    bool is_positional = false;  ///< true: given on the command line without the flag
+    /// False: the option does not affect the result and is not recorded in the provenance.
+    bool affects_result = true;
+    bool takes_words = false;  ///< true: a list option whose flag may be followed by several words
+    bool from_files = true;    ///< false: only the caller may set it, not a study, a kit or a session (doc/security.md)
 
+    /// Marks an option that must be given.
     Option& required() { return needed = true, initial.clear(), *this; }
+    /// Marks an option that is given without the flag.
     Option& positional() { return is_positional = true, *this; }
+    /// Marks a list option whose flag may be followed by several words.
     Option& words() { return takes_words = true, *this; }
-    /// For options that affect only how and where results are shown or stored.
+    /// Marks an option that affects only how and where results are shown or stored.
     Option& unrecorded() { return affects_result = false, *this; }
+    /// Marks an option that only the caller may set, not a study, a kit or a session.
     Option& only_by_caller() { return from_files = false, affects_result = false, *this; }
 
     [[nodiscard]] OptionType type() const;
-    [[nodiscard]] bool is_list() const;
+    [[nodiscard]] bool is_list() const;  ///< true if the value is a list
     /// True if there is no value: an empty text or list, or an empty optional.
     [[nodiscard]] bool empty() const;
     /// The value as text: numbers with 17 digits, true or false, lists of numbers joined by commas, lists of texts joined by ";
     /// ".
     [[nodiscard]] std::string text() const;
-    [[nodiscard]] std::vector<std::string> texts() const;
+    [[nodiscard]] std::vector<std::string> texts() const;  ///< entries of a list as texts
 
     /// Sets the value from words of a command line; several words for lists only (numbers and choices also as "1,2,3"). Throws
-    /// Error (usage) with the option, the word and the allowed values if the word or the rule is violated.
+    /// Error (usage) with the option, the word and the allowed values if a word cannot be converted or violates the rule.
     void set(const std::vector<std::string>& words);
     void set(bool value);
     void set(double value);
     void set(std::int64_t value);
     void set(const std::vector<double>& values);
-    /// Throws Error (usage) with the option, its value and the allowed values.
+    /// Checks the value against the rule. Throws Error (usage) with the option, its value and the allowed values.
     void check(const std::string& where = {}) const;
-    /// "a number from 0 to 1", "one of: a, b".
+    /// Description of the allowed values: "a number from 0 to 1", "one of: a, b".
     [[nodiscard]] std::string allowed() const;
-    /// The words of its Choices or Words.
+    /// The names of the option's Choices or Words; empty for other rules.
     [[nodiscard]] std::vector<std::string> names() const;
 };
 
+/// The options of an operation or of an options struct, in order.
 class OptionList {
 public:
     OptionList();
@@ -134,15 +145,16 @@ public:
     OptionList(OptionList&&) noexcept;
     OptionList& operator=(OptionList&&) noexcept;
 
+    /// Appends an option that refers to the variable `value`.
     Option& operator()(std::string name, OptionValue value, std::string help, OptionRule rule = Anything{},
                        std::string unit = {});
 
     /// Sets the heading in the help for the options added after this call.
     void group(std::string title) { group_ = std::move(title); }
 
-    [[nodiscard]] Option* find(const std::string& name);
+    [[nodiscard]] Option* find(const std::string& name);  ///< the option of this name; null if there is none
     [[nodiscard]] const Option* find(const std::string& name) const { return const_cast<OptionList*>(this)->find(name); }
-    void check(const std::string& where) const;
+    void check(const std::string& where) const;  ///< checks all values; throws Error (usage)
     /// Names and values as text, for provenance; the text is empty for an option without a value.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
 
@@ -156,6 +168,7 @@ private:
     std::string group_;
 };
 
+/// The option list of an options struct, filled by its member `describe`.
 template <class Options>
 OptionList options_of(const Options& options) {
     OptionList result;
@@ -163,7 +176,7 @@ OptionList options_of(const Options& options) {
     return result;
 }
 
-/// Throws Error (usage) with the option, its value and the allowed values.
+/// Checks all members of an options struct. Throws Error (usage) with the option, its value and the allowed values.
 template <class Options>
 void check_options(const Options& options, const std::string& where) {
     options_of(options).check(where);

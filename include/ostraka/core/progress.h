@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// Monitors the work of one thread and of the parallel loops that it starts.
+/// Receives the progress of the work of one thread (with the parallel loops that the thread starts), and cancels the work.
 class Watch {
 public:
     /// Called with the current phase and the completed fraction (0 to 1), at most ten times per second, from any thread.
@@ -18,13 +18,13 @@ public:
 
     /// Makes the work stop with an Error (cancelled) at its next check. May be called from any thread or from a signal handler.
     void cancel() { cancelled_ = true; }
-    [[nodiscard]] bool is_cancelled() const { return cancelled_; }
+    [[nodiscard]] bool is_cancelled() const { return cancelled_; }  ///< true after cancel()
 
 private:
     std::atomic<bool> cancelled_{false};
 };
 
-/// Sets the watch (or none) of this thread during its lifetime.
+/// Sets the watch of the current thread (null: none) during the lifetime of this object.
 class WatchScope {
 public:
     explicit WatchScope(Watch* watch);
@@ -36,13 +36,13 @@ private:
     Watch* outer_;
 };
 
-/// The watch of this thread, or none.
+/// The watch of the current thread; null if there is none.
 Watch* current_watch();
-/// Throws Error (cancelled) if the watch of this thread is cancelled.
+/// Throws Error (cancelled) if the watch of the current thread is cancelled.
 void check_cancelled();
 
-/// For inner loops and functors of other libraries: checks for cancellation at every 1024th call only. Not to be shared between
-/// threads.
+/// Checks for cancellation at every 1024th call only; for inner loops and functors of other libraries. An object must not be
+/// shared between threads.
 class CancelCheck {
 public:
     void operator()() {
@@ -53,10 +53,11 @@ private:
     unsigned steps_ = 0;
 };
 
-/// Reports the progress of a phase to the watch of the thread that constructs it. `advance` may be called from any thread; it
-/// throws Error (cancelled) if the work was cancelled.
+/// Reports the progress of a phase to the watch of the thread that constructs the Progress object. `advance` may be called from
+/// any thread and throws Error (cancelled) if the work was cancelled.
 class Progress {
 public:
+    /// `total`: number of steps of the phase.
     Progress(std::string phase, std::size_t total);
     ~Progress();
     Progress(const Progress&) = delete;

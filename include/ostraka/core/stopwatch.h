@@ -5,7 +5,7 @@
 
 namespace ostraka {
 
-/// Seconds since construction.
+/// Measures the time since its construction.
 class Stopwatch {
 public:
     [[nodiscard]] double seconds() const {
@@ -16,7 +16,7 @@ private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Adds the seconds of its lifetime to a sum.
+/// Adds the seconds between construction and destruction of this object to a sum.
 class AddedSeconds {
 public:
     explicit AddedSeconds(double& sum) : sum_(sum) {}

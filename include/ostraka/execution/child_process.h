@@ -9,18 +9,22 @@
 
 namespace ostraka {
 
+/// How a child process is started.
 struct ChildOptions {
-    Path folder = {};               ///< working directory; empty: that of this process
-    Path output = {}, errors = {};  ///< files for stdout and stderr; if both are the same file, the order of printing is kept
-    bool pipes = false;             ///< stdin is connected to `to` and stdout to `from`; false: stdin is empty
-    int threads = 0;                ///< OMP_NUM_THREADS; 0: as in this process
+    Path folder = {};  ///< working directory; empty: the working directory of this process
+    /// Files for stdout and stderr; both may be the same file, which then keeps the order of printing.
+    Path output = {}, errors = {};
+    /// True: stdin is connected to ChildProcess::to and stdout to ChildProcess::from; false: stdin is empty.
+    bool pipes = false;
+    int threads = 0;  ///< OMP_NUM_THREADS of the program; 0: the value of this process
 };
 
-/// A running program in its own process group, so that signals of the terminal reach this process only. The destructor kills
-/// the program if it still runs.
+/// A running program in its own process group, so that signals of the terminal do not reach the program. The destructor kills the
+/// program if it still runs.
 class ChildProcess {
 public:
-    /// words: the program (searched in PATH as a shell does) and its arguments. Throws Error (failure) if it cannot be started.
+    /// Starts a program. `words`: the program (searched in PATH as a shell does) and its arguments. Throws Error (failure) if the
+    /// program cannot be started.
     ChildProcess(std::vector<std::string> words, const ChildOptions& options);
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
@@ -29,14 +33,16 @@ public:
     /// Waits for the program to end and returns true, or false as soon as `stop()` is true; `stop` is polled every few
     /// milliseconds.
     bool wait(const std::function<bool()>& stop);
-    /// Sends a signal to the program and to the processes it has started.
+    /// Sends a signal to the program and to the processes that the program has started.
     void signal(int number) const;
-    /// Exit code after the program has ended; 128 + N if signal N ended it.
+    /// Exit code of the ended program; 128 + N if signal N ended the program.
     [[nodiscard]] int code() const;
-    /// "ended with code 3", "ended by signal 11".
+    /// How the program ended, as text: "ended with code 3", "ended by signal 11".
     [[nodiscard]] std::string ending() const;
 
+    /// File descriptor that writes to the program's stdin; -1 without pipes.
     [[nodiscard]] int to() const { return to_; }
+    /// File descriptor that reads the program's stdout; -1 without pipes.
     [[nodiscard]] int from() const { return from_; }
     /// Closes the program's standard input.
     void close_input();
@@ -45,7 +51,7 @@ private:
     int id_ = 0, status_ = 0, to_ = -1, from_ = -1;
 };
 
-/// Kills all running child processes and the processes they have started. For a process that exits immediately.
+/// Kills all running child processes and the processes that these have started; called before this process exits immediately.
 void kill_children();
 
 /// The folder of the running executable.

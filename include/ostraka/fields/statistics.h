@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// Throws Error (usage) for a face that the mesh does not have.
+/// Checks the faces of a region. Throws Error (usage) for the index of a face that the mesh does not have.
 void check_region(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// Statistics of a vertex map over a region: each selected face gives a third of its area to each of its corners. Throws Error

@@ -9,22 +9,23 @@
 
 namespace ostraka {
 
+/// A drawing of annotations as rows and of relationships as brackets.
 struct BracketGraph {
-    std::string title;
+    std::string title;  ///< title of the drawing
     struct Row {
-        std::string name;
-        int depth = 0;
-        Rgb colour;
+        std::string name;  ///< name of the annotation
+        int depth = 0;     ///< depth in the tree; 0 for a root
+        Rgb colour;        ///< colour of the annotation
     };
     struct Bracket {
-        std::string type;
-        std::vector<std::size_t> rows;  ///< indices of the joined rows
-        int lane = 0;                   ///< counted outwards, 0 is the innermost
-        bool strong = false;            ///< whether it is a constraint
-        bool directed = false;          ///< whether it is directed, from its first row
+        std::string type;               ///< name of the relationship
+        std::vector<std::size_t> rows;  ///< indices of the rows that the bracket joins
+        int lane = 0;                   ///< column in which the bracket is drawn; 0 is closest to the rows
+        bool strong = false;            ///< true: the relationship is a constraint
+        bool directed = false;          ///< true: the relationship is directed, from the first of `rows`
     };
-    std::vector<Row> rows;  ///< in preorder: each row comes after the row that contains it
-    std::vector<Bracket> brackets;
+    std::vector<Row> rows;          ///< in preorder: each row comes after the row that contains it
+    std::vector<Bracket> brackets;  ///< one per relationship
 };
 
 /// Writes the graph as .svg, .pdf or .png, atomically, creating folders. Throws Error (usage) for any other extension.

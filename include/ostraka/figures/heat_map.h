@@ -11,14 +11,17 @@
 
 namespace ostraka {
 
+/// A plot of a matrix as coloured cells.
 struct HeatMap {
-    std::string title;
-    Eigen::MatrixXd values;  ///< NaN: no value, drawn grey
-    std::vector<std::string> rows, columns;
-    std::string label;                                 ///< name of the quantity, with its unit
-    std::optional<double> minimum = {}, maximum = {};  ///< colour range; by default that of the finite values
-    bool numbers = false;          ///< whether the numbers are written into the squares, if these are large enough
-    std::vector<int> groups = {};  ///< groups of rows and columns, or empty: lines separate neighbours of different groups
+    std::string title;                       ///< title of the plot
+    Eigen::MatrixXd values;                  ///< the matrix; NaN entries have no value and are drawn grey
+    std::vector<std::string> rows, columns;  ///< names of the rows and of the columns of `values`
+    std::string label;                       ///< name of the quantity, with its unit
+    /// Ends of the colour range; none: smallest and largest finite value.
+    std::optional<double> minimum = {}, maximum = {};
+    bool numbers = false;  ///< true: values are written into the cells, if the cells are large enough
+    /// For each row (and column): index of its group; lines separate adjacent rows of different groups; empty: no lines.
+    std::vector<int> groups = {};
 };
 
 /// Writes the heat map as an SVG, or as a PNG of twice the size if the file name ends in .png, atomically, creating folders.

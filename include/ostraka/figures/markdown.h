@@ -1,4 +1,4 @@
-// Escaping of untrusted text in Markdown: it stays text, also where the Markdown becomes HTML.
+// Escaping of untrusted text in Markdown, so that the text stays text, also when the Markdown is converted to HTML.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace ostraka {
 
-/// A single line: line breaks and control characters become blanks, and Markdown and HTML markup is escaped.
+/// The text as a single line: line breaks and control characters become blanks, and Markdown and HTML markup is escaped.
 std::string markdown_text(std::string_view text);
 
-/// Like `markdown_text` for each line; an empty line starts a paragraph, and no line starts a list, a rule or a heading.
+/// Escapes each line of the text as `markdown_text` does. An empty line starts a paragraph, and no line starts a list, a rule or
+/// a heading.
 std::string markdown_paragraphs(std::string_view text);
 
-/// The name of a file below the page, escaped for use as the address of a link or a picture.
+/// A relative file name, escaped for use as the address of a link or a picture.
 std::string markdown_file(std::string_view name);
 
 }  // namespace ostraka

@@ -13,32 +13,33 @@ namespace ostraka {
 
 using Path = std::filesystem::path;
 
-/// Throws Error (input), as read_file does, if the file is missing, is a directory or cannot be opened.
+/// Checks that a file can be read. Throws Error (input) if the file is missing, is a directory or cannot be opened.
 void check_readable(const Path& file);
 
-/// The file's bytes. Throws Error (input) if it is missing, a directory, unreadable or larger than memory allows.
+/// Reads a whole file and returns its bytes. Throws Error (input) if the file is missing, a directory, unreadable or larger than
+/// memory allows.
 std::string read_file(const Path& file);
 
-/// Whether the name denotes a file in memory.
+/// True if the path denotes a file in memory.
 bool is_memory(const Path& file);
 /// Removes a file in memory, or all files in memory below a folder.
 void remove_memory_files(const Path& file);
 
-/// Queries for files on disk and in memory.
+/// True if the file exists, on disk or in memory.
 bool file_exists(const Path& file);
-/// Size in bytes; 0 if there is no such file.
+/// Size of a file in bytes; 0 if there is no such file.
 std::size_t size_of_file(const Path& file);
-bool is_folder(const Path& folder);
+bool is_folder(const Path& folder);  ///< true for an existing folder
 /// Names of the files directly in a folder, sorted. `other_entries`: receives the names of entries that are neither files nor
 /// folders, such as dangling links.
 std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* other_entries = nullptr);
-/// Creates the folder and its missing parents. Throws Error (failure) if it cannot be created or is a file.
+/// Creates the folder and its missing parents. Throws Error (failure) if the folder cannot be created or a file has its name.
 void make_folder(const Path& folder);
-void remove_file(const Path& file);
-/// Whether two paths denote the same place, after resolving links and relative parts. The place need not exist.
+void remove_file(const Path& file);  ///< on disk or in memory
+/// True if two paths denote the same file or folder, after resolving links and relative parts. The file need not exist.
 bool same_place(const Path& a, const Path& b);
 
-/// While it lives, records the files that `read_file` reads on this thread.
+/// Records the files that `read_file` reads on this thread during the lifetime of this object.
 class ReadRecord {
 public:
     ReadRecord();
@@ -47,9 +48,9 @@ public:
     ReadRecord& operator=(const ReadRecord&) = delete;
     struct Entry {
         Path file;
-        std::string sha256;
+        std::string sha256;  ///< checksum of the bytes read
     };
-    std::vector<Entry> files;  ///< in the order of first reading
+    std::vector<Entry> files;  ///< files that were read, in the order of their first reading
 
 private:
     ReadRecord* outer_;
@@ -57,14 +58,14 @@ private:
 
 /// Permissions of a written file.
 enum class FileAccess {
-    usual,      ///< as the replaced file, or by the process's umask if there is none
+    usual,      ///< permissions of the replaced file, or by the process's umask if there is no such file
     owner_only  ///< mode 0600, for secrets
 };
 
-/// A file that appears under its name only when it is complete: bytes go to a temporary file in the same folder; `commit`
-/// flushes it to the disk and renames it, or leaves the renaming to an open OutputTransaction. Without `commit` (after an
-/// exception, for example) the temporary file is removed and an existing file of that name stays. Devices and pipes (/dev/null,
-/// /dev/stdout) are written to directly. Throws Error (failure) if the folder is missing or the disk is full.
+/// A file that appears under its name only when it is complete: bytes are written to a temporary file in the same folder;
+/// `commit` flushes the temporary file to the disk and renames it, or leaves the renaming to an open OutputTransaction. Without
+/// `commit` (after an exception, for example) the temporary file is removed and an existing file of that name stays. Devices and
+/// pipes (/dev/null, /dev/stdout) are written to directly. Throws Error (failure) if the folder is missing or the disk is full.
 class AtomicFile {
 public:
     explicit AtomicFile(Path file, FileAccess access = FileAccess::usual);
@@ -82,10 +83,10 @@ private:
     std::string memory_;  ///< contents of a file in memory
 };
 
-/// Makes several outputs appear together or not at all. While a transaction is open on this thread, files that AtomicFile
-/// commits on this thread and in parallel loops started by it are on disk under temporary names until `commit` renames them
-/// all. Without `commit` they are removed, and so are empty folders that were created for them. If one file cannot be renamed,
-/// the files that the others replaced are restored (except on file systems without hard links).
+/// Makes several outputs appear together or not at all. While a transaction is open on this thread, files that AtomicFile commits
+/// on this thread and in parallel loops started by this thread stay on disk under temporary names until the transaction's
+/// `commit` renames them all. Without `commit` the temporary files are removed, as are empty folders that were created for them.
+/// If one file cannot be renamed, replaced files are restored (except on file systems without hard links).
 class OutputTransaction {
 public:
     OutputTransaction();
@@ -99,35 +100,35 @@ private:
     friend class AtomicFile;
     friend void replace_outputs(const Path&, const std::string&);
     friend void make_folder(const Path&);
-    std::vector<std::pair<Path, Path>> pending_;          ///< temporary name, name
+    std::vector<std::pair<Path, Path>> pending_;          ///< files to be renamed: temporary name, final name
     std::vector<Path> created_;                           ///< created folders, parents first
-    std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
+    std::vector<std::pair<Path, std::string>> replaced_;  ///< arguments of replace_outputs: folder, owner
     OutputTransaction* outer_;
 };
 
-/// For a folder that is filled by one command: when the innermost open transaction commits, it also removes the files that an
-/// earlier transaction of the same `owner` wrote directly into `folder` and this one did not. The written files are listed in
-/// the folder (`.OWNER.outputs`, in the format of sha256sum); files that are not listed, or that were changed since, stay.
-/// Throws std::logic_error if no transaction is open.
+/// For a folder that is filled by one command: when the innermost open transaction commits, files are removed that an earlier
+/// transaction of the same `owner` wrote directly into `folder` and the current transaction did not write again. The written
+/// files are listed in the folder (`.OWNER.outputs`, in the format of sha256sum); files that are not in the list, or that were
+/// changed after they were written, stay. Throws std::logic_error if no transaction is open.
 void replace_outputs(const Path& folder, const std::string& owner);
 
 /// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files with the names of
-/// temporary files that no process holds locked; where files cannot be locked, those not modified for a day. AtomicFile calls
-/// this when its process first writes to a folder. Returns the number of files removed.
+/// temporary files that no process holds locked; where files cannot be locked, temporary files that were not modified for a day.
+/// AtomicFile calls this function when its process first writes to a folder. Returns the number of files removed.
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.
 void write_file(const Path& file, std::string_view bytes, FileAccess access = FileAccess::usual);
 
 /// For a process that exits while its threads still work: waits for a commit in progress, then removes all temporary files,
-/// scratch folders and empty folders that this process created, and refuses to create others.
+/// scratch folders and empty folders that this process created, and lets no more be created.
 void abandon_outputs();
 
 /// A new folder, private to this process, in the system's folder for temporary files; the destructor removes it with its
 /// contents.
 class ScratchFolder {
 public:
-    /// `purpose`: a word that becomes part of the name. Throws Error (failure) if the folder cannot be created.
+    /// `purpose`: a word that becomes part of the folder's name. Throws Error (failure) if the folder cannot be created.
     explicit ScratchFolder(const std::string& purpose);
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;
@@ -138,18 +139,18 @@ private:
     Path path_;
 };
 
-/// Throws Error (usage) if an output is the same file as an input or another output (after resolving links and relative parts),
-/// and Error (failure) if the folder of an output does not exist. To be called before any work.
+/// Checks file names before any work is done. Throws Error (usage) if an output is the same file as an input or another output
+/// (after resolving links and relative parts), and Error (failure) if the folder of an output does not exist.
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs);
 
-/// Extension in lower case, with the dot.
+/// File name extension in lower case, with the dot.
 std::string extension(const Path& file);
 
-/// SHA-256 in hexadecimal.
+/// SHA-256 checksum of bytes, in hexadecimal.
 std::string sha256(std::string_view bytes);
 std::string sha256_of_file(const Path& file);
 
-/// Incremental SHA-256.
+/// SHA-256 of data that are given piece by piece.
 class Sha256 {
 public:
     Sha256();
@@ -157,7 +158,7 @@ public:
     Sha256(const Sha256&) = delete;
     Sha256& operator=(const Sha256&) = delete;
     void update(const void* data, std::size_t size);
-    std::string hexadecimal();
+    std::string hexadecimal();  ///< the checksum; no data may be added afterwards
 
 private:
     void* context_;

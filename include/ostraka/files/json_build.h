@@ -9,7 +9,8 @@
 
 namespace ostraka {
 
-/// JSON value of a boolean, a number, a text, a JSON value, an optional of these (null if empty), or a list of any of these.
+/// Converts to a JSON value: a boolean, a number, a text, a JSON value, an optional value (null if empty), or a list of such
+/// values.
 template <class T>
 JsonValue json_value(T&& value, JsonAllocator& allocator) {
     using Type = std::remove_cvref_t<T>;
@@ -34,17 +35,17 @@ JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Transfor
     for (const auto& element : elements) array.PushBack(json_value(transform(element), allocator), allocator);
     return array;
 }
-/// [value]
+/// The JSON array [value] with one element.
 JsonValue json_list_of(JsonValue value, JsonAllocator& allocator);
 /// A JSON number; whole numbers below 1e9 have no decimal point.
 JsonValue json_number(double value);
-/// Adds members, given as alternating names and values.
+/// Adds members to a JSON object; arguments are alternating names and values.
 template <class Value, class... Rest>
 void add_members(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     add_member(object, name, json_value(std::forward<Value>(value), allocator), allocator);
     if constexpr (sizeof...(rest) > 0) add_members(object, allocator, std::forward<Rest>(rest)...);
 }
-/// As add_members, but skips false and empty texts, lists and optionals.
+/// Adds members to a JSON object like add_members, but skips the value false and empty texts, lists and optionals.
 template <class Value, class... Rest>
 void add_nonempty_members(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     bool nonempty = false;
@@ -55,16 +56,16 @@ void add_nonempty_members(JsonValue& object, JsonAllocator& allocator, std::stri
     if (nonempty) add_members(object, allocator, name, std::forward<Value>(value));
     if constexpr (sizeof...(rest) > 0) add_nonempty_members(object, allocator, std::forward<Rest>(rest)...);
 }
-/// Copies the listed members that the object `from` has.
+/// Copies those members of `from` to `object` whose names are listed.
 void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names);
-/// {name: value, ...} from alternating names and values.
+/// The JSON object {name: value, ...} from alternating names and values.
 template <class... Members>
 JsonValue json_object(JsonAllocator& allocator, Members&&... members) {
     JsonValue object(rapidjson::kObjectType);
     if constexpr (sizeof...(members) > 0) add_members(object, allocator, std::forward<Members>(members)...);
     return object;
 }
-/// {"format": "ostraka-KIND", "version": 1}
+/// A new document {"format": "ostraka-KIND", "version": 1}, to which members can be added.
 Json json_document(std::string_view kind);
 
 }  // namespace ostraka

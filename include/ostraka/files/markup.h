@@ -1,4 +1,4 @@
-// Text embedded in HTML pages.
+// Escaping of text that is embedded in HTML pages.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// JSON with < > & escaped, so that it cannot end the script element of an HTML page.
+/// JSON text with < > & escaped, so that the text cannot end the script element of an HTML page.
 inline std::string with_markup_escaped(std::string_view json) {
     std::string text;
     text.reserve(json.size());

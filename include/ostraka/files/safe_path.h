@@ -1,4 +1,5 @@
-// Paths read from files of unknown origin: they never lead out of the folders that the user named (doc/security.md).
+// Checks of paths read from files of unknown origin, so that such paths never lead out of the folders that the user named
+// (doc/security.md).
 #pragma once
 
 #include "ostraka/files/file.h"
@@ -8,8 +9,8 @@
 
 namespace ostraka {
 
-/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file, `location` the
-/// position in it.
+/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file that contains
+/// the name, `location` the position in that file.
 void require_file_name(const std::string& name, const std::string& where, const std::string& location);
 
 /// Throws Error (input) unless `name` is a single path component: not empty, not "." or "..", without separators and control
@@ -21,20 +22,22 @@ void require_plain_name(const std::string& name, const std::string& where, const
 Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& location,
                  const std::string& folder_description, const std::string& remedy);
 
-/// The absolute path with all links resolved, including dangling links (writing to a dangling link creates its target). Empty
-/// if links form a cycle.
+/// The absolute path with all links resolved, including dangling links (writing to a dangling link creates its target). The
+/// result is empty if links form a cycle.
 Path resolved(const Path& path);
 
-/// Whether the path, after resolving links, is the folder or lies in it. The path need not exist. False if it cannot be
-/// resolved.
+/// True if the path, after resolving links, is the folder or lies inside the folder. The path need not exist; a path that cannot
+/// be resolved gives false.
 bool is_inside(const Path& path, const Path& folder);
+/// True if the path lies inside at least one of the folders.
 bool is_inside_any(const Path& path, const std::vector<Path>& folders);
 
 /// Throws Error (input) if writing to `file` would leave `folder` through a link, or would write to a device or a pipe.
 void require_writable_inside(const Path& file, const Path& folder);
 
-/// While it lives, this thread and the parallel loops that it starts may create files and folders in `folder` only, after
-/// resolving links; others are refused with Error (input). For work on folders of unknown origin, which may contain links.
+/// During the lifetime of this object, this thread and the parallel loops that it starts may create files and folders inside
+/// `folder` only (after resolving links); creating any other file throws Error (input). A WriteScope protects work on folders of
+/// unknown origin, which may contain links.
 class WriteScope {
 public:
     explicit WriteScope(Path folder);
@@ -42,9 +45,9 @@ public:
     WriteScope(const WriteScope&) = delete;
     WriteScope& operator=(const WriteScope&) = delete;
 
-    /// The scope of this thread, or nullptr.
+    /// The scope of this thread; null if there is none.
     static const WriteScope* current();
-    /// Sets the scope (or none) of this thread during its lifetime.
+    /// Sets the scope of this thread (null: none) during the lifetime of this object.
     class Within {
     public:
         explicit Within(const WriteScope* scope);

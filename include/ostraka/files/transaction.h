@@ -5,10 +5,10 @@
 
 namespace ostraka {
 
-/// The innermost transaction open on this thread, or nullptr.
+/// The innermost transaction open on this thread; null if there is none.
 OutputTransaction* current_transaction();
-/// Sets the transaction (or none) of this thread during its lifetime: parallel loops write into the transaction of the thread
-/// that starts them.
+/// Sets the transaction of this thread (null: none) during the lifetime of this object. Threads of a parallel loop use a
+/// TransactionScope to write into the transaction of the thread that started the loop.
 class TransactionScope {
 public:
     explicit TransactionScope(OutputTransaction* transaction);
@@ -20,8 +20,8 @@ private:
     OutputTransaction* outer_;
 };
 
-/// While it lives, transactions committed on this thread do not remove these files, even if an earlier run wrote them into a
-/// folder of `replace_outputs`: they are inputs of this run.
+/// Protects input files of this run: during the lifetime of this object, transactions committed on this thread do not remove
+/// these files, even if an earlier run wrote them into a folder of `replace_outputs`.
 class KeptFiles {
 public:
     explicit KeptFiles(std::vector<Path> files);

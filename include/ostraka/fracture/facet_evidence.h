@@ -10,56 +10,63 @@
 
 namespace ostraka {
 
-/// Points spread evenly over the surface, and the patch of each.
+/// Points spread evenly over the surface of a fragment.
 struct PatchSamples {
-    std::vector<Point> points;
-    std::vector<Index> patch;
+    std::vector<Point> points;  ///< positions of the samples
+    std::vector<Index> patch;   ///< for each point: index of its patch
 };
 
-/// The samples around each patch.
+/// For each patch: the samples (PatchSamples) in a neighbourhood of the patch.
 struct Neighbourhoods {
-    double radius = 0;
-    std::vector<std::size_t> first;  ///< per patch, the index of its first sample; one more entry for the end
-    std::vector<Index> samples;
+    double radius = 0;  ///< radius of the neighbourhoods
+    /// For each patch: position in `samples` of its first entry; one more entry for the end.
+    std::vector<std::size_t> first;
+    std::vector<Index> samples;  ///< indices of sample points, patch by patch
 };
 
-/// Lengths in the features are divided by the square root of the fragment's area, so that the features do not depend on the
-/// unit or the pose.
+/// Features of the patches of a fragment, and the data from which they are computed. Lengths in the features are divided by the
+/// square root of the fragment's area, so that the features do not depend on unit and pose.
 struct FacetEvidence {
     FacetGraph graph;
     Walls walls;
     PatchSamples samples;
-    std::array<Neighbourhoods, 4> around;           ///< smallest radius first
-    std::array<std::vector<std::size_t>, 2> parts;  ///< per patch, its part between convex edges: sharp ones, and less sharp ones
-    std::vector<double> convexity;                  ///< per patch, how sharply the surface turns outward around it
-    FeatureTable features;                          ///< one row per patch
+    std::array<Neighbourhoods, 4> around;  ///< neighbourhoods of each patch at four radii, smallest radius first
+    /// For each patch: index of its part (convex_parts), once with parts bounded by sharp convex edges, once also by less sharp
+    /// edges.
+    std::array<std::vector<std::size_t>, 2> parts;
+    std::vector<double> convexity;  ///< for each patch: how sharply the surface turns outward around the patch
+    FeatureTable features;          ///< features of the patches, one row per patch
 };
 
-/// Throws Error (input) for a mesh without area.
+/// Computes the features of all patches. Throws Error (input) for a mesh without area.
 FacetEvidence facet_evidence(const Mesh& mesh);
-/// Names of the features, in their order.
+/// Names of the features of `facet_evidence`, in the order of the columns.
 const std::vector<std::string>& facet_feature_names();
 
-/// Appends context features: the log odds aggregated over the neighbourhood and the part of each patch and over the whole
-/// fragment.
+/// The features with context features appended: the log odds of patches aggregated over the neighbourhood and the part of each
+/// patch and over the whole fragment.
 FeatureTable with_context(const FacetEvidence& evidence, const std::vector<double>& log_odds);
-/// Names of the context features, in their order.
+/// Names of the context features, in the order of the columns.
 const std::vector<std::string>& facet_context_names();
 
-/// Classifier of fracture surface. Its log odds are calibrated on objects that were not used to train the trees.
+/// Classifier of patches as fracture surface or intact surface. The log odds are calibrated on objects that were not used to
+/// train the trees.
 struct FacetModel {
-    BoostedTrees alone;           ///< uses the features of the patch only
-    BoostedTrees trees;           ///< uses these and the context features from the log odds of `alone` (Tu and Bai 2010)
+    BoostedTrees alone;  ///< first stage: uses only the features of the patch
+    /// Second stage: uses the features of the patch and the context features computed from the log odds of `alone` (Tu and Bai
+    /// 2010).
+    BoostedTrees trees;
     double shift = 0, slope = 1;  ///< calibrated log odds: shift + slope * log odds of `trees`
 
+    /// Calibrated log odds of fracture surface, per patch.
     [[nodiscard]] std::vector<double> log_odds(const FacetEvidence& evidence) const;
 };
 
-/// The built-in model (data/facets.model.json), and its SHA-256.
+/// The built-in model (data/facets.model.json).
 const FacetModel& facet_model();
-std::string facet_model_version();
+std::string facet_model_version();  ///< SHA-256 of the built-in model
 
-/// Log odds of each row.
+/// Log odds predicted for each row of a feature table.
 std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& rows);
 
 }  // namespace ostraka

@@ -10,49 +10,54 @@
 
 namespace ostraka {
 
+/// Options of `find_facets`.
 struct FacetOptions {
-    double edge = 40;        ///< dihedral angle in degrees at which an edge may bound a fracture
-    double wall = 0.25;      ///< max wall thickness of a shell, as a share of the square root of its area
-    double coherence = 0.3;  ///< weight of the neighbours relative to the evidence of a face itself
+    double edge = 40;  ///< dihedral angle in degrees at which an edge may bound a fracture
+    /// Max wall thickness of a shell, as a fraction of the square root of the fragment's area.
+    double wall = 0.25;
+    /// Weight of the agreement of neighbouring faces, relative to the features of the face itself.
+    double coherence = 0.3;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// A connected component of faces with the same facet.
+/// A connected component of faces of the same facet class.
 struct FacetSegment {
     Facet facet = Facet::outer;
-    std::vector<Index> faces;  ///< ascending
-    double area = 0;
-    double confidence = 0;  ///< 0 to 1: how well the evidence of the faces supports the label, mean over the area
+    std::vector<Index> faces;  ///< indices of the faces, ascending
+    double area = 0;           ///< total area of the faces
+    double confidence = 0;     ///< how well the features of the faces support the class: mean over the area, 0 to 1
 };
 
+/// Facet class of each face of a fragment, and the answer whether the object is broken.
 struct Facets {
-    /// Whether the object is broken: a fracture was found; there is no evidence of one; undecided (the fracture that was found
-    /// may be none, or one may have been missed).
+    /// Whether the object is broken. broken: a fracture was found; whole: there is no evidence of a fracture; unclear: a fracture
+    /// that was found may not be one, or a fracture may have been missed.
     enum class Answer { broken, whole, unclear };
 
-    std::vector<Facet> of_face;
-    std::vector<double> probability;     ///< per face, probability of being fracture, from the face's own evidence
-    std::vector<FacetSegment> segments;  ///< largest first
+    std::vector<Facet> of_face;  ///< class of each face
+    /// For each face: probability of being fracture surface, from the features of its own patch.
+    std::vector<double> probability;
+    std::vector<FacetSegment> segments;  ///< connected components of equal class, largest area first
     Answer answer = Answer::unclear;
-    bool shell = false;     ///< a wall with two sides
-    double thickness = 0;   ///< thickness of the wall, if there is one
-    double confidence = 0;  ///< mean over the area
-    std::vector<std::string> notes;
-    [[nodiscard]] double area(Facet facet) const;
+    bool shell = false;                            ///< true: the fragment is a wall with two sides
+    double thickness = 0;                          ///< thickness of the wall, if `shell`
+    double confidence = 0;                         ///< confidence of the classes, mean over the area
+    std::vector<std::string> notes;                ///< messages about the classification
+    [[nodiscard]] double area(Facet facet) const;  ///< total area of a class
 };
 
 std::string to_string(Facets::Answer answer);
 
-/// Groups the faces into at most about 24 000 patches. A model (data/facets.model.json) trained on broken objects, synthetic
-/// and scanned, gives each patch its probability of being fracture. The labels minimise the data cost of the patches plus the
-/// length of their boundaries, which is cheap along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). If
-/// most of the intact surface lies over a thin wall whose other side is intact too, it is split into an outer and an inner
-/// side: the outer side faces away from the axis of rotation (axis/axis.h) or, without an axis, from the point nearest to the
-/// lines along all normals. Throws Error (input) for a mesh without area.
+/// Classifies the faces of a fragment. The faces are grouped into at most about 24 000 patches. A model (data/facets.model.json)
+/// trained on broken objects, synthetic and scanned, gives each patch its probability of being fracture. The labels minimise the
+/// data cost of the patches plus the length of their boundaries, which is cheap along sharp convex edges (alpha expansion;
+/// Boykov, Veksler and Zabih 2001). If most of the intact surface lies over a thin wall whose other side is intact too, the
+/// intact surface is split into an outer and an inner side: the outer side faces away from the axis of rotation (axis/axis.h) or,
+/// without an axis, from the point closest to the lines along all normals. Throws Error (input) for a mesh without area.
 Facets find_facets(const Mesh& mesh, const FacetOptions& options = {});
 
-/// As above, with given log odds of each patch.
+/// Classifies the faces of a fragment from its patch features and given log odds of fracture surface for each patch.
 Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds,
                    const FacetOptions& options = {});
 

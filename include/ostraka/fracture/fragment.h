@@ -15,23 +15,40 @@ namespace ostraka {
 enum class Facet : std::uint8_t { outer, inner, fracture };
 std::string to_string(Facet facet);
 
+<<<<<<< ours
 struct Fragment : AnnotatedMesh {
     std::string name;
     std::vector<Facet> facets;  ///< per face; empty: all outer
+||||||| base
+struct Fragment {
+    std::string name;
+    Mesh mesh;
+    AnnotationSet annotations;
+    std::vector<Facet> facets;  ///< per face; empty: all outer
+=======
+/// A fragment with its annotations and facet classes.
+struct Fragment {
+    std::string name;  ///< name in reports
+    Mesh mesh;         ///< surface of the fragment
+    AnnotationSet annotations;
+    std::vector<Facet> facets;  ///< class of each face; empty: all faces are outer surface
+>>>>>>> theirs
 };
 
-/// The facet that the tag of a region names: "outer", "inner" or "fracture" (case-insensitive); none for any other annotation.
+/// The facet class that the tag of a region names: "outer", "inner" or "fracture" (case-insensitive); none for any other
+/// annotation.
 std::optional<Facet> named_facet(const Annotation& annotation);
 
-/// Facets from annotations (`named_facet`); faces in none of them are `other`. Throws Error (input) if two such annotations
-/// share a face.
+/// The facet class of each face, from annotations that name a facet (`named_facet`); all other faces get the class `other`.
+/// Throws Error (input) if two annotations that name facets share a face.
 std::vector<Facet> facets_of(AnnotatedMeshView object, Facet other = Facet::outer);
 
-/// The mesh moved, or scaled about the origin.
+/// A copy of the mesh, moved by a rigid motion.
 Mesh moved(const Mesh& mesh, const Motion& motion);
+/// A copy of the mesh, scaled about the origin.
 Mesh scaled_by(const Mesh& mesh, double scale);
 
-/// Per face, whether it is intact surface; empty where all are outer.
+/// For each face: true if the face is intact surface (not fracture); empty if `facets` is empty.
 std::vector<bool> intact_faces(const std::vector<Facet>& facets);
 
 }  // namespace ostraka

@@ -9,58 +9,69 @@
 
 namespace ostraka {
 
+/// Options of `match_rotations`.
 struct RotationMatchOptions {
-    enum class Turns { automatic, never } rotations = Turns::automatic;  ///< automatic: where the rotations are undetermined
+    /// Whether rotations are determined from the fractures: automatic (where undetermined) or never.
+    enum class Turns { automatic, never } rotations = Turns::automatic;
     int frames = 200;        ///< number of frames along the rim of each sherd's fracture
     int samples = 2000;      ///< number of points on each fracture
-    int candidates = 16;     ///< number of rotations per pair that are refined
-    int beam = 64;           ///< width of the beam search over assemblies
+    int candidates = 16;     ///< number of rotations per pair of sherds that are refined
+    int beam = 64;           ///< number of assemblies kept at each step of the beam search
     double hold = 0.5;       ///< weight of the sherd's position on the template relative to the fractures
-    double min_joint = 0.5;  ///< min confidence of a joint; below it the joint is not decided
+    double min_joint = 0.5;  ///< min confidence of a joint; a joint of lower confidence is not decided
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// A sherd on the template. Fixed: its rotation is known (landmarks); the others are aligned with it.
+/// A sherd registered to the template vessel up to a rotation about its axis.
 struct SherdOnAxis {
-    const Fragment* fragment = nullptr;
-    Motion pose;  ///< maps the sherd onto the template: axis and height
+    const Fragment* fragment = nullptr;  ///< must not be null
+    Motion pose;                         ///< maps the sherd onto the template; axis and height are correct
+    /// True: the rotation is known too (from landmarks), and other sherds are rotated to fit this sherd.
     bool fixed = false;
 };
 
 /// Two sherds that meet along a fracture.
 struct FractureJoint {
     int first = 0, second = 0;  ///< indices of the sherds
-    double rotation = 0;        ///< rotation of the second sherd about the axis less that of the first, in degrees
-    double contact = 0;         ///< share of the smaller fracture that meets the other within half of the wall thickness
-    double rim = 0;             ///< share of the shorter rim whose side the other sherd continues
-    double residual = 0;        ///< root mean square distance of the area in contact, in the unit of the sherds
-    double score = 0;           ///< contact, weighted by closeness, + rim - area inside the other sherd
-    bool carries = false;       ///< edge of the spanning tree of the assembly; else it closes a cycle
-    /// Of a joint that carries, with all sherds on one side of it rotated against all on the other: the area that meets across,
-    /// as a share of the fractures of the smaller side (rims count as much, so up to 2); the margin over the best other
-    /// rotation (0 to 1); and the resulting confidence.
+    /// Rotation of the second sherd about the axis minus the rotation of the first, in degrees.
+    double rotation = 0;
+    /// Fraction of the smaller fracture that meets the other fracture within half of the wall thickness.
+    double contact = 0;
+    double rim = 0;       ///< fraction of the shorter rim along which the other sherd continues the intact side
+    double residual = 0;  ///< root mean square distance of the area in contact, in the unit of the sherds
+    double score = 0;     ///< score: contact (weighted by closeness) + rim - area inside the other sherd
+    /// True: the joint is an edge of the spanning tree of the assembly; false: the joint closes a cycle.
+    bool carries = false;
+    /// For a joint that carries, when all sherds on one side of the joint are rotated against all sherds on the other side.
+    /// share: fracture area and rim that meet, as fractions of the fracture area and rim of the smaller side, added up (0 to 2);
+    /// lead: margin over the best other rotation (0 to 1); confidence: resulting confidence.
     double share = 0, lead = 0, confidence = 0;
-    bool decided = false;
+    bool decided = false;  ///< true: the confidence is at least min_joint
 };
 
+/// Result of `match_rotations`.
 struct RotationMatch {
-    std::vector<Motion> poses;          ///< per sherd
-    std::vector<int> group;             ///< per sherd: sherds with equal numbers are connected by decided joints (or fixed)
-    std::vector<FractureJoint> joints;  ///< joints of the assembly; carrying ones first, best first
-    std::vector<double> overlap;        ///< per sherd: area that another sherd overlaps, as a share of its own area
-    std::vector<std::string> notes;     ///< per sherd: why it has no decided joint; else empty
-    double wall = 0;                    ///< median width of the fractures: the unit of closeness
+    std::vector<Motion> poses;  ///< per sherd: maps the sherd onto the vessel
+    /// Per sherd: number of its group; sherds of a group are connected by decided joints, or fixed.
+    std::vector<int> group;
+    /// Joints of the assembly: joints that carry first, then by descending score.
+    std::vector<FractureJoint> joints;
+    /// Per sherd: area that another sherd overlaps, as a fraction of the sherd's area.
+    std::vector<double> overlap;
+    std::vector<std::string> notes;  ///< per sherd: why the sherd has no decided joint; empty if it has one
+    double wall = 0;                 ///< median width of the fractures: wall thickness, the unit of closeness
 };
 
-/// `vessel` is a surface of revolution about the line through `point` along `direction`, and the sherds lie on it up to a
-/// rotation about that line. Every rotation of each pair is scored by the fracture area that comes close, facing the other,
-/// less the surface area that both would cover. The best rotations are refined by ICP as in register_fractures, with all six
-/// degrees of freedom, the sherd's own surface constrained to the template. The assembly maximises the sum over all pairs,
-/// including cycles, by a beam search that starts from the largest sherd; then all sherds are refined together. A joint that
-/// carries is decided if no other rotation of its two sides about the axis is nearly as good. Sherds without a decided joint are
-/// reported and placed where they overlap nothing, if possible. Deterministic. Throws Error (usage) without sherds or for options
-/// out of range.
+/// Finds the rotations of sherds on a vessel. `vessel` is a surface of revolution about the line through `point` along
+/// `direction`, and the sherds lie on the vessel up to a rotation about that line. Every relative rotation of each pair of sherds
+/// is scored by the fracture area that comes close to and faces the other fracture, less the surface area that both sherds would
+/// cover. The rotations of highest score are refined by ICP as in register_fractures, with all six degrees of freedom, the
+/// sherd's own surface constrained to the template. The assembly maximises the sum over all pairs, including cycles, by a beam
+/// search that starts from the largest sherd; then all sherds are refined together. A joint that carries is decided if no other
+/// rotation of its two sides about the axis is nearly as good. Sherds without a decided joint are reported and, if possible,
+/// placed where they overlap no other sherd. The result is deterministic. Throws Error (usage) without sherds or for options out
+/// of range.
 RotationMatch match_rotations(const Mesh& vessel, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                               const std::vector<SherdOnAxis>& sherds, const RotationMatchOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Inputs of operations, one class per kind of object.
+// Inputs of operations: one slot class per kind of object.
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
@@ -16,82 +16,86 @@
 
 namespace ostraka {
 
-/// A mesh, as a manifold or as the polygons of the file. Remarks of the reader become notes of the report.
+/// A mesh input, read as a manifold or as the polygons of the file. Remarks of the mesh reader become notes of the report.
 class MeshInput : public Slot {
 public:
     const MeshFile& operator*() const { return get(0); }
     const MeshFile* operator->() const { return &get(0); }
-    [[nodiscard]] const MeshFile& get(std::size_t i) const;
-    /// As `get`, but returns the mesh by value, without a copy if nothing else holds it. Invalidates references obtained
-    /// earlier.
+    [[nodiscard]] const MeshFile& get(std::size_t i) const;  ///< the i-th mesh, read at the first call
+    /// The i-th mesh by value, without a copy if nothing else holds the mesh. Invalidates references obtained from `get`.
     [[nodiscard]] MeshFile take(std::size_t i = 0) const;
-    /// Polygons of any topology, for operations that do not need a manifold.
+    /// The i-th mesh as polygons of any topology, for operations that do not need a manifold.
     [[nodiscard]] const PolygonSoup& polygons(std::size_t i = 0) const;
-    /// As `polygons`, but by value, without a copy if nothing else holds them.
+    /// The i-th mesh as polygons by value, without a copy if nothing else holds the polygons. Invalidates references obtained
+    /// from `polygons`.
     [[nodiscard]] PolygonSoup take_polygons(std::size_t i = 0) const;
 };
 
-/// Checksum of annotations in memory: that of their file without its provenance.
+/// Checksum of annotations in memory: the checksum that their annotation file would have if it were written without provenance.
 std::string checksum_of(AnnotatedMeshView object);
 
-/// Annotations; adds the option --force-mesh.
+/// An annotation input; adds the option --force-mesh.
 class AnnotationsInput : public Slot {
 public:
-    /// The annotations, which must belong to `mesh`. Remarks of the reader become notes of the report. Throws Error (input) as
-    /// read_annotations does.
+    /// The i-th annotation set, which must belong to `mesh`. Remarks of the annotation reader become notes of the report. Throws
+    /// Error (input) as read_annotations does.
     [[nodiscard]] const AnnotationSet& on(const Mesh& mesh, std::size_t i = 0) const;
     void describe(OptionList& options) override;
 
-    ReadAnnotationsOptions reading;
+    ReadAnnotationsOptions reading;  ///< options of the annotation reader
 };
 
+/// An input that is a relationship graph.
 class GraphInput : public Slot {
 public:
+    /// The graph, which must belong to `set`.
     [[nodiscard]] const RelationGraph& on(const AnnotationSet& set) const;
 };
 
-/// Coordinates of a mesh with respect to a cage.
+/// An input that holds cage coordinates.
 class CoordinatesInput : public Slot {
 public:
+    /// The coordinates, which must belong to `mesh` and `cage`.
     [[nodiscard]] const Coordinates& of(const Mesh& mesh, const Mesh& cage) const;
 };
 
-/// One number per element.
+/// An input with one number per vertex or face.
 class ValuesInput : public Slot {
 public:
+    /// The numbers of the i-th file or object.
     [[nodiscard]] const std::vector<double>& get(std::size_t i = 0) const;
 };
 
-/// A JSON document, such as a recipe or an edit.
+/// An input that is a JSON document, such as a recipe or an edit.
 class JsonInput : public Slot {
 public:
     const Json& operator*() const;
 };
 
-/// A template with all its parts loaded.
+/// An input that is a template, with all its parts loaded.
 class TemplateInput : public Slot {
 public:
     const Template& operator*() const;
     const Template* operator->() const { return &**this; }
     void describe(OptionList& operation_options) override;
 
-    TemplateOptions options;
+    TemplateOptions options;  ///< options of the template reader
 };
 
-/// Any other kind of file, read by a function that the caller supplies; `load` reads it only once.
+/// An input of any other kind, read by a function that the caller supplies; `load` reads each file only once.
 class FileInput : public Slot {
 public:
-    /// The object in memory if it is a T; otherwise the result of `read`, cached for later calls. `key`: whatever else the
-    /// result depends on, such as options_text(options) of the reader.
+    /// The i-th object in memory if its type is T; otherwise the result of `read` for the i-th file, cached for later calls.
+    /// `key`: whatever else the result depends on, such as options_text(options) of the reader.
     template <class T>
     [[nodiscard]] const T& load(const std::function<T(const Path&)>& read, std::size_t i = 0, const std::string& key = {}) const {
         if (const auto object = sources.at(i).object.as<T>()) return check_checksum(i), *object;
         return *std::static_pointer_cast<const T>(
             load_any(typeid(T), i, key, [&](const Path& path) { return std::make_shared<const T>(read(path)); }));
     }
-    /// Annotations of `mesh` that were given in memory, unchecked; null if there are none.
+    /// The annotations of `mesh` if they were given in memory, unchecked; null otherwise.
     [[nodiscard]] std::shared_ptr<const AnnotationSet> annotations_on(const Mesh& mesh) const;
-    /// The file's path; an object in memory is written to an in-memory file first.
+    /// The path of the i-th file; an object in memory is first written to an in-memory file.
     [[nodiscard]] Path path(std::size_t i = 0) const;
 
 private:

@@ -1,4 +1,4 @@
-// Writing objects in memory to files.
+// Writes objects in memory to files.
 #pragma once
 
 #include "ostraka/framework/objects.h"
@@ -6,7 +6,7 @@
 namespace ostraka {
 
 /// Writes `object` to `file` in the format of its kind; an in-memory folder is written with all its files. Throws Error (usage)
-/// that names `slot` if the object has no file form.
+/// that names `slot` if there is no file format for the object.
 void write_object(const Object& object, const Path& file, const std::string& slot);
 
 }  // namespace ostraka

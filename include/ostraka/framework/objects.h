@@ -15,9 +15,10 @@ namespace ostraka {
 
 class Context;
 
+/// Whether an operation reads or writes the slot.
 enum class Role { input, output };
 
-/// The kind of an object; it determines the file formats that can hold it.
+/// The kind of an object, which determines the file formats that can hold the object.
 enum class Kind {
     mesh,
     annotations,
@@ -42,7 +43,7 @@ enum class Kind {
     table,
     report,
     text,
-    folder,  ///< several files; the operation documents them
+    folder,  ///< several files, which the page of the operation describes
 };
 std::string to_string(Kind kind);
 /// File extensions of a kind, lower case; empty if any extension is allowed.
@@ -55,30 +56,33 @@ public:
     template <class T>
     explicit Object(std::shared_ptr<const T> data, std::string object_name = {}, std::string checksum = {})
         : name(std::move(object_name)), sha256(std::move(checksum)), data_(std::move(data)), type_(typeid(T)) {}
+    /// An object that holds `value`.
     template <class T>
     static Object of(T value, std::string object_name = {}) {
         return Object(std::make_shared<const T>(std::move(value)), std::move(object_name));
     }
 
-    /// The data, or null if it is not of type T.
+    /// The data; null if the data are not of type T.
     template <class T>
     [[nodiscard]] std::shared_ptr<const T> as() const {
         return type_ == typeid(T) ? std::static_pointer_cast<const T>(data_) : nullptr;
     }
+    /// True if there are data.
     explicit operator bool() const { return data_ != nullptr; }
 
-    std::string name;    ///< the file name used in reports and in files that refer to the object
-    std::string sha256;  ///< SHA-256 of the file it was read from, or of its content
+    std::string name;  ///< the file name used in reports and in files that refer to the object
+    /// SHA-256 of the file from which the object was read, or of the object's content; empty if unknown.
+    std::string sha256;
     /// Writes the object to a file; set for objects made in memory.
     std::function<void(const Path&)> write;
 
-    /// SHA-256 of the object's file, or of the file that `write` would produce; empty if unknown. `beside`: names and checksums
-    /// of accompanying files, such as the header of coordinates.
+    /// Checksums of the files that hold an object.
     struct Checksums {
-        std::string sha256;
+        std::string sha256;  ///< of the object's file, or of the file that `write` would produce; empty if unknown
+        /// Name and SHA-256 of accompanying files, such as the header of coordinates.
         std::vector<std::pair<std::string, std::string>> beside;
     };
-    /// Computed once per name and shared between copies of the object.
+    /// The checksums of the object's files, computed once per name and shared between copies of the object.
     [[nodiscard]] const Checksums& checksums() const;
 
 private:
@@ -89,14 +93,15 @@ private:
     std::type_index type_ = typeid(void);
 };
 
-/// The value of a slot: a file name or an object.
+/// One value of a slot: a file name or an object in memory.
 struct Source {
-    Path file;
-    Object object;
-    bool in_place = false;   ///< output that replaces the input it updates
-    std::string label = {};  ///< NAME, if the file was given as NAME=FILE
+    Path file;               ///< empty for an object in memory
+    Object object;           ///< empty for a file
+    bool in_place = false;   ///< true: an output that replaces the file of the input that it updates
+    std::string label = {};  ///< NAME, if the file was given as NAME=FILE; else empty
+    /// File name, or name of the object.
     [[nodiscard]] std::string name() const { return object.name.empty() ? file.string() : object.name; }
-    [[nodiscard]] bool empty() const { return file.empty() && !object; }
+    [[nodiscard]] bool empty() const { return file.empty() && !object; }  ///< true: neither file nor object
 };
 
 /// An input or output of an operation, declared by Parameters and filled before `run`.
@@ -107,43 +112,44 @@ public:
     Slot& operator=(const Slot&) = delete;
     virtual ~Slot();
 
-    std::string name;  ///< name as flag and as key
-    std::string help;
-    Role role = Role::input;
-    Kind kind = Kind::text;
-    bool needed = true;         ///< required
-    bool repeated = false;      ///< may be given more than once
-    bool is_positional = true;  ///< given by its place on the command line, not by its name
-    bool takes_words = false;   ///< several words may follow the flag
-    bool may_be_new = false;    ///< updated input that need not exist yet
-    Slot* updated = nullptr;    ///< for an output: the input that it updates
-    bool is_named = false;      ///< files are given as NAME=FILE
-    bool takes_none = false;    ///< the word "none" stands for an absent file
-    bool reads_beside = false;  ///< for mesh files: NAME.ant.json beside NAME.ply is read too
-    std::vector<Source> sources;
+    std::string name;             ///< name of the slot, as flag and as JSON key
+    std::string help;             ///< help text
+    Role role = Role::input;      ///< input or output
+    Kind kind = Kind::text;       ///< kind of the objects
+    bool needed = true;           ///< true: the caller must give a file or object
+    bool repeated = false;        ///< true: several files or objects may be given
+    bool is_positional = true;    ///< true: given by its position on the command line, not by its name
+    bool takes_words = false;     ///< true: several file names may follow the flag
+    bool may_be_new = false;      ///< true: an input that is updated and need not exist yet
+    Slot* updated = nullptr;      ///< for an output: the input slot that it updates; null: none
+    bool is_named = false;        ///< true: files are given as NAME=FILE
+    bool takes_none = false;      ///< true: the word "none" stands for an absent file
+    bool reads_beside = false;    ///< for mesh files: true if NAME.ant.json beside NAME.ply is read too
+    std::vector<Source> sources;  ///< the given files and objects
 
-    /// Modifiers of a declaration.
+    /// Declares that the slot need not be given.
     Slot& optional() { return needed = false, *this; }
     Slot& flag() { return is_positional = false, *this; }  ///< --name FILE
     Slot& many() { return repeated = true, *this; }
     Slot& words() { return takes_words = repeated = true, *this; }
-    /// Declares an output as the updated version of an input. Without its own file it is written in place of the input,
-    /// and it is produced whenever the input is required or given. The input file need not exist yet (`exists`); a program may
-    /// omit it.
+    /// Declares an output as the updated version of an input. An output without its own file is written in place of the input's
+    /// file. The output is produced whenever the input is required or given. The input file need not exist yet (`exists`), and a
+    /// program may omit the input.
     Slot& updates(Slot& input) { return updated = &input, input.may_be_new = true, *this; }
     Slot& named() { return is_named = true, *this; }  ///< NAME=FILE
-    /// May be repeated, and "none" stands for an absent entry; query with `has`.
+    /// Declares that the slot may be repeated and that "none" stands for an absent entry; `has(i)` tells which entries are
+    /// present.
     Slot& many_or_none() { return repeated = takes_none = true, *this; }
 
-    /// Mesh files are read together with the annotation file of the same name.
+    /// Declares that mesh files are read together with the annotation files of the same name.
     Slot& with_annotations_beside() { return reads_beside = true, *this; }
 
-    /// Whether at least one source was given.
+    /// True if at least one file or object was given.
     explicit operator bool() const { return !sources.empty(); }
-    /// Whether the i-th source can be read.
+    /// True if the i-th file or object can be read.
     [[nodiscard]] bool exists(std::size_t i = 0) const;
-    [[nodiscard]] std::size_t size() const { return sources.size(); }
-    /// Whether the i-th source was given and is not "none".
+    [[nodiscard]] std::size_t size() const { return sources.size(); }  ///< number of files and objects given
+    /// True if the i-th file or object was given and is not "none".
     [[nodiscard]] bool has(std::size_t i) const { return i < sources.size() && !sources[i].empty(); }
     /// Name of the i-th file or object, for messages; empty if none was given.
     [[nodiscard]] std::string file(std::size_t i = 0) const { return i < sources.size() ? sources[i].name() : std::string(); }
@@ -151,22 +157,23 @@ public:
     /// NAME of NAME=FILE, or the name of the object.
     [[nodiscard]] std::string label(std::size_t i) const { return sources[i].object ? sources[i].name() : sources[i].label; }
 
-    /// Set by the context before `run`.
+    /// The context of the current call; set before Operation::run.
     Context* context = nullptr;
 
-    /// Declares the slot's own options, such as --force-mesh for annotations.
+    /// Adds the slot's own options to the options of the operation, such as --force-mesh for annotations.
     virtual void describe(OptionList& /*options*/) {}
     /// Throws Error (usage) if a file name is invalid for this kind of slot. Called before any work starts.
     virtual void check() const {}
-    /// Whether the i-th source is a folder that receives several files.
+    /// True if the i-th source is a folder that receives several files.
     [[nodiscard]] virtual bool fills_folder(std::size_t /*i*/) const { return false; }
-    /// Called after `run`: turns a file written in memory into the slot's object.
+    /// Called after Operation::run: turns a file written in memory into the slot's object.
     virtual void finish() {}
 
 protected:
-    /// Declares the slot's own options; an option already declared by another slot under the same name is shared with it.
+    /// Adds the slot's own options to `options`; an option that another slot has already added under the same name is shared with
+    /// that slot.
     void describe_shared(OptionList& options, const OptionList& slot_options);
-    /// Copies the values of shared options into the slot's own; to be called before those are used.
+    /// Copies the values of shared options into the slot's own options; to be called before the slot's options are used.
     void take_shared() const;
 
 private:

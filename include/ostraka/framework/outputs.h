@@ -1,4 +1,4 @@
-// Outputs of operations, one class per kind of object. An output is to be produced if its slot has a source; `write` writes the
+// Outputs of operations: one slot class per kind of object. An output is produced if its slot has a source; `write` writes the
 // file or keeps the object in memory.
 #pragma once
 
@@ -16,23 +16,24 @@
 
 namespace ostraka {
 
+/// An output that is a mesh.
 class MeshOutput : public Slot {
 public:
-    /// Writes the mesh with the provenance as the file's comment. Reports what the format cannot represent as notes.
+    /// Writes the mesh with the provenance as the file's comment. Notes report data that the file format cannot represent.
     void write(Mesh mesh, MeshExtras extras = {}, WriteOptions options = {}) const;
-    /// As above, for triangles of any topology.
+    /// Writes triangles of any topology, with the provenance as the file's comment.
     void write(TriangleSoup soup, MeshExtras extras, WriteOptions options = {}) const;
-    /// Writes one of several meshes: `ending` is inserted before the file's extension. In memory each part is an object of its
-    /// own.
+    /// Writes one of several meshes of this output: `ending` is inserted before the file's extension. In memory each of these
+    /// meshes is a separate object.
     void write_part(const std::string& ending, Mesh mesh, MeshExtras extras = {}) const;
-    /// File of the part with this ending; empty if the output stays in memory.
+    /// File name of the mesh written with this ending; empty if the output stays in memory.
     [[nodiscard]] std::string part_file(const std::string& ending) const;
     void check() const override;
     void describe(OptionList& options) override;
 
-    /// Adds the option --ascii.
+    /// Declares the option --ascii, which selects text or binary encoding.
     MeshOutput& with_encoding() { return encoded_ = true, *this; }
-    [[nodiscard]] bool ascii() const { return ascii_; }
+    [[nodiscard]] bool ascii() const { return ascii_; }  ///< true: the file is written as text
 
 private:
     void keep(Mesh mesh, MeshExtras extras, WriteOptions options, const std::string& ending) const;
@@ -40,90 +41,98 @@ private:
     bool encoded_ = false, ascii_ = false;
 };
 
+/// An output that is a set of annotations.
 class AnnotationsOutput : public Slot {
 public:
-    /// `mesh_name`: file name of the mesh that the annotations refer to; `provenance_override`: written instead of that of the
-    /// current call.
+    /// Writes the annotations. `mesh_name`: file name of the mesh that the annotations refer to; `provenance_override`:
+    /// provenance written instead of the provenance of the current call.
     void write(AnnotationSet set, const Mesh& mesh, const std::string& mesh_name,
                const std::optional<Provenance>& provenance_override = {}) const;
 };
 
-/// A template. Its file refers to the files of its parts; in memory it holds the template with the parts.
+/// An output that is a template. A template file refers to the files of the template's parts; in memory the object holds the
+/// template with all parts.
 class TemplateOutput : public Slot {
 public:
     void write(Template package) const;
 };
 
+/// An output that is a relationship graph.
 class GraphOutput : public Slot {
 public:
     void write(RelationGraph graph, const AnnotationSet& set) const;
 };
 
+/// An output that holds cage coordinates.
 class CoordinatesOutput : public Slot {
 public:
     void write(Coordinates coordinates, const Mesh& mesh, const Mesh& cage, const CoordinateCertificate& certificate) const;
     void check() const override;
 };
 
+/// An output with one number per vertex or face.
 class ValuesOutput : public Slot {
 public:
     void write(std::vector<double> values) const;
 };
 
-/// A JSON document; if it is an object, the provenance is appended as its last member.
+/// An output that is a JSON document; if the document is an object, the provenance is appended as its last member.
 class JsonOutput : public Slot {
 public:
     void write(const JsonValue& document) const;
 };
 
-/// Map from old to new indices, `no_index` for removed elements (doc/schema/map.schema.json). All index maps are written here.
+/// Map from old to new indices of vertices or faces (doc/schema/map.schema.json).
 struct IndexMap {
-    std::string kind;  ///< "vertex", "face" or "face-origin"
-    std::vector<Index> map;
-    std::size_t to = 0;            ///< number of elements afterwards
-    std::string description = {};  ///< may be empty
-    bool nearest = false;          ///< matched by distance, not exact
+    std::string kind;              ///< "vertex", "face" or "face-origin"
+    std::vector<Index> map;        ///< for each old element: its new index; `no_index` if it was removed
+    std::size_t to = 0;            ///< number of new elements
+    std::string description = {};  ///< text for readers of the file; may be empty
+    bool nearest = false;          ///< true: old elements were matched to the nearest new elements, not to identical ones
 };
+/// An output that is an index map.
 class IndexMapOutput : public Slot {
 public:
     void write(IndexMap map) const;
 };
 
-/// Any other kind of file, written by its own function. In memory it holds the bytes (std::string).
+/// An output of any other kind, written by a function of the caller. In memory the object holds the bytes (std::string).
 class FileOutput : public Slot {
 public:
     explicit FileOutput(std::string memory_extension = {}) : extension_(std::move(memory_extension)) {}
-    /// Path to write to; call it once all work is done.
+    /// Path to which the file is to be written; to be called when all work is done.
     [[nodiscard]] Path path() const;
     void finish() override;
     void write(std::string_view bytes) const { write_file(path(), bytes); }
 
 private:
     friend class Call;
-    std::string extension_;  ///< extension of the in-memory file, from which writers choose the format
+    std::string extension_;  ///< extension of the in-memory file, by which writers choose the format
     mutable Path memory_;
 };
 
-/// A folder for several files, created if missing. Files that an earlier run of this operation left in it are removed unless
-/// they are written again. In memory it is a folder "memory:...".
+/// An output folder for several files, created if missing. Files that an earlier run of this operation left in the folder are
+/// removed unless they are written again. In memory the folder is named "memory:...".
 class FolderOutput : public Slot {
 public:
-    /// Creates the folder. Throws Error if it cannot be created or written to. `replaces`: whether to remove files of an
-    /// earlier run.
+    /// Creates the i-th folder. Throws Error if the folder cannot be created or written to. `replaces`: true to remove the files
+    /// of an earlier run.
     const Path& open(std::size_t i = 0, bool replaces = true) const;
-    /// Path of a file in the folder.
+    /// Path of the file `name` in the i-th folder.
     [[nodiscard]] Path in(const std::string& name, std::size_t i = 0) const;
-    [[nodiscard]] Path path() const;
-    /// Writes a file into the folder, with the provenance.
+    [[nodiscard]] Path path() const;  ///< path of the first folder
+    /// Writes a mesh file into the folder, with the provenance.
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras = {}, WriteOptions options = {}) const;
+    /// Writes an annotation file into the folder, with the provenance.
     void write(const std::string& name, AnnotatedMeshView object, const std::string& mesh_name) const;
+    /// Writes a JSON file into the folder, with the provenance.
     void write(const std::string& name, const JsonValue& document) const;
     void check() const override;
     [[nodiscard]] bool fills_folder(std::size_t /*i*/) const override { return true; }
     void finish() override;
 
 protected:
-    /// Throws Error (usage) if the name is that of an existing file.
+    /// Throws Error (usage) if the folder's name is the name of an existing file.
     void check_folder(std::size_t i) const;
 
 private:

@@ -1,4 +1,4 @@
-// The report of an operation: filled once, shown as a table, JSON, CSV or Markdown.
+// The report of an operation: filled once, and written as a table, JSON, CSV or Markdown.
 #pragma once
 
 #include "ostraka/core/finding.h"
@@ -26,10 +26,10 @@ enum class FieldType { boolean, integer, number, text, numbers, texts, any };
 
 /// Declares a value of a report, or a column of one of its tables.
 struct Field {
-    std::string key;  ///< JSON key, '.' separates nested members; empty: shown to people only
-    FieldType type = FieldType::text;
-    std::string title = {};  ///< title for people; empty: for programs only
-    std::string unit = {};   ///< unit; "length", "length^2", ... are replaced by the report's unit (Report::set_unit)
+    std::string key;                   ///< JSON key ('.' separates nested members); empty: for people only
+    FieldType type = FieldType::text;  ///< type of the values
+    std::string title = {};            ///< title for people; empty: the field is shown to programs only
+    std::string unit = {};             ///< unit of the values; "length", "length^2", ... become the unit of Report::set_unit
 };
 
 /// Helpers to declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
@@ -55,18 +55,20 @@ inline Field people(std::string title, FieldType type = FieldType::text, std::st
 }
 }  // namespace fields
 
-/// The layout of a report, declared with the operation: its values and its tables.
+/// The layout of a report, declared with the operation: single values and tables.
 struct ReportLayout {
-    std::vector<Field> value_fields;
+    std::vector<Field> value_fields;  ///< the single values
     struct Table {
-        std::string key;  ///< key of an array of objects in JSON; empty: for people only
+        std::string key;  ///< JSON key of the array of rows; empty: the table is shown to people only
         std::vector<Field> columns;
-        std::string title = {};  ///< heading line, for people
+        std::string title = {};  ///< heading line for people; empty: none
     };
-    std::deque<Table> tables;
-    std::string schema;   ///< name of the schema (doc/schema) of the whole result; empty: only declared fields are allowed
-    bool checks = false;  ///< whether Report::findings is called
+    std::deque<Table> tables;  ///< the declared tables
+    /// Name of the JSON schema (doc/schema) of the whole result; empty: only declared fields are allowed.
+    std::string schema;
+    bool checks = false;  ///< true: the operation calls Report::findings
 
+    /// Declares single values.
     template <std::same_as<Field>... Columns>
     void values(Columns... columns) {
         (value_fields.push_back(std::move(columns)), ...);
@@ -75,8 +77,9 @@ struct ReportLayout {
     void table(std::string key, Columns... columns) {
         table(std::move(key), std::vector<Field>{std::move(columns)...});
     }
+    /// Declares a table.
     void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
-    /// Declares a table for people only; its rows are filled under its title.
+    /// Declares a table for people only; `title` is also the name by which its rows are filled.
     void people_table(std::string title, std::initializer_list<const char*> columns) {
         tables.push_back({{}, {}, std::move(title)});
         for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
@@ -86,7 +89,7 @@ struct ReportLayout {
     [[nodiscard]] JsonValue to_schema(JsonAllocator& allocator) const;
 };
 
-/// Text for people; numbers are shown with five significant digits.
+/// Text of a cell for people; numbers are written with five significant digits.
 struct ReportText {
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
     ReportText(std::string value) : text(std::move(value)) {}
@@ -98,7 +101,7 @@ struct ReportText {
     std::string text;
 };
 
-/// A value of a report. It is absent for numbers that are not finite and for empty optionals.
+/// A value of a report. Numbers that are not finite and empty optionals give an absent value.
 class ReportValue {
 public:
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
@@ -119,8 +122,9 @@ public:
     }
     // NOLINTEND(google-explicit-constructor)
 
+    /// True if there is no value.
     [[nodiscard]] bool absent() const { return std::holds_alternative<std::monostate>(value_); }
-    /// The value as text for people; empty for structures.
+    /// The value as text for people; empty for JSON structures.
     [[nodiscard]] std::string text() const;
     /// The value as JSON for programs; may be called once.
     JsonValue json(JsonAllocator& allocator);
@@ -134,6 +138,7 @@ private:
 /// Output format of a report.
 enum class ReportFormat { table, json, csv, markdown };
 
+/// The report of one call: values, tables, notes and the answer.
 class Report {
 public:
     Report(Provenance provenance, ReportLayout layout);
@@ -143,16 +148,17 @@ public:
     /// Sets the unit of length shown in column titles.
     void set_unit(const std::string& unit) { unit_ = unit; }
 
-    /// Sets a value; `shown`: text for people if it differs from the default.
+    /// Sets the value of a declared field; `shown`: text for people, if different from the default text of the value.
     Report& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-    /// Sets all members of an object that follows the schema of the report.
+    /// Sets the values of all members of `object`, which follows the schema of the report.
     void values(const JsonValue& object);
 
-    /// A row of a table, filled cell by cell. Absent and unfilled cells are omitted from the JSON.
+    /// A row of a table, filled cell by cell. Cells that are absent or not filled are omitted from the JSON.
     class Row {
     public:
+        /// Sets the cell of a column; `shown`: text for people, if different from the default text.
         Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-        /// Sets the text of a cell: of a column for people only (by its title), or of an absent cell (by its key).
+        /// Sets the text for people of a cell: in a column for people only (by title) or of an absent value (by key).
         Row& shown(std::string_view title_or_key, ReportText text);
 
     private:
@@ -161,23 +167,23 @@ public:
         Report& report_;
         std::size_t table_, row_;
     };
-    Row row(const std::string& table);
+    Row row(const std::string& table);  ///< adds an empty row to a table
     /// Adds a complete row to a table for people only, one cell per column.
     void row(const std::string& table, std::initializer_list<ReportText> cells);
-    /// Adds a table without rows; `shown`: whether people see its header.
+    /// Adds a table without rows; `shown`: true if its header is shown to people.
     void empty_table(const std::string& table, bool shown = true);
 
     /// Adds a value for people only, below the previous values.
     void people(const std::string& title, const std::string& text);
-    /// Adds a table for people that is also written to files unchanged.
+    /// Adds a table for people only, which the operation also writes to files.
     void table(const TextTable& table);
     /// Adds a line for people; values, tables and lines are shown in the order of the calls.
     void line(std::string text);
-    /// Adds a remark to the result: printed on standard error, and in JSON as result.notes.
+    /// Adds a note to the result; notes are printed on standard error and are in the JSON as result.notes.
     void note(std::string text);
     void notes(const std::vector<std::string>& texts);
     /// Sets the result of a check: result.sound, defects and findings. With a defect, the answer is "no". `place`: key and
-    /// heading for the places of the findings.
+    /// heading of the column of locations.
     void findings(const std::vector<Finding>& findings, const std::string& place = "where");
     /// Sets a value that may differ between identical runs, such as seconds; '.' in the key separates nested members.
     void run(const std::string& key, double value);
@@ -189,27 +195,29 @@ public:
 
     // ---- used by callers of operations ----
 
-    [[nodiscard]] bool holds() const { return holds_; }
-    [[nodiscard]] const JsonValue& result() const { return result_; }
-    [[nodiscard]] const std::vector<std::string>& noted() const { return notes_; }
+    [[nodiscard]] bool holds() const { return holds_; }                             ///< false after answer_no()
+    [[nodiscard]] const JsonValue& result() const { return result_; }               ///< the values and tables as JSON
+    [[nodiscard]] const std::vector<std::string>& noted() const { return notes_; }  ///< notes added so far
     [[nodiscard]] const ReportLayout& layout() const { return layout_; }
     [[nodiscard]] const Provenance& provenance() const { return provenance_; }
     void set_provenance(Provenance provenance) { provenance_ = std::move(provenance); }
-    /// Called with each note when it is added.
+    /// Called with each note when the note is added.
     std::function<void(const std::string&)> on_note;
 
-    /// {"format": "ostraka-report", "command", "result", "provenance", "run"}.
+    /// The report as JSON: {"format": "ostraka-report", "command", "result", "provenance", "run"}.
     [[nodiscard]] Json to_json() const;
-    [[nodiscard]] std::string to_text(ReportFormat format) const;
+    [[nodiscard]] std::string to_text(ReportFormat format) const;  ///< the report in the given format
     /// Durations of the run, for people: "read 0.1 s, triangulate 0.05 s"; empty if there are none.
     [[nodiscard]] std::string times() const;
 
 private:
     struct ShownTable {
         std::size_t layout = 0;
-        std::map<std::string, int, std::less<>> places;  ///< key -> column, -1 for columns that only programs see
-        std::map<std::string, int, std::less<>> shown;   ///< key, or title for people only -> column
-        std::vector<std::string> empty;                  ///< cells of an unfilled row
+        /// Key -> index of the column; -1 for columns that only programs see.
+        std::map<std::string, int, std::less<>> places;
+        /// Key (or title of a column for people only) -> index of the column shown to people.
+        std::map<std::string, int, std::less<>> shown;
+        std::vector<std::string> empty;  ///< texts of the cells of a row before it is filled
         std::vector<std::vector<std::string>> rows;
     };
     /// A block of text for people: a line, a value (title and text), or a table.
@@ -235,7 +243,7 @@ private:
     bool holds_ = true;
 };
 
-/// A number for people with `digits` significant digits.
+/// A number as text for people, with `digits` significant digits.
 std::string number(double value, int digits = 5);
 
 }  // namespace ostraka

@@ -13,11 +13,13 @@ namespace ostraka {
 /// Position of a face relative to a region.
 enum class FaceSide : std::uint8_t { out, in, cut };
 
+/// The region enclosed by curves: classification of all faces.
 struct CurveFilling {
-    std::vector<FaceSide> sides;                ///< one per face
-    std::vector<std::pair<Index, double>> cut;  ///< the faces cut by curves, ascending, with the fraction of their area inside
-    double border = 0;                          ///< length of the mesh border inside the region
-    /// Number of contradictions between curves: faces to the left of one and to the right of another, crossings.
+    std::vector<FaceSide> sides;  ///< for each face: its position relative to the region
+    /// For each face cut by curves, ascending: index, and fraction of its area inside the region.
+    std::vector<std::pair<Index, double>> cut;
+    double border = 0;  ///< length of the mesh border inside the region
+    /// Number of contradictions between curves: faces to the left of one curve and to the right of another, and crossings.
     std::size_t conflicts = 0;
 
     /// Area of the region.
@@ -26,10 +28,10 @@ struct CurveFilling {
     [[nodiscard]] std::vector<Index> majority() const;
 };
 
-/// The region to the left of the curves, plus the connected components of the faces in `seeds`. Each curve is closed (its last
-/// node is its first) or ends at the border of the mesh. A face whose edges, but not whose interior, the curves traverse is in
-/// or out. O(n) for the flags; O(k) for the k pieces of the curves, except for faces that several stretches of curves traverse,
-/// which cost O(k log k).
+/// Computes the region to the left of the curves, plus the connected components that contain a face of `seeds`. Each curve is
+/// closed (its last node is its first) or ends at the border of the mesh. A face of which curves traverse only edges, not the
+/// interior, is `in` or `out`. O(n) for the flags; O(k) for the k pieces of the curves, except for faces that several stretches
+/// of curves traverse, which cost O(k log k).
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds = {});
 
 /// Classifies points in cut faces as inside or outside.
@@ -37,16 +39,17 @@ class CutFaces {
 public:
     /// Triangulates the faces that the filling marks as cut, and classifies the triangles.
     CutFaces(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const CurveFilling& filling);
-    /// Whether a point of a cut face is inside.
+    /// True if the point `place` of a cut face lies inside the region.
     [[nodiscard]] bool inside(Index face, const Point& place) const;
 
 private:
     struct Piece {
         std::array<Point, 3> corners;
-        bool inside;
+        bool inside;  ///< true: inside the region
     };
-    std::vector<Index> faces_;        ///< ascending
-    std::vector<std::size_t> first_;  ///< first piece of each face, and the total number
+    std::vector<Index> faces_;  ///< indices of the cut faces, ascending
+    /// For each entry of `faces_`: index of its first piece; one more entry for the end.
+    std::vector<std::size_t> first_;
     std::vector<Piece> pieces_;
 };
 

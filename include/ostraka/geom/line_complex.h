@@ -9,12 +9,13 @@
 
 namespace ostraka {
 
-/// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every
-/// normal n at a point p of a surface of revolution intersects the axis, n . m + (p x n) . a = 0 for the axis with direction a
-/// and moment m. Points should be centred at the origin: the loss of precision grows with the square of their distance from it.
+/// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every normal
+/// n at a point p of a surface of revolution intersects the axis, n . m + (p x n) . a = 0 for the axis with direction a and
+/// moment m. Points should be centred at the origin: the loss of precision grows with the square of the points' distance from the
+/// origin.
 class LineComplex {
 public:
-    /// Adds a point with its unit normal.
+    /// Adds the equation of a point with its unit normal.
     void add(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double weight = 1) {
         const Eigen::Vector3d q = place.cross(normal);
         weight_ += weight;
@@ -22,13 +23,14 @@ public:
         b_ += weight * normal * q.transpose();
         d_ += weight * q * q.transpose();
     }
+    /// Adds all equations of `other`.
     void add(const LineComplex& other) {
         weight_ += other.weight_;
         n_ += other.n_;
         b_ += other.b_;
         d_ += other.d_;
     }
-    /// The equations for the points after a rigid motion.
+    /// The equations of the same points after a rigid motion.
     [[nodiscard]] LineComplex moved(const Motion& motion) const {
         const Eigen::Matrix3d &r = motion.rotation, n = r * n_ * r.transpose(), b = r * b_ * r.transpose();
         Eigen::Matrix3d t;
@@ -42,11 +44,13 @@ public:
         return result;
     }
 
-    /// The axis with minimum error subject to |a| = 1; its pitch is dropped.
+    /// The axis of minimum error with |a| = 1, where the pitch of the line complex is dropped.
     struct Axis {
-        Eigen::Vector3d place, direction;
-        double error = 0;  ///< weighted sum of squares of (distance of the normal from the axis times the sine of their angle)
+        Eigen::Vector3d place, direction;  ///< point on the axis, and unit direction
+        /// Weighted sum of squares of (distance between normal and axis, times the sine of the angle between them).
+        double error = 0;
     };
+    /// Solves the normal equations for the axis.
     [[nodiscard]] Axis solve() const {
         const SymmetricEigen3 of_n(n_);
         Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
@@ -57,7 +61,7 @@ public:
         const Eigen::Vector3d a = solver.eigenvectors().col(0);
         return {a.cross(-inverse * b_ * a), a, std::max(0.0, solver.eigenvalues()[0])};
     }
-    /// Root mean square distance between the axis and the normals (each times the sine of their angle).
+    /// Root mean square distance between the axis and the normals (each distance times the sine of the angle between them).
     [[nodiscard]] double off_axis() const { return weight_ > 0 ? std::sqrt(solve().error / weight_) : 0; }
 
 private:

@@ -1,4 +1,4 @@
-// Vertices or faces inside a ball that are connected with its centre within the ball.
+// Finds the vertices or faces inside a ball that are connected with the centre within the ball.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -8,11 +8,11 @@
 
 namespace ostraka {
 
-/// Traverses balls on one mesh without repeated allocation; one object per thread.
+/// Traverses neighbourhoods on one mesh without repeated allocation; each thread needs its own object.
 class Neighbourhood {
 public:
-    /// Calls visit(vertex, squared distance) for `centre` and for each vertex closer than `radius` that a path of edges inside
-    /// the ball connects with it; the order depends only on the mesh.
+    /// Calls visit(vertex, squared distance) for `centre` and for each vertex closer than `radius` that is connected with
+    /// `centre` by a path of edges inside the ball; the order of the calls depends only on the mesh.
     template <class Visit>
     void walk(const Mesh& mesh, Vertex centre, double radius, Visit&& visit) {
         begin(mesh.number_of_vertices());
@@ -40,7 +40,8 @@ public:
         }
     }
 
-    /// The same for faces, represented by their centroids and connected across edges.
+    /// Calls visit(face, squared distance) for the face `centre` and for each face whose centroid is closer than `radius` and
+    /// that is connected with `centre` across edges inside the ball; the order of the calls depends only on the mesh.
     template <class Visit>
     void walk(const Mesh& mesh, const std::vector<Point>& centroids, Face centre, double radius, Visit&& visit) {
         begin(mesh.number_of_faces());
@@ -77,7 +78,7 @@ private:
     std::vector<Face> faces_;
 };
 
-/// One object per thread; the result of a walk does not depend on earlier walks.
+/// The Neighbourhood object of the current thread; the result of a walk does not depend on earlier walks.
 inline Neighbourhood& this_threads_neighbourhood() {
     static thread_local Neighbourhood neighbourhood;
     return neighbourhood;

@@ -6,16 +6,18 @@
 
 namespace ostraka {
 
+/// A box of any orientation.
 struct OrientedBox {
-    std::array<double, 3> centre{};
-    std::array<std::array<double, 3>, 3> axes{};  ///< unit vectors, longest side first, right-handed
-    std::array<double, 3> sides{};
+    std::array<double, 3> centre{};  ///< centre of the box
+    /// Unit vectors along the sides, longest side first, right-handed.
+    std::array<std::array<double, 3>, 3> axes{};
+    std::array<double, 3> sides{};  ///< lengths of the sides, descending
     [[nodiscard]] double volume() const { return sides[0] * sides[1] * sides[2]; }
 };
 
-/// A small bounding box of the points: the smallest rectangle (rotating calipers, Toussaint 1983) for each of a fixed set of
-/// directions, which includes the principal axes; the best ones are refined. Close to the minimum-volume box, but not always
-/// equal. Sides of length 0 if there are no points.
+/// A small bounding box of the points: the smallest rectangle (rotating calipers, Toussaint 1983) is computed perpendicular to
+/// each of a fixed set of directions (including the principal axes), and the boxes of smallest volume are refined. The volume is
+/// close to, but not always equal to, the minimum. Without points, all sides have length 0.
 OrientedBox oriented_box(const std::vector<std::array<double, 3>>& points);
 
 }  // namespace ostraka

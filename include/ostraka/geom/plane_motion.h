@@ -11,12 +11,11 @@
 
 namespace ostraka {
 
-/// One step of iterative closest points, point to plane (Chen and Medioni 1991): among all rotations, translations and scalings
-/// about a centre, linearised, the one that minimises the weighted sum of squared distances of the moved points from their
-/// planes.
+/// One step of iterative closest points, point to plane (Chen and Medioni 1991): finds the linearised rotation, translation and
+/// scaling about a centre that minimise the weighted sum of squared distances of the moved points from their planes.
 class PlaneMotion {
 public:
-    /// `unit`: length scale of the data, by which the distances from the centre are divided.
+    /// `unit`: length scale of the data, by which distances from the centre are divided.
     PlaneMotion(const Eigen::Vector3d& centre, double unit) : centre_(centre), unit_(unit) {
         normal_.setZero();
         right_.setZero();
@@ -31,13 +30,15 @@ public:
         right_ += weight * off / unit_ * row;
     }
 
+    /// A motion about the centre, as parameters.
     struct Step {
-        Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< axis times angle
+        Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< rotation axis times angle in radians
         Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< in the mesh's unit
-        double growth = 0;                                      ///< logarithm of the scale
+        double growth = 0;                                      ///< natural logarithm of the scale
     };
-    /// `damping`, a fraction of the trace, suppresses motions that the planes do not determine (slippable motions of a sphere,
-    /// a plane or a cylinder).
+    /// Computes the step of minimum error; `scaled`: true to estimate a scale too. `damping` (a fraction of the trace of the
+    /// normal equations) suppresses motions that the planes do not determine (slippable motions of a sphere, a plane or a
+    /// cylinder).
     [[nodiscard]] Step solve(double damping, bool scaled = false) const {
         const int n = scaled ? 7 : 6;
         Eigen::Matrix<double, 7, 7> damped = normal_;
@@ -50,6 +51,7 @@ public:
         return step;
     }
 
+    /// Converts a step to a motion.
     [[nodiscard]] Motion motion(const Step& step) const {
         Motion move;
         const double angle = step.rotation.norm();
@@ -67,18 +69,18 @@ private:
     Row right_;
 };
 
-/// A point at the distance `off` below the plane with this unit normal.
+/// A point that should be moved onto a plane.
 struct PlanePoint {
-    Eigen::Vector3d point, normal;
-    double off, weight;
+    Eigen::Vector3d point, normal;  ///< the point; unit normal of the plane
+    double off, weight;             ///< distance of the point below the plane, against the normal; weight
 };
 
-/// Size of one step: the larger of the angle (radians) and of the translation divided by the spread of the points. nullopt if
-/// the spread or the sum of weights is 0.
+/// Size of one registration step: the larger of the rotation angle (radians) and the translation divided by the spread of the
+/// points; nullopt if the spread or the sum of the weights is 0.
 using StepLength = std::optional<double>;
 
-/// Updates a rigid pose by one step about the weighted centroid of the points, in the unit of their spread, with a damping of a
-/// thousandth of the mean eigenvalue.
+/// Updates a rigid pose by one point-to-plane step about the weighted centroid of the points. The damping is a thousandth of the
+/// mean eigenvalue of the normal equations.
 inline StepLength step_onto_planes(const std::vector<PlanePoint>& points, Motion& pose) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double total = 0, unit = 0;

@@ -9,7 +9,8 @@
 
 namespace ostraka {
 
-/// Holds a copy of the points. Queries may run in parallel; among equally near points, those of lower index come first.
+/// A k-d tree that holds a copy of the points. Queries may run in parallel; of points at equal distance, the point with the lower
+/// index comes first.
 class PointTree {
 public:
     explicit PointTree(const std::vector<Point>& points = {});
@@ -17,19 +18,19 @@ public:
     PointTree(PointTree&&) noexcept;
     PointTree& operator=(PointTree&&) noexcept;
 
-    [[nodiscard]] std::size_t size() const;
+    [[nodiscard]] std::size_t size() const;  ///< number of points
 
     struct Near {
-        Index index = no_index;
-        double squared = std::numeric_limits<double>::infinity();  ///< squared distance
+        Index index = no_index;                                    ///< index of the point; no_index: none
+        double squared = std::numeric_limits<double>::infinity();  ///< squared distance from the query point
     };
-    /// The nearest point within `search_radius`; no_index if there is none.
+    /// The point closest to `place` within `search_radius`; its index is no_index if there is none.
     [[nodiscard]] Near nearest(const Point& place, double search_radius = std::numeric_limits<double>::infinity()) const;
-    /// The `count` nearest points (all if there are fewer), nearest first.
+    /// The `count` points closest to `place` (all points if there are fewer), closest first.
     [[nodiscard]] std::vector<Near> neighbours(const Point& place, std::size_t count) const;
-    /// All points within `search_radius`, by index.
+    /// Sets `found` to the indices of all points within `search_radius` of `place`, ascending.
     void within(const Point& place, double search_radius, std::vector<Index>& found) const;
-    /// Squared distance of the farthest point; 0 if there are no points.
+    /// Squared distance of the point farthest from `place`; 0 if there are no points.
     [[nodiscard]] double farthest_squared(const Point& place) const;
 
 private:

@@ -11,7 +11,8 @@ namespace ostraka {
 using Segments = std::vector<std::pair<Point, Point>>;
 
 /// Two-sided Hausdorff distance between two sets of segments (degenerate segments represent points), sampled at the end points
-/// and midpoints of each set and exact for these samples (AABB tree, O(n log n)). 0 if both are empty, infinite if one is.
+/// and midpoints of the segments; the distances of the samples are exact (AABB tree, O(n log n)). The distance is 0 if both sets
+/// are empty, and infinite if only one set is empty.
 double hausdorff_distance(const Segments& a, const Segments& b);
 
 }  // namespace ostraka

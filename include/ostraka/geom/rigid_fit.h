@@ -7,11 +7,11 @@
 
 namespace ostraka {
 
-/// p -> scale rotation p + translation.
+/// Rigid or similarity motion p -> scale * rotation * p + translation.
 struct Motion {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< determinant 1
-    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-    double scale = 1;
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< applied after rotation and scaling
+    double scale = 1;                                        ///< scale factor; 1 for rigid motions
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
     [[nodiscard]] Motion inverse() const;
@@ -20,15 +20,16 @@ struct Motion {
     bool operator==(const Motion&) const = default;
 };
 
+/// Options of fit_motion.
 struct FitOptions {
-    bool scale = false;                     ///< also estimate a scale
+    bool scale = false;                     ///< true: a scale is estimated too
     double min_scale = 0, max_scale = 1e9;  ///< limits of an estimated scale
 };
 
-/// The motion that minimises the weighted sum of |T(from) - to|^2 (Umeyama 1991: singular values of the covariance, never a
-/// reflection; a scale outside its limits is clamped, which is optimal because the sum is quadratic in it). `weights` empty:
-/// all 1. For points that do not determine the motion (a single point, collinear or equal points), one of the optimal motions.
-/// Throws Error (usage) if the numbers of points differ or are 0.
+/// The motion T that minimises the weighted sum of |T(from) - to|^2 over corresponding points (Umeyama 1991: singular values of
+/// the covariance, never a reflection). A scale outside its limits is clamped, which is optimal because the sum is quadratic in
+/// the scale. Empty `weights`: all weights are 1. If the points do not determine the motion (a single point, collinear or equal
+/// points), one of the optimal motions is returned. Throws Error (usage) if the numbers of points differ or are 0.
 Motion fit_motion(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
                   const std::vector<double>& weights = {}, const FitOptions& options = {});
 

@@ -9,13 +9,14 @@
 
 namespace ostraka {
 
-/// Cost of a step from a vertex to its neighbour (thesis, section 2.4.1).
+/// Cost of a step from a vertex to an adjacent vertex (thesis, section 2.4.1).
 enum class PathMetric {
-    euclidean,  ///< the length of the edge
-    segment,    ///< the distance of the neighbour from the guide (the straight segment between the ends of the path)
-    combined    ///< the sum of both
+    euclidean,  ///< length of the edge
+    segment,    ///< distance of the adjacent vertex from the guide (by default the straight segment between the ends of the path)
+    combined    ///< sum of `euclidean` and `segment`
 };
-PathMetric path_metric(const std::string& name);  ///< Throws Error (usage) for an unknown name.
+/// The metric of this name; throws Error (usage) for an unknown name.
+PathMetric path_metric(const std::string& name);
 
 /// Repeated path searches on one mesh without repeated allocation; the memory grows with the largest search, not with the mesh.
 /// Not thread-safe.
@@ -24,18 +25,20 @@ public:
     explicit PathSearch(const Mesh& mesh);
 
     struct Query {
-        PathMetric metric = PathMetric::euclidean;
-        std::vector<Point> guide;             ///< poly-line for the segment distance; empty: the segment between the ends
-        std::function<bool(Vertex)> blocked;  ///< vertices that must not be entered (never applied to the ends); may be empty
-        double limit = 0;                     ///< maximum Euclidean length of a path; 0: no limit
+        PathMetric metric = PathMetric::euclidean;  ///< cost of a step
+        /// Poly-line from which the metric `segment` measures; empty: the straight segment between the ends of the path.
+        std::vector<Point> guide;
+        /// True for vertices that the path must not enter (never called for the ends); may be empty.
+        std::function<bool(Vertex)> blocked;
+        double limit = 0;  ///< maximum Euclidean length of a path; 0: no limit
     };
 
-    /// The vertices from `from` to `to`, both included (one vertex if they are equal); empty if there is no path. Dijkstra's
-    /// algorithm with a heap and early exit; ties are resolved in favour of the lower vertex index.
+    /// The vertices of the shortest path from `from` to `to`, both included (one vertex if the ends are equal); empty if there is
+    /// no path. Dijkstra's algorithm with a heap and early exit; ties are resolved in favour of the lower vertex index.
     std::vector<Index> find(Vertex from, Vertex to, const Query& query);
 
-    /// The shortest Euclidean path from `from` to the nearest vertex that `goal` accepts, within `limit`; empty if there is
-    /// none.
+    /// The shortest Euclidean path from `from` to the first vertex that `goal` accepts, of length up to `limit`; empty if there
+    /// is none.
     std::vector<Index> find_nearest(Vertex from, const std::function<bool(Vertex)>& goal, double limit);
 
 private:
@@ -45,13 +48,14 @@ private:
     /// Search state of a visited vertex.
     struct Record {
         Index vertex = no_index;
-        std::uint32_t search = 0;  ///< number of the search it belongs to; if it is not the current one, the slot is free
-        Index previous = no_index;
-        bool settled = false;
-        double cost = 0;
-        double length = 0;
+        /// Number of the search that wrote this record; if it is not the current search, the slot is free.
+        std::uint32_t search = 0;
+        Index previous = no_index;  ///< vertex before this vertex on the path
+        bool settled = false;       ///< true: the cost is final
+        double cost = 0;            ///< cost of the path
+        double length = 0;          ///< Euclidean length of the path
     };
-    /// Finds the record of a vertex, or creates one without a cost. The reference is valid until the next call.
+    /// Finds or creates the record of a vertex. The reference is valid until the next call.
     Record& record(Index vertex);
 
     const Mesh& mesh_;
@@ -60,7 +64,7 @@ private:
     std::vector<Record> records_;  ///< hash table with linear probing; its size is a power of two
 };
 
-/// Distance from a point to a segment or a polyline.
+/// Distance from point p to the segment from a to b.
 double distance_to_segment(const Point& p, const Point& a, const Point& b);
 double distance_to_polyline(const Point& p, const std::vector<Point>& polyline);
 

@@ -7,19 +7,20 @@
 
 namespace ostraka {
 
+/// Some faces of a mesh, as a mesh of their own.
 struct SubMesh {
-    Mesh mesh;
-    std::vector<Index> vertices;  ///< index in the whole mesh of each vertex
-    std::vector<Index> faces;     ///< index in the whole mesh of each face, ascending
+    Mesh mesh;                    ///< the faces as a mesh
+    std::vector<Index> vertices;  ///< for each vertex of `mesh`: its index in the whole mesh
+    std::vector<Index> faces;     ///< for each face of `mesh`: its index in the whole mesh; ascending
 };
 
-/// For each face, the number of its piece (ordered by the lowest face of the piece); `no_index`: in no piece.
+/// Connected pieces of a set of faces, numbered in the order of their smallest face indices.
 struct FacePieces {
-    std::vector<Index> of_face;
-    Index count = 0;
+    std::vector<Index> of_face;  ///< for each face of the mesh: index of its piece; no_index: in no piece
+    Index count = 0;             ///< number of pieces
 };
-/// Connected pieces of the faces for which `counts` is true. Two such faces are connected across a halfedge h from the first to
-/// the second if `joins(h)` is true.
+/// Finds the connected pieces of the faces for which `counts(face)` is true. Two adjacent faces are connected if `joins(h)` is
+/// true for the halfedge h of the first face on their common edge.
 template <class Counts, class Joins>
 FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
     FacePieces pieces{std::vector<Index>(mesh.number_of_faces(), no_index)};
@@ -43,15 +44,16 @@ FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
     return pieces;
 }
 
-/// The faces marked in `keep` (one flag per face), or only the edge-connected piece of them with the largest area (among equal
-/// ones, the one with the lowest face). A vertex at which they form several fans is duplicated for each fan. Empty if no face
-/// is marked. Throws Error (usage) unless there is one flag per face.
+/// The faces marked in `keep` (one flag per face) as a separate mesh. With `largest_only`: only the edge-connected piece of the
+/// largest area (of pieces of equal area, the piece with the smallest face index). A vertex at which the kept faces form several
+/// fans is duplicated for each fan. The mesh is empty if no face is marked. Throws Error (usage) unless there is one flag per
+/// face.
 SubMesh keep_faces(const Mesh& mesh, const std::vector<bool>& keep, bool largest_only = false);
 
-/// The lowest border halfedge of each hole.
+/// For each hole: the border halfedge with the smallest index.
 std::vector<Halfedge> holes_of(const Mesh& mesh);
-/// Closes the hole at a border halfedge by triangles between its vertices with minimum dihedral angle and area (Liepa 2003).
-/// Returns the number of triangles; 0, with the mesh unchanged, if there is no such triangulation.
+/// Closes the hole at a border halfedge by triangles between the vertices of the hole, with minimum dihedral angles and area
+/// (Liepa 2003). Returns the number of triangles. If there is no such triangulation, the mesh is unchanged and the result is 0.
 std::size_t close_hole(Mesh& mesh, Halfedge border);
 
 }  // namespace ostraka

@@ -11,14 +11,16 @@
 
 namespace ostraka {
 
-/// A point on the surface, given by the element that contains it and weights in it, without coordinates: it stays on its element
-/// when vertices move (compare SurfacePoint of geometry-central, Sharp et al. 2019). Elements are named by vertices and faces,
-/// as in files, so that a point does not depend on the numbers of edges.
+/// A point on the surface of a mesh, given by the element (vertex, edge or face) that contains the point and by weights, without
+/// coordinates: the point stays on its element when vertices move (compare SurfacePoint of geometry-central, Sharp et al. 2019).
+/// An edge is named by its two vertices, as in files, so that a point does not depend on edge indices.
 struct SurfacePoint {
     enum class Kind : std::uint8_t { vertex, edge, face };
     Kind kind = Kind::vertex;
-    std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, in either order; the face
-    std::array<double, 3> weights{1, 0, 0};  ///< weights of the vertex, of both ends, or of corners(mesh, face); their sum is one
+    /// Index of the vertex; indices of the two ends of the edge, in either order; index of the face.
+    std::array<Index, 2> element{no_index, no_index};
+    /// Weights of the vertex, of both ends of the edge, or of corners(mesh, face), with sum 1.
+    std::array<double, 3> weights{1, 0, 0};
 
     [[nodiscard]] bool is_vertex() const { return kind == Kind::vertex; }
     [[nodiscard]] bool is_on_edge() const { return kind == Kind::edge; }
@@ -27,51 +29,54 @@ struct SurfacePoint {
     [[nodiscard]] Face face() const { return Face(element[0]); }
 
     bool operator==(const SurfacePoint&) const = default;
-    /// By element, then by the weights after the first, which follows from them.
+    /// Orders points by element, then by the second and third weight, then by the first.
     std::partial_ordering operator<=>(const SurfacePoint& other) const {
         return std::tie(kind, element, weights[1], weights[2], weights[0]) <=>
                std::tie(other.kind, other.element, other.weights[1], other.weights[2], other.weights[0]);
     }
 };
 
-SurfacePoint vertex_point(Index vertex);
-/// At this fraction of the way from one end of an edge to the other.
+SurfacePoint vertex_point(Index vertex);  ///< the point at a vertex
+/// The point on an edge at the fraction `fraction` of the way from vertex `from` to vertex `to`.
 SurfacePoint edge_point(Index from, Index to, double fraction);
-/// The same with the lower end first.
+/// The point on an edge at the fraction `fraction` from vertex `from` to vertex `to`, stored with the smaller vertex index first.
 SurfacePoint ordered_edge_point(Index from, Index to, double fraction);
+/// The point of a face with these barycentric weights.
 SurfacePoint face_point(Index face, const std::array<double, 3>& weights);
-/// The point of a face with these weights. Weights below `snap` are set to zero, so that a point near an edge or a vertex is
-/// placed on it.
+/// The point of a face with these barycentric weights. Weights below `snap` are set to zero, so that a point near an edge or a
+/// vertex is placed on that edge or vertex.
 SurfacePoint surface_point(const Mesh& mesh, Index face, const std::array<double, 3>& weights, double snap = 1e-6);
-/// The same on an edge.
+/// The point on an edge at this fraction of `halfedge`. Weights below `snap` are set to zero, so that a point near an end is
+/// placed at that vertex.
 SurfacePoint surface_point(const Mesh& mesh, Halfedge halfedge, double fraction, double snap = 1e-6);
 
-/// The form in which annotations store the point, equal for equal points: the lower end of an edge first; the first weight
+/// The unique form in which annotations store a point: the smaller vertex index of an edge comes first, and the first weight is
 /// computed from the others.
 SurfacePoint stored_point(const Mesh& mesh, const SurfacePoint& p);
 
-/// "vertex 3", "the edge from vertex 1 to vertex 2", "face 4".
+/// Name of the point's element for messages: "vertex 3", "the edge from vertex 1 to vertex 2", "face 4".
 std::string element_name(const SurfacePoint& p);
-/// Whether the mesh has the element.
+/// True if the mesh has the point's element.
 bool has_element(const Mesh& mesh, const SurfacePoint& p);
-/// Throws Error (input) if the mesh does not have the element or if the weights lie outside it.
+/// Throws Error (input) if the mesh does not have the point's element or if the weights lie outside the element.
 void check_surface_point(const Mesh& mesh, const SurfacePoint& p);
 
-/// The coordinates.
+/// The coordinates of a point.
 Point position(const Mesh& mesh, const SurfacePoint& p);
+/// The coordinates of several points.
 std::vector<Point> positions(const Mesh& mesh, const std::vector<SurfacePoint>& points);
 /// True for points on the same element with the same coordinates.
 bool same_point(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b);
 
-/// The edge of a point on an edge.
+/// The edge that contains a point of kind edge.
 Edge edge_of(const Mesh& mesh, const SurfacePoint& p);
-/// The fraction of a point on an edge along halfedge(edge, 0).
+/// Position of a point on an edge, as a fraction along halfedge(edge, 0).
 double fraction_along(const Mesh& mesh, Edge edge, const SurfacePoint& p);
 
-/// The vertices of the point's element with their weights: one, two or three. Those of an edge are the source and the target of
-/// halfedge(edge, 0), so that values are added up in the same order from both faces.
+/// The one, two or three vertices of the point's element, with weights. The vertices of an edge are the source and the target of
+/// halfedge(edge, 0), so that interpolated values do not depend on the face.
 std::vector<std::pair<Vertex, double>> weighted_vertices(const Mesh& mesh, const SurfacePoint& p);
-/// The value at the point of a function that is linear in each face; `value(vertex)`: at the vertices.
+/// The value at a point of a function that is linear in each face; `value(vertex)` gives its values at the vertices.
 template <class Value>
 auto interpolate(const Mesh& mesh, const SurfacePoint& p, const Value& value) {
     const auto vertices = weighted_vertices(mesh, p);
@@ -80,16 +85,16 @@ auto interpolate(const Mesh& mesh, const SurfacePoint& p, const Value& value) {
     for (std::size_t k = 1; k < vertices.size(); ++k) sum = sum + vertices[k].second * value(vertices[k].first);
     return sum;
 }
-/// The weights of the point in one of its faces.
+/// The barycentric weights of the point in `face`, which must contain the point.
 std::array<double, 3> in_face(const Mesh& mesh, const SurfacePoint& p, Index face);
 
 /// The faces that contain the point.
 std::vector<Face> faces_of(const Mesh& mesh, const SurfacePoint& p);
-/// The lowest face that contains both points; no_index if there is none.
+/// The smallest index of a face that contains both points; no_index if there is none.
 Index shared_face(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b);
 /// The edge that contains both points; no_index if there is none or if a point lies inside a face.
 Index shared_edge(const Mesh& mesh, const SurfacePoint& a, const SurfacePoint& b);
-/// Whether the point lies on the border of the mesh, as a vertex or on an edge.
+/// True if the point lies on the border of the mesh, at a vertex or on an edge.
 bool is_on_border(const Mesh& mesh, const SurfacePoint& p);
 /// The corner of the point's element with the largest weight.
 Index nearest_vertex(const Mesh& mesh, const SurfacePoint& p);

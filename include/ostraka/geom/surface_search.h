@@ -1,4 +1,4 @@
-// Nearest-point and segment queries on a mesh, with a tree of bounding boxes and normal cones.
+// Closest-point and segment queries on a mesh, with a tree of bounding boxes and normal cones.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -12,14 +12,14 @@ namespace ostraka {
 
 /// A point on the surface found by a query.
 struct SurfaceHit {
-    Index face = no_index;
-    Point point{0, 0, 0};
+    Index face = no_index;                       ///< index of the face
+    Point point{0, 0, 0};                        ///< position of the hit
     std::array<double, 3> barycentric{1, 0, 0};  ///< weights of corners(mesh, face)
-    double distance = 0;                         ///< distance from the query point; signed along the direction for line hits
+    double distance = 0;  ///< distance from the query point; for line_hits signed, positive along the direction
 };
 
-/// A search tree over the faces of a mesh, which must outlive it and have no garbage. Queries may run in parallel. Degenerate
-/// faces are ignored. A query typically costs O(log n).
+/// A search tree over the faces of a mesh. The mesh must outlive the tree and have no garbage. Queries may run in parallel.
+/// Degenerate faces are ignored. A query typically costs O(log n).
 class SurfaceSearch {
 public:
     /// Builds the tree in O(n) on all threads; results do not depend on the number of threads. Throws Error (input) if all
@@ -29,30 +29,30 @@ public:
     SurfaceSearch(SurfaceSearch&&) noexcept;
 
     [[nodiscard]] const Mesh& mesh() const;
-    /// Edge length of an equilateral triangle with the mean face area, and the diagonal of the bounding box of the mesh.
+    /// Edge length of an equilateral triangle with the mean face area.
     [[nodiscard]] double typical_edge() const;
-    [[nodiscard]] double diagonal() const;
+    [[nodiscard]] double diagonal() const;  ///< diagonal of the bounding box of the mesh
     /// Unit normal of a face.
     [[nodiscard]] Vector normal(Index face) const;
 
-    /// All faces that intersect the segment from origin - max_distance * direction to origin + max_distance * direction,
-    /// nearest first (ties by face index). `direction` is a unit vector. The set of faces is exact for the rounded end points
-    /// of the segment.
+    /// All faces that intersect the segment from origin - max_distance * direction to origin + max_distance * direction, the hit
+    /// closest to `origin` first (ties by face index). `direction` is a unit vector. The set of faces is exact for the rounded
+    /// end points of the segment.
     [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double max_distance) const;
 
-    /// True if the segment intersects a face that `ignored` does not accept. Exact for the given coordinates.
+    /// True if the segment intersects a face for which `ignored` is false. Exact for the given coordinates.
     [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
-    /// The nearest point of the surface; needs at least one face.
+    /// The point of the surface closest to `query`.
     [[nodiscard]] SurfaceHit closest(const Point& query) const;
 
-    /// The nearest point within `search_radius` on a face whose unit normal has a scalar product of at least `min_cosine` with
-    /// `normal`.
+    /// The point closest to `query` within `search_radius` on a face whose unit normal has a scalar product of at least
+    /// `min_cosine` with `normal`; nullopt if there is none.
     [[nodiscard]] std::optional<SurfaceHit> closest_compatible(const Point& query, const Vector& normal, double min_cosine,
                                                                double search_radius) const;
 
-    /// True if at least three of four rays intersect the surface an odd number of times: the point lies inside a closed
-    /// surface, even if the surface has small folds or holes.
+    /// True if `query` lies inside the closed surface: at least three of four rays from the point intersect the surface an odd
+    /// number of times. The answer tolerates small folds and holes of the surface.
     [[nodiscard]] bool inside(const Point& query) const;
 
 private:
@@ -63,11 +63,12 @@ private:
 /// Edge length of an equilateral triangle with the mean area of `faces` faces.
 double typical_edge(double area, std::size_t faces);
 
-/// Barycentric coordinates of the point of triangle abc nearest to p (Ericson 2005, section 5.1.5).
+/// Barycentric coordinates of the point of triangle abc closest to p (Ericson 2005, section 5.1.5).
 std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const Point& c, const Point& p);
 
-/// The point with the given barycentric coordinates in triangle abc or in a face.
+/// The point with the given barycentric coordinates in triangle abc.
 Point point_at(const Point& a, const Point& b, const Point& c, const std::array<double, 3>& barycentric);
+/// The point with the given barycentric coordinates in a face.
 Point point_at(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric);
 
 }  // namespace ostraka

@@ -5,8 +5,8 @@
 
 namespace ostraka {
 
-/// Builds a CGAL::AABB_tree as tree.build() does, but checks for cancellation at every node. Throws Error (cancelled); the tree
-/// must not be used after that.
+/// Builds a CGAL::AABB_tree as tree.build() does, but checks for cancellation at every node. If the work is cancelled, throws
+/// Error (cancelled), and the tree must not be used afterwards.
 template <class Tree>
 void build_watched(Tree& tree) {
     const auto boxes = tree.traits().compute_bbox_object();

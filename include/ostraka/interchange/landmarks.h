@@ -1,4 +1,4 @@
-// Landmarks: named points with coordinates, as used by morphometry and picking tools. doc/interchange.md states what each
+// Landmark files: named points with coordinates, as used by morphometry and picking tools. doc/interchange.md states what each
 // format stores.
 #pragma once
 
@@ -8,27 +8,32 @@
 
 namespace ostraka {
 
+/// A named point.
 struct Landmark {
-    std::string name;
-    std::array<double, 3> position{};  ///< in the space and unit of the mesh
-    std::optional<int> group;          ///< id of its annotation, if the file gives it
+    std::string name;                  ///< name of the landmark
+    std::array<double, 3> position{};  ///< coordinates in the space and unit of the mesh
+    /// Id of the annotation to which the landmark belongs; none if the file does not give it.
+    std::optional<int> group;
 };
 
 /// A curve through points that need not be connected by edges.
 struct LandmarkCurve {
-    std::string name;
-    bool closed = false;  ///< the last point is connected to the first, which is not repeated
-    std::vector<std::array<double, 3>> points;
+    std::string name;                           ///< name of the curve
+    bool closed = false;                        ///< true: the last point is connected to the first point, which is not repeated
+    std::vector<std::array<double, 3>> points;  ///< in the space and unit of the mesh
+    /// Id of the annotation to which the curve belongs; none if the file does not give it.
     std::optional<int> group;
 };
 
+/// The content of a landmark file.
 struct LandmarkSet {
-    std::vector<Landmark> landmarks;
-    std::vector<LandmarkCurve> curves;
-    std::string unit;                ///< unit of the coordinates; empty if the file does not give it
-    std::vector<std::string> notes;  ///< messages about content of the file that is not kept
+    std::vector<Landmark> landmarks;    ///< named points
+    std::vector<LandmarkCurve> curves;  ///< curves; only in the format mrk
+    std::string unit;                   ///< unit of the coordinates; empty if the file does not give it
+    std::vector<std::string> notes;     ///< messages about content of the file that was not kept
 };
 
+/// Format of a landmark file.
 enum class LandmarkFormat {
     csv,  ///< a table with the columns x, y, z and optionally name and id
     tps,  ///< Rohlf's tps, three-dimensional (LM3)
@@ -40,58 +45,66 @@ enum class LandmarkFormat {
 /// Directions of the x and y axes: left and posterior (lps), or right and anterior (ras).
 enum class AnatomicalSpace { lps, ras };
 
+/// Options for reading and writing landmark files.
 struct LandmarkFileOptions {
-    AnatomicalSpace mesh_space = AnatomicalSpace::lps;
-    std::string specimen;
+    AnatomicalSpace mesh_space = AnatomicalSpace::lps;  ///< space of the mesh's coordinates
+    std::string specimen;                               ///< specimen of a TPS file: its ID, or its number from 1
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// Reads landmarks into the space of the mesh: x and y are negated if the file declares LPS or RAS and the mesh uses the other.
-/// Points not picked yet are skipped with a note. Throws Error (input) with file, position and remedy.
+/// Reads landmarks into the space of the mesh: x and y are negated if the file declares LPS or RAS and the mesh uses the other
+/// space. Points not picked yet are skipped with a note. Throws Error (input) with file, position and remedy.
 LandmarkSet read_landmarks(const Path& file, LandmarkFormat format, const LandmarkFileOptions& options = {});
 
-/// The same for the bytes of a file; `where` is its name in error messages.
+/// Reads landmarks from the bytes of a landmark file into the space of the mesh; `where` names the file in error messages.
 LandmarkSet landmarks_from_text(const std::string& bytes, LandmarkFormat format, const std::string& where,
                                 const LandmarkFileOptions& options = {});
 
-/// The contents of a landmark file. `mesh_file` is mentioned if the format allows it. Texts are escaped: no name can become
-/// markup, a script or a formula. `notes` reports what the format cannot store.
+/// The contents of a landmark file. `mesh_file`: name of the mesh file, which is written if the format allows it. Texts are
+/// escaped: no name can become markup, a script or a formula. `notes` reports what the format cannot store.
 std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, const std::string& mesh_file,
                               const Provenance& provenance, std::vector<std::string>& notes,
                               const LandmarkFileOptions& options = {});
 
-/// The points and poly-lines of a set: an annotation of one point becomes a landmark named by its tag, one of several points
-/// becomes "tag 1", "tag 2" ...; a poly-line becomes a curve. Not representable are regions, colours, attributes and, in
-/// formats other than mrk, poly-lines; notes give their numbers, for attributes those of the exported annotations.
+/// The points and poly-lines of a set: an annotation of one point becomes a landmark named by its tag; an annotation of several
+/// points becomes landmarks "tag 1", "tag 2" ...; a poly-line becomes a curve. Not representable are regions, colours, attributes
+/// and, in formats other than mrk, poly-lines; notes give the number of regions, poly-lines and attributes (of exported
+/// annotations) that were left out.
 LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format = LandmarkFormat::mrk);
 
+/// Options for placing points on a mesh.
 struct PlaceOptions {
+    /// Max distance of a point from the surface, as a fraction of the diagonal of the mesh's bounding box.
     double tolerance = 0.02;
+    /// True: points beyond the tolerance are skipped with a note; false: points beyond the tolerance are an error.
     bool skip_far = false;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
 /// Position of an imported annotation on the mesh.
 struct PlacedAnnotation {
-    int id = 0;  ///< id of the annotation
-    std::string tag;
-    std::size_t points = 0;      ///< number of its points placed
-    double to_surface = 0;       ///< maximum distance of a point from the surface
-    double to_vertex = 0;        ///< maximum distance of a point from the vertex that represents it
-    std::string how = "places";  ///< "places": by coordinates; "indices": by the indices in the file; "whole": the whole mesh
+    int id = 0;              ///< id of the annotation
+    std::string tag;         ///< tag of the annotation
+    std::size_t points = 0;  ///< number of points of the annotation that were placed
+    double to_surface = 0;   ///< maximum distance of a point of the annotation from the surface
+    double to_vertex = 0;    ///< maximum distance of a point of the annotation from the vertex that represents it
+    /// "places": placed by coordinates; "indices": by the indices in the file; "whole": the whole mesh.
+    std::string how = "places";
 };
 
+/// Annotations read from a file, and how each was placed on the mesh.
 struct PlacedAnnotations {
     AnnotationSet set;
-    std::vector<PlacedAnnotation> placements;
+    std::vector<PlacedAnnotation> placements;  ///< one per annotation that was read
 };
 
-/// Annotations from landmarks: each landmark becomes a point at the nearest vertex (the lower index if equally near), the
-/// landmarks of one group become one annotation, and each curve becomes a poly-line through the nearest vertices, connected by
-/// shortest paths. Throws Error (input) with the farthest landmark beyond the tolerance and a remedy; among others, it detects
-/// a file in RAS for a mesh in LPS. O((n + k) log n) for n vertices and k landmarks, not counting the paths.
+/// Makes annotations from landmarks: each landmark becomes a point at the closest vertex (the lower index at equal distance), the
+/// landmarks of one group become one annotation, and each curve becomes a poly-line of shortest paths through the vertices
+/// closest to its points. If landmarks are beyond the tolerance, for example in a file in RAS space for a mesh in LPS space,
+/// throws Error (input) with the farthest landmark and a remedy. O((n + k) log n) for n vertices and k landmarks, not counting
+/// the paths.
 PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks, const std::string& where,
                                   const PlaceOptions& options = {});
 

@@ -16,11 +16,11 @@ namespace ostraka {
 /// be embedded in an HTML page. Throws Error (input) if the set does not fit the mesh.
 std::string web_annotations(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 
-/// Reads a collection, a page, a list of annotations or a single one. If the checksum of the target is that of `mesh`, the
-/// indices are used; otherwise the coordinates: points and lines are mapped to the nearest vertices, and the outlines of
-/// regions are traced along edges and filled. The placements report the method and the distances. Annotations of other tools
-/// are read if they have one of our selectors or refer to the whole mesh; others are skipped with a note. Throws Error (input)
-/// with file, JSON pointer and remedy.
+/// Reads web annotations: a collection, a page, a list of annotations or a single annotation. If the checksum of the target is
+/// the checksum of `mesh`, the indices are used. Otherwise the coordinates are used: points and lines are mapped to the closest
+/// vertices, and the outlines of regions are traced along edges and filled. The placements report the method and the distances.
+/// Annotations of other tools are read if they have one of our selectors or refer to the whole mesh; all other annotations are
+/// skipped with a note. Throws Error (input) with file, JSON pointer and remedy.
 PlacedAnnotations read_web_annotations(const std::string& bytes, const Mesh& mesh, const std::string& where,
                                        const PlaceOptions& options = {});
 

@@ -18,38 +18,42 @@ inline constexpr int array_buffer = 34962, element_array_buffer = 34963;
 inline constexpr const char* display_only = "ostraka-display";
 inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;
 
-/// Converts an sRGB channel (IEC 61966-2-1; 0 to 255) to a linear one: glTF vertex colours are linear (section 3.7.2.1).
+/// Converts an sRGB colour channel (IEC 61966-2-1; 0 to 255) to a linear colour channel, because glTF vertex colours are linear
+/// (section 3.7.2.1).
 std::uint16_t linear_channel(std::size_t value);
 
-/// Collects buffer views and accessors of one buffer. Their bytes are either stored and become part of a complete file, or only
-/// announced and written by the caller after the header, in the order of the views.
+/// Builds a GLB file with one buffer: collects buffer views and accessors. The bytes of a view are either stored, and become part
+/// of the complete file, or only announced, and then written by the caller after `head`, in the order of the views.
 class Builder {
 public:
-    /// Every view and both chunks begin at a multiple of `alignment`; some extensions require 8. With `escapes`, the JSON chunk
-    /// can be embedded in an HTML page.
+    /// Every view and both chunks begin at a multiple of `alignment` bytes; some extensions require 8. `escapes`: true to escape
+    /// the JSON chunk so that it can be embedded in an HTML page.
     explicit Builder(std::size_t alignment = 4, bool escapes = false);
     JsonAllocator& allocator() { return document_.GetAllocator(); }
-    Json& document() { return document_; }
+    Json& document() { return document_; }  ///< the JSON chunk, to be completed by the caller
 
-    /// Index of a new view; target or stride 0: omitted.
+    /// Adds a buffer view with these bytes and returns its index; target or stride 0: omitted.
     int add_view(const std::string& bytes, int target = 0, int stride = 0);
-    /// Index of a new accessor over a new view.
+    /// Adds a buffer view with these bytes and an accessor for it; returns the index of the accessor.
     int add_accessor(const std::string& bytes, int target, int stride, int component, std::size_t count, const char* type,
                      JsonValue* min = nullptr, JsonValue* max = nullptr);
-    /// As above, for a view of `size` bytes (a multiple of the alignment) that the caller writes.
+    /// Adds an accessor for a new view of `size` bytes (a multiple of the alignment) that the caller writes; returns the index of
+    /// the accessor.
     int announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type,
                           JsonValue* min = nullptr, JsonValue* max = nullptr);
-    /// An encoded view (EXT_meshopt_compression) that decodes to `count` elements of `stride` bytes.
+    /// Data of an encoded view (EXT_meshopt_compression).
     struct Compressed {
-        const std::string& bytes;
-        std::size_t count, stride;
-        const char* mode;  ///< "ATTRIBUTES", "TRIANGLES" or "INDICES"
+        const std::string& bytes;   ///< encoded data
+        std::size_t count, stride;  ///< number of elements; bytes per decoded element
+        const char* mode;           ///< "ATTRIBUTES", "TRIANGLES" or "INDICES"
     };
+    /// Adds an encoded view and an accessor for it; returns the index of the accessor.
     int add_compressed_accessor(const Compressed& data, int target, int component, std::size_t count, const char* type,
                                 JsonValue* min = nullptr, JsonValue* max = nullptr);
     /// Marks the integers of the accessor as normalised to the range 0 to 1.
     void mark_normalised(int accessor);
-    /// The file up to the first byte of the buffer. Throws Error (failure), naming `where`, if the file exceeds four gigabytes.
+    /// The first part of the file, up to the first byte of the buffer. Throws Error (failure), naming `where`, if the file
+    /// exceeds four gigabytes.
     std::string head(const std::string& where, const std::string& remedy);
     /// The complete file; all views must have been added with their bytes.
     std::string finish(const std::string& where, const std::string& remedy) { return head(where, remedy) + binary_; }
@@ -62,41 +66,46 @@ private:
     JsonValue views_{rapidjson::kArrayType}, accessors_{rapidjson::kArrayType};
     std::string binary_;
     std::size_t alignment_, size_ = 0;
-    std::size_t decoded_size_ = 0;  ///< size of the virtual buffer that decoded views refer to; it is not written
+    /// Size of the virtual buffer that decoded views refer to, which is not written.
+    std::size_t decoded_size_ = 0;
     bool escapes_;
 };
 
-/// Throws Error (failure) if a file of this size exceeds the limit of the format.
+/// Throws Error (failure) if a file of `bytes` bytes exceeds the limit of the GLB format.
 void check_size(std::size_t bytes, const std::string& where, const std::string& remedy);
 
+/// Appends the bytes of a value (little-endian).
 template <class T>
 void append(std::string& bytes, T value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// A parsed file; every access is checked against the sizes in the file. Throws Error (input) with the file and the JSON
+/// A parsed GLB file; every access is checked against the sizes in the file. Throws Error (input) with the file and the JSON
 /// pointer.
 class Reader {
 public:
     Reader(const std::string& bytes, const std::string& where);
 
-    [[nodiscard]] const Json& document() const { return document_; }
-    [[nodiscard]] const std::string& where() const { return where_; }
+    [[nodiscard]] const Json& document() const { return document_; }   ///< the JSON chunk
+    [[nodiscard]] const std::string& where() const { return where_; }  ///< name of the file in messages
+    /// Throws Error (input) with the file and the JSON pointer.
     [[noreturn]] void fail(const std::string& pointer, const std::string& problem) const;
 
     /// A non-negative integer member of an object, or `fallback` if it is missing.
     [[nodiscard]] std::size_t number(const JsonValue& object, const char* name, const std::string& pointer,
                                      std::size_t fallback) const;
-    /// Element `index` of a list in the root object.
+    /// Element `index` of the list of this name in the root object of the JSON chunk.
     [[nodiscard]] const JsonValue& element(const char* list, std::size_t index, const std::string& pointer) const;
 
+    /// Bytes of a buffer view.
     [[nodiscard]] std::string_view view(std::size_t index, const std::string& pointer) const;
-    /// `width` numbers per element, consecutively. Each accessor is read only once, however often it is referenced.
+    /// The numbers of an accessor: `width` numbers per element, consecutively.
     using Values = std::shared_ptr<const std::vector<double>>;
+    /// Reads an accessor with `width` numbers per element; each accessor is read only once, however often it is referenced.
     [[nodiscard]] Values accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
 
-    /// To be called before memory is allocated. Refuses files that reference the same data so often that memory would be
-    /// exhausted; the error has the JSON pointer.
+    /// Accounts for memory before it is allocated. Throws Error (input), with the JSON pointer, for a file that references the
+    /// same data so often that memory would be exhausted.
     void charge(double bytes, const std::string& pointer) const;
 
 private:

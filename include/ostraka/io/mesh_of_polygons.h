@@ -5,7 +5,7 @@
 
 namespace ostraka {
 
-/// Triangulates and checks polygons as `read_mesh` does. `name`: the file name for errors.
+/// Triangulates and checks polygons as `read_mesh` does. `name`: file name for error messages.
 MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name);
 
 }  // namespace ostraka

@@ -11,36 +11,38 @@
 
 namespace ostraka {
 
-/// A quantity with its name and the exponent of its length unit.
+/// A named quantity: one number or a list of numbers.
 struct Quantity {
-    std::string name;
-    std::vector<double> values;
-    bool is_list = false;  ///< written as a list, even with one value
-    int power = 0;         ///< 1 for a length, 2 for an area, -1 for a curvature; 0 if dimensionless or in `unit`
-    std::string unit;      ///< for quantities that are no power of a length, e.g. "rad"
+    std::string name;            ///< name of the quantity
+    std::vector<double> values;  ///< one number, or the entries of a list
+    bool is_list = false;        ///< true: `values` is written as a list even if there is only one value
+    /// Exponent of the unit of length: 1 length, 2 area, -1 curvature; 0 if dimensionless or in `unit`.
+    int power = 0;
+    std::string unit;  ///< unit of quantities that are no power of a length, e.g. "rad"; else empty
 };
 
-/// The unit of a quantity if lengths are in `unit`: "mm^2", "1/mm"; empty if `unit` is.
+/// The unit of a quantity if lengths are in `unit`: for example "mm^2" or "1/mm"; empty if `unit` is empty.
 std::string unit_of(const Quantity& quantity, const std::string& unit);
 
-/// A map for statistics: one value per vertex.
+/// A map of which statistics are computed.
 struct NamedMap {
-    std::string name;
-    std::vector<double> values;
-    std::string unit;
+    std::string name;            ///< name of the map
+    std::vector<double> values;  ///< one value per vertex
+    std::string unit;            ///< unit of the values
 };
 
+/// Options of DescriptorSearch.
 struct DescriptorOptions {
-    bool curvature = false;  ///< statistics of mean and Gaussian curvature
-    bool thickness = false;  ///< statistics of the shape diameter
-    CurvatureOptions curvature_options;
-    ThicknessOptions thickness_options;
+    bool curvature = false;              ///< true: add statistics of mean and Gaussian curvature
+    bool thickness = false;              ///< true: add statistics of the thickness (shape diameter)
+    CurvatureOptions curvature_options;  ///< used if `curvature`
+    ThicknessOptions thickness_options;  ///< used if `thickness`
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< adds every member to a list of options
 };
 
-/// Computes quantities of annotations on one mesh, which must outlive it. Fields on the whole mesh (curvature, thickness) are
-/// computed once, on demand. Not thread-safe.
+/// Computes quantities of annotations on one mesh. The mesh must outlive this object. Fields on the whole mesh (curvature,
+/// thickness) are computed once, on demand. Not thread-safe.
 class DescriptorSearch {
 public:
     explicit DescriptorSearch(const Mesh& mesh, DescriptorOptions options = {});
@@ -48,24 +50,24 @@ public:
     DescriptorSearch(const DescriptorSearch&) = delete;
     DescriptorSearch& operator=(const DescriptorSearch&) = delete;
 
-    /// Announces annotations that will be queried: free ones share one mesh, cut along the curves of all.
+    /// Announces annotations that will be queried: all free annotations of the set then share one mesh cut along their curves.
     void expect(const AnnotationSet& set);
 
-    /// One quantity by its name; nothing if the name is unknown or undefined for this type of annotation. Names for regions:
-    /// area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
-    /// centroid, box sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian
-    /// curvature integral; for lines: length.
+    /// The quantity of this name; none if the name is unknown or undefined for this type of annotation. Names for regions: area,
+    /// perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid centroid, box
+    /// sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian curvature integral.
+    /// Name for lines: length.
     std::optional<Quantity> find(const Annotation& annotation, const std::string& name);
 
-    /// All known quantities, and the requested statistics "mean curvature median", "thickness mean" and so on: mean, deviation,
-    /// median, 5 and 95 per cent. Throws Error (input), naming annotation and map, for a map of the wrong length or with values
-    /// that are not finite on the annotation, and for an annotation without elements. Statistics on points and lines use equal
-    /// weights.
+    /// All known quantities of an annotation, and the requested statistics of fields and maps (mean, deviation, median, quantiles
+    /// at 5 and 95 per cent), named "thickness mean", "mean curvature median" and so on. Throws Error (input), naming annotation
+    /// and map, for a map of the wrong length or with values that are not finite on the annotation, and for an annotation without
+    /// elements. Statistics on points and lines use equal weights.
     std::vector<Quantity> describe(const Annotation& annotation, const std::vector<NamedMap>& maps = {});
 
-    /// The fields themselves, per vertex.
+    /// Mean and Gaussian curvature of the whole mesh, per vertex.
     const Curvature& curvature();
-    /// Per face; NaN if undefined.
+    /// Thickness of the whole mesh, per face; NaN if undefined.
     const std::vector<double>& thickness();
 
 private:
@@ -75,7 +77,8 @@ private:
     std::unique_ptr<Cache> cache_;
 };
 
-/// Writes quantities into an annotation as descriptors: those of the same name are replaced, others get new ids.
+/// Writes quantities into an annotation as descriptors: a descriptor of the same name is replaced, and a new descriptor gets a
+/// new id. `unit`: unit of length.
 void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit);
 
 }  // namespace ostraka

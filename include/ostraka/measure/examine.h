@@ -6,18 +6,19 @@
 
 namespace ostraka {
 
-/// Figures of one annotation.
+/// Size figures of one annotation.
 struct AnnotationSummary {
     std::size_t elements = 0;  ///< number of faces, edges or points
     std::size_t patches = 0;   ///< number of connected components of a region (over edges), poly-lines of a line, or points
-    std::size_t outlines = 0;  ///< number of outlines of a region
-    double area = 0;           ///< area of a region, in the mesh's unit squared
-    double length = 0;         ///< perimeter of a region, length of a line
+    std::size_t outlines = 0;  ///< number of outlines of a region; 0 for other types
+    double area = 0;           ///< area of a region, in the mesh's unit squared; 0 for other types
+    double length = 0;         ///< perimeter of a region, or length of a line, in the mesh's unit
 };
+/// Computes the size figures of an annotation.
 AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation);
 
-/// Finds defects: empty selections, repeated points, poly-lines that traverse an edge twice, missing tags, stale values, and
-/// values with a relative difference of more than a millionth from recomputed ones; and remarks: regions with several
+/// Checks a set of annotations. Defects: empty selections, repeated points, poly-lines that traverse an edge twice, missing tags,
+/// stale values, and values that differ from recomputed values by more than a millionth (relative). Remarks: regions with several
 /// components, outlines that touch themselves or each other, tags used more than once. The set must have passed
 /// `check_annotations`.
 std::vector<Finding> examine(AnnotatedMeshView object);

@@ -6,8 +6,8 @@
 namespace ostraka {
 
 /// Faces that can be reached from `start` across edges, in breadth-first order, `start` first. Only faces not yet marked in
-/// `visited` are visited; they are marked. An edge is crossed if `crosses(halfedge)` is true for the halfedge in the face already
-/// reached; `crosses` is called once for each such halfedge, border edges included.
+/// `visited` are visited, and visited faces are marked. An edge is crossed if `crosses(halfedge)` is true for the edge's halfedge
+/// in the face already reached; `crosses` is called once for each halfedge of a reached face, border edges included.
 template <class Crosses>
 std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& visited, Crosses&& crosses) {
     std::vector<Face> reached{start};
@@ -22,7 +22,7 @@ std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& v
         }
     return reached;
 }
-/// Across all edges: the connected component without the faces already visited.
+/// Faces that can be reached from `start` across any edges: the connected component without the faces already visited.
 inline std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& visited) {
     return flood_faces(mesh, start, visited, [](Halfedge) { return true; });
 }

@@ -7,10 +7,10 @@
 
 namespace ostraka {
 
-/// The maximum that the schemas allow.
+/// The largest id that the schemas allow.
 inline constexpr int max_id = std::numeric_limits<int>::max();
 
-/// Unused ids for a list of entries (with a member `id`): one more than the largest id in use, at least 0; if the largest id is
+/// Generates unused ids for a list of entries with a member `id`: one more than the largest id in use, at least 0; if `max_id` is
 /// in use, the smallest unused id from 0.
 class FreeIds {
 public:
@@ -32,6 +32,7 @@ private:
     int gap_ = 0;
 };
 
+/// The id that FreeIds would give next for the entries.
 template <class Entries>
 int next_free_id(const Entries& entries) {
     int largest = -1;

@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-/// Products of four lengths must neither overflow nor underflow in computations with coordinates.
+/// Largest absolute value of a coordinate, so that products of four lengths do not overflow.
 inline constexpr double max_coordinate = 1e60;
 
 /// True if no coordinate is NaN or beyond `max_coordinate` in absolute value.
@@ -18,8 +18,8 @@ inline bool is_place(double x, double y, double z) {
 }
 inline bool is_place(const Point& p) { return is_place(p.x(), p.y(), p.z()); }
 
-/// `v` scaled by a power of two (hence without rounding) so that its largest component lies between 1/2 and 1 and squares
-/// neither overflow nor underflow. The null vector if `v` is null or not finite.
+/// The vector `v` scaled by a power of two (hence without rounding) so that its largest component lies between 1/2 and 1 and
+/// squares neither overflow nor underflow. The result is the null vector if `v` is null or not finite.
 inline Vector scaled_vector(const Vector& v) {
     const double largest = std::max({std::abs(v.x()), std::abs(v.y()), std::abs(v.z())});
     if (!(largest > 0 && std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()))) return CGAL::NULL_VECTOR;
