@@ -24,25 +24,11 @@ AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnn
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options = {});
 
-<<<<<<< ours
-/// Writes the annotations atomically; the same object, name and provenance give the same bytes. Only the file name of `mesh_file`
-/// is stored, not its folder. Throws Error if a selection does not fit the mesh.
+/// Writes an annotation file atomically; the same object, mesh file name and provenance give the same bytes. Only the file name
+/// of `mesh_file` is stored, not its folder. Throws Error if a selection does not fit the mesh.
 void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
-Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
-||||||| base
-/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. Only the file name of `mesh_file` is
-/// stored, not its folder. Throws Error if a selection does not fit the mesh.
-void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
-                       const Provenance& provenance);
-Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
-=======
-/// Writes an annotation file atomically; the same set, mesh, mesh file name and provenance give the same bytes. Only the file
-/// name of `mesh_file` is stored, not its folder. Throws Error if a selection does not fit the mesh.
-void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
-                       const Provenance& provenance);
 /// The document that `write_annotations` writes.
-Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
->>>>>>> theirs
+Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 
 /// Reads a list of attributes from an annotation file or a recipe. `list` must have been validated against a schema; pins are not
 /// checked. `pointer`: JSON pointer of the list in the document.

@@ -42,34 +42,10 @@ double length_of(const Mesh& mesh, const Annotation& annotation);
 /// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation);
 
-<<<<<<< ours
-/// A mesh cut along the free curves of its annotations, so that all curves follow edges. The surface is unchanged. The old
-/// vertices come first and keep their indices; the annotations have no curves, and their measures keep the pins.
+/// A mesh cut along the free curves of its annotations, so that all curves follow edges. The surface is unchanged. The vertices
+/// of the uncut mesh come first and keep their indices, then come the new vertices. The annotations follow edges of the cut mesh,
+/// without free curves; measures keep their pins.
 struct CutMesh : AnnotatedMesh {
-    std::vector<Index> face_origin;    ///< new face -> old face, ascending
-    std::vector<SurfacePoint> points;  ///< for each new vertex, its place on the old mesh
-    std::size_t old_vertices = 0;
-    std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
-
-    /// Vertex values interpolated at the new vertices; face values copied to the parts of the face.
-||||||| base
-/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
-struct CutMesh {
-    Mesh mesh;                         ///< old vertices first, with unchanged indices
-    AnnotationSet annotations;         ///< without curves; measures keep their pins
-    std::vector<Index> face_origin;    ///< new face -> old face, ascending
-    std::vector<SurfacePoint> points;  ///< for each new vertex, its place on the old mesh
-    std::size_t old_vertices = 0;
-    std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
-
-    /// Vertex values interpolated at the new vertices; face values copied to the parts of the face.
-=======
-/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
-struct CutMesh {
-    /// The cut mesh: the vertices of the uncut mesh first, with unchanged indices, then the new vertices.
-    Mesh mesh;
-    /// The annotations along edges of the cut mesh, without free curves; measures keep their pins.
-    AnnotationSet annotations;
     /// For each face of the cut mesh: face of the uncut mesh that contains it; ascending.
     std::vector<Index> face_origin;
     std::vector<SurfacePoint> points;  ///< for each new vertex: its place on the uncut mesh
@@ -78,7 +54,6 @@ struct CutMesh {
     std::vector<std::vector<Index>> more_paths;
 
     /// Values per vertex of the cut mesh from values per vertex of the uncut mesh `before`, interpolated at the new vertices.
->>>>>>> theirs
     [[nodiscard]] std::vector<double> vertex_values(const Mesh& before, const std::vector<double>& values) const;
     /// Values per face of the cut mesh: each part of a face gets the value of the uncut face.
     template <class Value>
@@ -90,21 +65,12 @@ struct CutMesh {
     }
 };
 
-/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Linear in the size of the mesh plus O(k log k)
-/// per face with k
-/// nodes; if two outlines intersect, also linear in the sizes of both.
+/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Linear in the size of the mesh plus O(k
+/// log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
-<<<<<<< ours
-/// An annotated mesh in which all annotations follow edges, for read-only use: the given one if no annotation is free, else the
-/// cut one. The argument must outlive this object.
-||||||| base
-/// Mesh and annotations in which all annotations follow edges, for read-only use: the given ones if no annotation is free, else
-/// cut ones. The arguments must outlive this object.
-=======
-/// Read-only access to a mesh and annotations that all follow edges: the given mesh and set if no annotation is free, otherwise
-/// the mesh cut along the free curves. The constructor's arguments must outlive this object.
->>>>>>> theirs
+/// Read-only access to an annotated mesh whose annotations all follow edges: the given one if no annotation is free, otherwise
+/// the mesh cut along the free curves. The constructor's argument must outlive this object.
 class AlongEdges {
 public:
     explicit AlongEdges(AnnotatedMeshView given) : given_(given) {

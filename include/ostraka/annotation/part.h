@@ -7,30 +7,9 @@
 
 namespace ostraka {
 
-<<<<<<< ours
-/// A part cut out along its outlines, with the annotations that lie completely on it; free outlines now follow its edges.
+/// A part of an annotated mesh, cut out along its outlines, with the annotations that lie completely on the part; free outlines
+/// now follow edges of the part's mesh.
 struct CutPart : AnnotatedMesh {
-    std::vector<Index> vertices;   ///< index in `whole` of each vertex
-    std::vector<Index> faces;      ///< index in `whole` of each face; no_index for faces that close a cut
-    std::size_t cuts = 0;          ///< number of borders that are not, or not entirely, borders of the object
-    std::size_t closed = 0;        ///< number of cuts closed by triangles
-    std::optional<CutMesh> whole;  ///< the mesh cut along free outlines; nullopt if no annotation is free: then the mesh itself
-||||||| base
-/// A part cut out along its outlines, with its annotations.
-struct CutPart {
-    Mesh mesh;
-    AnnotationSet annotations;     ///< annotations that lie completely on the part; free outlines now follow its edges
-    std::vector<Index> vertices;   ///< index in `whole` of each vertex
-    std::vector<Index> faces;      ///< index in `whole` of each face; no_index for faces that close a cut
-    std::size_t cuts = 0;          ///< number of borders that are not, or not entirely, borders of the object
-    std::size_t closed = 0;        ///< number of cuts closed by triangles
-    std::optional<CutMesh> whole;  ///< the mesh cut along free outlines; nullopt if no annotation is free: then the mesh itself
-=======
-/// A part of an annotated mesh, cut out along its outlines, with the annotations on the part.
-struct CutPart {
-    Mesh mesh;  ///< the part as a mesh of its own
-    /// The annotations that lie completely on the part; free outlines now follow edges of `mesh`.
-    AnnotationSet annotations;
     std::vector<Index> vertices;  ///< for each vertex of the part: its index in `whole`
     /// For each face of the part: its index in `whole`; no_index for faces that close a cut.
     std::vector<Index> faces;
@@ -38,7 +17,6 @@ struct CutPart {
     std::size_t closed = 0;  ///< number of cuts closed by triangles
     /// The whole mesh cut along free outlines; none if no annotation is free: indices then refer to the given mesh.
     std::optional<CutMesh> whole;
->>>>>>> theirs
 };
 
 /// Cuts out the union of `regions` (indices into the set; empty: the whole mesh) without the regions in `left_out`. `close`: fill

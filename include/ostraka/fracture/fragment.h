@@ -15,24 +15,10 @@ namespace ostraka {
 enum class Facet : std::uint8_t { outer, inner, fracture };
 std::string to_string(Facet facet);
 
-<<<<<<< ours
-struct Fragment : AnnotatedMesh {
-    std::string name;
-    std::vector<Facet> facets;  ///< per face; empty: all outer
-||||||| base
-struct Fragment {
-    std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;
-    std::vector<Facet> facets;  ///< per face; empty: all outer
-=======
 /// A fragment with its annotations and facet classes.
-struct Fragment {
-    std::string name;  ///< name in reports
-    Mesh mesh;         ///< surface of the fragment
-    AnnotationSet annotations;
+struct Fragment : AnnotatedMesh {
+    std::string name;           ///< name in reports
     std::vector<Facet> facets;  ///< class of each face; empty: all faces are outer surface
->>>>>>> theirs
 };
 
 /// The facet class that the tag of a region names: "outer", "inner" or "fracture" (case-insensitive); none for any other
