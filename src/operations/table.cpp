@@ -20,7 +20,7 @@ std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_me
     make_measure_clay();
 std::unique_ptr<Operation> make_vocabulary_check(), make_vocabulary_show(), make_vocabulary_convert();
 std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_template_show(), make_template_learn(),
-    make_template_classify(), make_template_sample(), make_template_propagate(), make_template_turn();
+    make_template_classify(), make_template_sample(), make_template_propagate(), make_template_revolve();
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
@@ -79,7 +79,7 @@ constexpr OperationEntry entries[]{
     {"template classify", "report the class of each object, and the proportions, relations or distances that contradict a class (exit code 3: an object belongs to no class, or is undecided)", make_template_classify, 2},
     {"template sample", "sample new members of a class that satisfy the constraints of the class (exit code 3: fewer members than requested)", make_template_sample},
     {"template propagate", "fit a template to members of its class and transfer its annotations to the members (exit code 3: annotations are lost, or the template does not fit a member)", make_template_propagate, 2},
-    {"template turn", "reconstruct a whole vessel from its sherds as a surface of revolution, with its profile", make_template_turn},
+    {"template revolve", "reconstruct a whole vessel from its sherds as a surface of revolution, with its profile", make_template_revolve},
     {"cage make", "make a closed coarse mesh strictly around a mesh", make_cage_make},
     {"cage edit", "move the vertices of a cage as an edit file specifies", make_cage_edit},
     {"cage check", "check whether one mesh is a sound cage of another mesh (exit code 3: no)", make_cage_check, 2},

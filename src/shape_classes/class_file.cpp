@@ -50,7 +50,7 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     if (range.high) add_members(object, allocator, "high", *range.high);
     if (range.recognised) add_members(object, allocator, "recognised", *range.recognised);
     add_members(object, allocator, "values", range.values);
-    if (!range.strangers.empty()) add_members(object, allocator, "strangers", range.strangers);
+    if (!range.out_of_class.empty()) add_members(object, allocator, "strangers", range.out_of_class);
     return object;
 }
 
@@ -67,7 +67,7 @@ std::vector<std::optional<double>> values_in(const JsonValue& object, const char
     return values;
 }
 
-LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t strangers, const std::string& where) {
+LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t out_of_class, const std::string& where) {
     LearntRange range;
     range.quantity.kind = quantity_kind(object["kind"].GetString());
     if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
@@ -95,8 +95,8 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     };
     range.values = values_in(object, "values");
     check(range.values, members, "members");
-    range.strangers = values_in(object, "strangers");
-    if (!range.strangers.empty()) check(range.strangers, strangers, "strangers");
+    range.out_of_class = values_in(object, "strangers");
+    if (!range.out_of_class.empty()) check(range.out_of_class, out_of_class, "strangers");
     return range;
 }
 
@@ -152,7 +152,7 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
     }
     add_members(document, allocator, "unsure", learnt.unsure, "accept", learnt.accept);
     if (learnt.most_off) add_members(document, allocator, "mostOff", *learnt.most_off);
-    if (!learnt.strangers.empty()) add_members(document, allocator, "strangers", learnt.strangers);
+    if (!learnt.out_of_class.empty()) add_members(document, allocator, "strangers", learnt.out_of_class);
     add_members(document, allocator, "falseReject", learnt.reject, "resolution", learnt.resolution, "members", std::move(members),
                 "archetype", learnt.members[modes.archetype].name, "diversity", learnt.diversity);
 
@@ -193,7 +193,7 @@ ShapeClass read_class(const Path& file) {
     learnt.unsure = number_in(document, "unsure").value_or(learnt.unsure);
     learnt.accept = number_in(document, "accept").value_or(learnt.accept);
     learnt.most_off = number_in(document, "mostOff");
-    learnt.strangers = texts_in(document, "strangers");
+    learnt.out_of_class = texts_in(document, "strangers");
     learnt.notes = texts_in(document, "notes");
     learnt.diversity = document["diversity"].GetDouble();
     ShapeModes& modes = learnt.modes;
@@ -248,14 +248,14 @@ ShapeClass read_class(const Path& file) {
                    "learn the class again");
     std::set<std::tuple<int, int, std::string, std::string>> quantities_found;
     for (const auto& value : document["ranges"].GetArray()) {
-        LearntRange range = range_from(value, learnt.members.size(), learnt.strangers.size(), where);
+        LearntRange range = range_from(value, learnt.members.size(), learnt.out_of_class.size(), where);
         const ClassQuantity& quantity = range.quantity;
         if (!quantities_found.emplace(static_cast<int>(quantity.kind), quantity.id, quantity.name, quantity.subject).second)
             fail_input(where, "has two ranges of " + quantity.text(), "keep one of them, or learn the class anew");
         learnt.ranges.push_back(std::move(range));
     }
     for (const auto& range : document["fragments"].GetArray())
-        learnt.fragments.push_back(range_from(range, learnt.members.size(), learnt.strangers.size(), where));
+        learnt.fragments.push_back(range_from(range, learnt.members.size(), learnt.out_of_class.size(), where));
     return learnt;
 }
 

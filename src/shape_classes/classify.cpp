@@ -159,12 +159,12 @@ const QuantityCheck* not_recognised(const ClassAnswer& answer) {
 }
 
 std::string unsure_text(const ShapeClass& learnt, const QuantityCheck& check) {
-    const std::string number = std::to_string(learnt.strangers.size());
+    const std::string number = std::to_string(learnt.out_of_class.size());
     return fmt::format(
         "its dissimilarity to the members, {} deviations on average, also occurs for out-of-class objects: up to {} is "
         "recognised, estimated from {}, and up to {} is not rejected{}",
         digits(*check.quantity.value, 3), digits(*check.recognised, 3),
-        learnt.strangers.size() < ShapeClass::min_members ? "the members" : number + " out-of-class objects",
+        learnt.out_of_class.size() < ShapeClass::min_members ? "the members" : number + " out-of-class objects",
         digits(*check.high, 3), check.worst.empty() ? "" : "; the largest deviation is " + check.worst);
 }
 

@@ -184,10 +184,10 @@ void measure_dissimilarity(ShapeClass& learnt) {
         member_values.push_back(dissimilarity_value(DissimilarityScale(learnt, i), values));
     }
     const DissimilarityScale all_members(learnt, {});
-    for (std::size_t i = 0; i < learnt.strangers.size(); ++i) {
+    for (std::size_t i = 0; i < learnt.out_of_class.size(); ++i) {
         std::vector<std::optional<double>> values;
         for (const LearntRange& range : learnt.ranges)
-            values.push_back(i < range.strangers.size() ? range.strangers[i] : std::nullopt);
+            values.push_back(i < range.out_of_class.size() ? range.out_of_class[i] : std::nullopt);
         out_of_class_values.push_back(dissimilarity_value(all_members, values));
     }
     ClassQuantity quantity;
@@ -198,27 +198,27 @@ void measure_dissimilarity(ShapeClass& learnt) {
     LearntRange& range = existing != learnt.ranges.end() ? *existing : learnt.ranges.emplace_back();
     range.quantity = quantity;
     range.values = std::move(member_values);
-    range.strangers = std::move(out_of_class_values);
+    range.out_of_class = std::move(out_of_class_values);
 }
 
 std::vector<double> out_of_class_logs(const LearntRange& range) {
     std::vector<double> logs;
-    for (const auto& value : range.strangers)
+    for (const auto& value : range.out_of_class)
         if (value && *value > 0) logs.push_back(std::log(*value));
     return logs;
 }
 
-void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& strangers, double accept,
+void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& out_of_class, double accept,
                     double unsure) {
     range.recognised.reset();
     if (!range.high) return;
-    if (strangers.count < ShapeClass::min_members) {
+    if (out_of_class.count < ShapeClass::min_members) {
         constexpr double half = 0.5;
         range.recognised = std::min(*range.high, std::max(half, std::exp(predict(members, true, unsure).high)));
         return;
     }
-    range.recognised = std::min(*range.high, std::exp(2 * strangers.mean - predict(strangers, true, accept).high));
-    range.high = std::max(*range.recognised, std::min(*range.high, std::exp(strangers.mean)));
+    range.recognised = std::min(*range.high, std::exp(2 * out_of_class.mean - predict(out_of_class, true, accept).high));
+    range.high = std::max(*range.recognised, std::min(*range.high, std::exp(out_of_class.mean)));
 }
 
 }  // namespace ostraka

@@ -188,15 +188,15 @@ std::vector<double> unlikeness_logs(const LearntRange& range) {
 
 /// A dissimilarity below one deviation never rejects; half a deviation is recognised unless out-of-class objects indicate
 /// otherwise.
-void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, const SampleMoments& strangers,
-                           std::size_t class_count) {
+void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members,
+                           const SampleMoments& out_of_class, std::size_t class_count) {
     range.high = std::max(1.0, std::exp(predict(members, true, range.reject).high));
-    set_recognised(range, members, strangers, learnt.accept / static_cast<double>(class_count), learnt.unsure);
+    set_recognised(range, members, out_of_class, learnt.accept / static_cast<double>(class_count), learnt.unsure);
 }
 
-/// `strangers`: the moments of the out-of-class objects over all classes that are queried together, instead of those of this
+/// `out_of_class`: the moments of the out-of-class objects over all classes that are queried together, instead of those of this
 /// class.
-void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::optional<SampleMoments>& strangers = {},
+void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::optional<SampleMoments>& out_of_class = {},
                     std::size_t class_count = 1) {
     std::map<QuantityKind, std::size_t> counts;
     for (const LearntRange& range : learnt.ranges)
@@ -214,7 +214,7 @@ void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::opt
         if (is_unlikeness(range.quantity))
             set_unlikeness_bounds(learnt, range,
                                   uses_own_moments ? moments_of(unlikeness_logs(range)) : moderated_moments->second,
-                                  strangers ? *strangers : moments_of(out_of_class_logs(range)), class_count);
+                                  out_of_class ? *out_of_class : moments_of(out_of_class_logs(range)), class_count);
         else set_bounds(range, uses_own_moments ? range_moments(range) : moderated_moments->second, learnt.resolution);
     }
 }
@@ -274,7 +274,7 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
                 moderated[range.quantity.key()] = prior->second.moderate(range_moments(range));
             }
         }
-        const bool strangers_shared = classes_with_thresholds >= 3 && shape_class.strangers.size() >= ShapeClass::min_members;
+        const bool strangers_shared = classes_with_thresholds >= 3 && shape_class.out_of_class.size() >= ShapeClass::min_members;
         set_thresholds(shape_class, moderated, strangers_shared ? std::optional(moments_of(out_of_class_values)) : std::nullopt,
                        classes.size());
     }
@@ -363,19 +363,19 @@ void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMembe
 }
 
 /// Adds the values of the ranges on the out-of-class objects.
-void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& strangers) {
-    for (const LearntMember& stranger : strangers) {
+void add_out_of_class(ShapeClass& learnt, const std::vector<LearntMember>& out_of_class) {
+    for (const LearntMember& stranger : out_of_class) {
         if (!stranger.fit.problem.empty()) {
             learnt.notes.push_back(
                 fmt::format("the out-of-class object {} is left out: {}", stranger.name, stranger.fit.problem));
             continue;
         }
-        learnt.strangers.push_back(stranger.name);
+        learnt.out_of_class.push_back(stranger.name);
         std::map<std::string, std::optional<double>> values;
         for (const ClassQuantity& quantity : stranger.quantities) values[quantity.key()] = quantity.value;
         for (LearntRange& range : learnt.ranges) {
             const auto entry = values.find(range.quantity.key());
-            range.strangers.push_back(entry == values.end() ? std::nullopt : entry->second);
+            range.out_of_class.push_back(entry == values.end() ? std::nullopt : entry->second);
         }
     }
 }
@@ -394,9 +394,10 @@ void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& 
     learnt.most_off = std::min(uninformative_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
 }
 
-void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members, const std::vector<LearntMember>& strangers) {
+void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members,
+                const std::vector<LearntMember>& out_of_class) {
     learnt.ranges = collected(members, &LearntMember::quantities);
-    add_strangers(learnt, strangers);
+    add_out_of_class(learnt, out_of_class);
     const auto add = [&](const char* name, const std::vector<double>& values) {
         LearntRange& range = learnt.ranges.emplace_back();
         range.quantity.name = name;
@@ -440,7 +441,7 @@ void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& ineligible
 }  // namespace
 
 ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members, const LearnOptions& options,
-                       const std::vector<LearntMember>& strangers) {
+                       const std::vector<LearntMember>& out_of_class) {
     check_options(options, "learn");
     ShapeClass learnt;
     learnt.sizes = options.modes.sizes;
@@ -474,7 +475,7 @@ ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<Le
     learnt.modes = learn_modes(shapes, landmarks_of({class_template.mesh.points().begin(), class_template.mesh.points().end()}),
                                options.modes);
     learnt.diversity = mean_distance(learnt.modes, shapes);
-    add_ranges(learnt, used, strangers);
+    add_ranges(learnt, used, out_of_class);
     learn_most_off(learnt, used);
     add_fragment_ranges(learnt, used);
     if (const LearntRange* range = learnt.find("geometry compactness"); range != nullptr && range->count > 0)

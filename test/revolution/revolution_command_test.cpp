@@ -41,33 +41,33 @@ protected:
 };
 
 TEST_F(RevolutionCommand, ReportsAsInTheSchema) {
-    const auto run =
-        run_command("template turn " + quoted_files() + "--vertices 3000 --unit mm --json --output " + quoted(scratch / "out"));
+    const auto run = run_command("template revolve " + quoted_files() + "--vertices 3000 --unit mm --json --output " +
+                                 quoted(scratch / "out"));
     ASSERT_EQ(run.code, 0) << run.err;
     const Json report = parse_json(run.out, "report");
     const JsonValue& result = report["result"];
-    validate(result, "turned", "report");
+    validate(result, "vessel", "report");
     EXPECT_NEAR(result["height"].GetDouble(), 20, 0.5);
     EXPECT_TRUE(result["base"].GetBool());
     ASSERT_EQ(result["sherds"].Size(), files.size());
     EXPECT_STREQ(result["sherds"][0]["name"].GetString(), "sherd1");
-    const Mesh mesh = read_mesh(scratch / "out" / "turned.ply").mesh;
+    const Mesh mesh = read_mesh(scratch / "out" / "vessel.ply").mesh;
     EXPECT_EQ(result["vertices"].GetUint64(), mesh.number_of_vertices());
-    const Template built = load_template(read_template(scratch / "out" / "turned.template.json"));
+    const Template built = load_template(read_template(scratch / "out" / "vessel.template.json"));
     for (const Finding& finding : built.findings) EXPECT_FALSE(finding.defect) << finding.text;
     // The schema refuses invalid members.
     Json broken = parse_json(run.out, "report");
     broken["result"].RemoveMember("height");
-    EXPECT_THROW(validate(broken["result"], "turned", "report"), Error);
+    EXPECT_THROW(validate(broken["result"], "vessel", "report"), Error);
 }
 
 TEST_F(RevolutionCommand, AFitMatchesRotationsByFractures) {
-    ASSERT_EQ(run_command("template turn " + quoted_files() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
+    ASSERT_EQ(run_command("template revolve " + quoted_files() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
     // Half a turn of the first one about the axis of the vessel, which does not determine its position.
     Mesh mesh = read_mesh(files[0]).mesh;
     for (const Vertex v : mesh.vertices()) mesh.point(v) = Point(-mesh.point(v).x(), -mesh.point(v).y(), mesh.point(v).z());
     write_mesh(files[0], mesh);
-    const std::string fit = "fit " + quoted(scratch / "out" / "turned.template.json") + " " + quoted_files() +
+    const std::string fit = "fit " + quoted(scratch / "out" / "vessel.template.json") + " " + quoted_files() +
                             "--facets auto --json --output " + quoted(scratch / "fitted");
     const auto run = run_command(fit);
     ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;
@@ -107,13 +107,13 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     TriangleSoup box = to_soup(read_mesh(files[0]).mesh);
     for (auto& p : box.points) p = {p[0] / 20, p[1] + 30, p[2]};
     write_mesh(flat, build_mesh(box));
-    const std::string command = "template turn " + quoted(text) + " " + quoted_files() + quoted(flat) + " " + quoted(cut) +
+    const std::string command = "template revolve " + quoted(text) + " " + quoted_files() + quoted(flat) + " " + quoted(cut) +
                                 " --vertices 3000 --output " + quoted(scratch / "out");
     const auto run = run_command(command + " --json");
     ASSERT_EQ(run.code, 0) << run.err;
     const Json report = parse_json(run.out, "report");
     const JsonValue& result = report["result"];
-    validate(result, "turned", "report");
+    validate(result, "vessel", "report");
     ASSERT_EQ(result["sherds"].Size(), files.size() + 3);
     EXPECT_NEAR(result["height"].GetDouble(), 20, 0.5);
     std::size_t left_out_count = 0;
@@ -133,7 +133,8 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     EXPECT_NE(words.out.find("cut.ply"), std::string::npos) << words.out;
     EXPECT_NE(words.out.find("3 of 6 sherds"), std::string::npos) << words.out;
     // Only such sherds: each is named.
-    const auto none = run_command("template turn " + quoted(text) + " " + quoted(cut) + " --output " + quoted(scratch / "none"));
+    const auto none =
+        run_command("template revolve " + quoted(text) + " " + quoted(cut) + " --output " + quoted(scratch / "none"));
     EXPECT_EQ(none.code, 1);
     EXPECT_NE(none.err.find("text.ply"), std::string::npos) << none.err;
     EXPECT_NE(none.err.find("cut.ply"), std::string::npos) << none.err;
@@ -142,20 +143,20 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
 TEST_F(RevolutionCommand, BadInputIsReportedAndNothingIsWritten) {
     const Path out = scratch / "out";
     const std::string rest = " --output " + quoted(out);
-    const auto missing = run_command("template turn " + quoted(scratch / "nope.ply") + rest);
+    const auto missing = run_command("template revolve " + quoted(scratch / "nope.ply") + rest);
     EXPECT_EQ(missing.code, 1);
     EXPECT_NE(missing.err.find("nope.ply"), std::string::npos) << missing.err;
-    EXPECT_EQ(run_command("template turn" + rest).code, 2) << "no sherd";
-    EXPECT_EQ(run_command("template turn " + quoted_files()).code, 2) << "no folder";
-    EXPECT_EQ(run_command("template turn " + quoted_files() + "--vertices 1" + rest).code, 2);
+    EXPECT_EQ(run_command("template revolve" + rest).code, 2) << "no sherd";
+    EXPECT_EQ(run_command("template revolve " + quoted_files()).code, 2) << "no folder";
+    EXPECT_EQ(run_command("template revolve " + quoted_files() + "--vertices 1" + rest).code, 2);
     TriangleSoup open = to_soup(read_mesh(files[0]).mesh);
     open.triangles.pop_back();
     write_mesh(scratch / "open.ply", build_mesh(open));
-    const auto hole = run_command("template turn " + quoted(scratch / "open.ply") + rest);
+    const auto hole = run_command("template revolve " + quoted(scratch / "open.ply") + rest);
     EXPECT_EQ(hole.code, 1);
     EXPECT_NE(hole.err.find("open"), std::string::npos) << hole.err;
     EXPECT_NE(hole.err.find("not closed"), std::string::npos) << hole.err;
-    EXPECT_FALSE(std::filesystem::exists(out / "turned.ply"));
+    EXPECT_FALSE(std::filesystem::exists(out / "vessel.ply"));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST_F(ClassCommand, PropagateReportsWhereTheTemplateDoesNotLie) {
 TEST_F(ClassCommand, AnUnreadableFileDoesNotStopTheOthers) {
     const std::string vase = "'" OSTRAKA_SOURCE_DIR "/data/vase.ply'";
     const auto learnt = run_command("template learn " + known() + " " + member(2) + " " + member(3) + " " + member(4) +
-                                    " --strangers " + vase + " --name idol --quiet --output " + quoted(scratch / "class"));
+                                    " --out-of-class " + vase + " --name idol --quiet --output " + quoted(scratch / "class"));
     ASSERT_EQ(learnt.code, 0) << learnt.err;
     const Json file = read_json(scratch / "class" / "idol.class.json");
     validate(file, "class", "class");
@@ -219,7 +219,7 @@ TEST_F(ClassCommand, WrongArgumentsAndFilesAreReported) {
     EXPECT_EQ(other.code, 1);
     EXPECT_NE(other.err.find("correspondence"), std::string::npos) << other.err;
     EXPECT_EQ(run_command("template classify " + member(1)).code, 2);
-    const auto stranger = run_command("template learn " + known() + " " + member(2) + " --strangers " +
+    const auto stranger = run_command("template learn " + known() + " " + member(2) + " --out-of-class " +
                                       quoted(scratch / "missing.ply") + " --output " + quoted(scratch / "class"));
     EXPECT_EQ(stranger.code, 1);
     EXPECT_NE(stranger.err.find("missing.ply"), std::string::npos) << stranger.err;

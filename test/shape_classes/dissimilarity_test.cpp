@@ -111,11 +111,11 @@ TEST(Dissimilarity, OutOfClassObjectsDetermineWhatIsRecognised) {
     };
     set(0.05);
     EXPECT_NEAR(*range.recognised, std::exp(predict(moments_of(members), true, 0.15).high), 1e-9);
-    std::vector<double> strangers{1.5, 1.0, 2.0, 1.2, 1.8};
-    for (const double log : strangers) range.strangers.emplace_back(std::exp(log));
+    std::vector<double> out_of_class{1.5, 1.0, 2.0, 1.2, 1.8};
+    for (const double log : out_of_class) range.out_of_class.emplace_back(std::exp(log));
     set(0.05);
-    for (double& log : strangers) log = -log;
-    EXPECT_NEAR(*range.recognised, std::exp(-predict(moments_of(strangers), true, 0.05).high), 1e-9)
+    for (double& log : out_of_class) log = -log;
+    EXPECT_NEAR(*range.recognised, std::exp(-predict(moments_of(out_of_class), true, 0.05).high), 1e-9)
         << "what one in twenty is below";
     EXPECT_NEAR(*range.high, 3, 1e-12) << "out-of-class objects are farther off on average";
     const double one_class = *range.recognised;
@@ -200,7 +200,7 @@ TEST(Classify, OutOfClassObjectsMakeTheAnswerCautious) {
     const ShapeClass alone = learn_class(template_tower.known(), members),
                      careful = learn_class(template_tower.known(), members, {}, near),
                      sure = learn_class(template_tower.known(), members, {}, far);
-    EXPECT_EQ(careful.strangers.size(), 4U);
+    EXPECT_EQ(careful.out_of_class.size(), 4U);
     EXPECT_EQ(alone.find(key)->values, careful.find(key)->values) << "strangers say nothing of what members are";
     EXPECT_LT(*careful.find(key)->recognised, *sure.find(key)->recognised);
     const ClassAnswer class_answer = ask_class(careful, template_tower.known(), member_of(template_tower, "x", 1, 1.2, 1));

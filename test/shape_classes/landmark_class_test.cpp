@@ -103,10 +103,10 @@ TEST(LandmarkClass, MissingLandmarksAreNamed) {
         run_command("template learn " + quoted(scratch / "a.mrk.json") + " " OSTRAKA_SOURCE_DIR "/data/vase.ply" + out);
     EXPECT_EQ(mixed.code, 1);
     EXPECT_NE(mixed.err.find("vase.ply"), std::string::npos) << mixed.err;
-    const auto strangers = run_command("template learn " + quoted(scratch / "a.mrk.json") + " --strangers " +
-                                       quoted(scratch / "short.mrk.json") + out);
-    EXPECT_EQ(strangers.code, 2);
-    EXPECT_NE(strangers.err.find("classes of meshes"), std::string::npos) << strangers.err;
+    const auto out_of_class = run_command("template learn " + quoted(scratch / "a.mrk.json") + " --out-of-class " +
+                                          quoted(scratch / "short.mrk.json") + out);
+    EXPECT_EQ(out_of_class.code, 2);
+    EXPECT_NE(out_of_class.err.find("classes of meshes"), std::string::npos) << out_of_class.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "class")) << "nothing is written by what fails";
     // With one member nothing can be refused or sampled.
     ASSERT_EQ(run_command("template learn " + quoted(scratch / "a.mrk.json") + out).code, 0);

@@ -46,9 +46,10 @@ std::vector<double> out_of_class_logs(const LearntRange& range);
 /// Sets the dissimilarity up to which an object is recognised as a member; larger values alone do not reject it. With at least
 /// three out-of-class objects the bound is the value below which at most the share `accept` of them falls (classes that are
 /// queried together share this rate); otherwise it is the value that at most the share `unsure` of members exceeds, and at
-/// least half a deviation. `members` and `strangers` are the moments of the logarithms of their values. The bound never exceeds
-/// `range.high`, which out-of-class objects lower: objects as dissimilar as they are on average (geometric mean) are rejected.
-void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& strangers, double accept,
+/// least half a deviation. `members` and `out_of_class` are the moments of the logarithms of their values. The bound never
+/// exceeds `range.high`, which out-of-class objects lower: objects as dissimilar as they are on average (geometric mean) are
+/// rejected.
+void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& out_of_class, double accept,
                     double unsure);
 
 }  // namespace ostraka

@@ -26,9 +26,9 @@ struct LearnOptions {
 
 /// The values of one quantity on the members, and the range accepted for other objects.
 struct LearntRange {
-    ClassQuantity quantity;                             ///< without value
-    std::vector<std::optional<double>> values;          ///< one per member; relative to other members: leave-one-out
-    std::vector<std::optional<double>> strangers = {};  ///< one per out-of-class object
+    ClassQuantity quantity;                                ///< without value
+    std::vector<std::optional<double>> values;             ///< one per member; relative to other members: leave-one-out
+    std::vector<std::optional<double>> out_of_class = {};  ///< one per out-of-class object
     std::size_t count = 0;
     double min = 0, max = 0, mean = 0;
     double percentile_5 = 0, percentile_25 = 0, median = 0, percentile_75 = 0, percentile_95 = 0;
@@ -62,8 +62,8 @@ struct ShapeClass {
     std::vector<LearntRange> fragments;  ///< ranges for the fragment thresholds (fragment_thresholds.h)
     std::string topology;                ///< topology_checksum of the template's mesh
     ShapeModes modes;
-    std::vector<std::string> strangers;   ///< names of the out-of-class objects, whose values are in the ranges
-    double unsure = 0.15, accept = 0.05;  ///< from LearnOptions
+    std::vector<std::string> out_of_class;  ///< names of the out-of-class objects, whose values are in the ranges
+    double unsure = 0.15, accept = 0.05;    ///< from LearnOptions
     /// Upper bound of FitResiduals::off for members; none if the members are in correspondence.
     std::optional<double> most_off;
     std::map<std::string, VariancePrior> variances;  ///< by key, from the classes that are queried together; not kept in files
@@ -99,11 +99,11 @@ LearntMember learn_member(const ClassTemplate& class_template, const WholeObject
 LearntMember measure_member(const ClassTemplate& class_template, const WholeObject& member, MemberFit fit,
                             const LearnOptions& options = {}, const WholeShape* whole_shape = nullptr);
 
-/// Learns a class from its members. Members with a problem are left out, and a note reports it. `strangers` are out-of-class
+/// Learns a class from its members. Members with a problem are left out, and a note reports it. `out_of_class` are out-of-class
 /// objects: their values determine up to which dissimilarity an object is recognised. Throws Error (input) if no member is
 /// left.
 ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members,
-                       const LearnOptions& options = {}, const std::vector<LearntMember>& strangers = {});
+                       const LearnOptions& options = {}, const std::vector<LearntMember>& out_of_class = {});
 
 /// Sets, for each range, whether it can reject, its share of `reject`, and the accepted range: the prediction interval
 /// (`predict`) of its values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities

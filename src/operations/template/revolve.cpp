@@ -1,4 +1,4 @@
-// template turn: a vessel as a surface of revolution, from its sherds.
+// template revolve: a vessel as a surface of revolution, from its sherds.
 #include "operations/operations.h"
 
 #include "ostraka/core/text.h"
@@ -11,14 +11,14 @@ namespace ostraka {
 
 namespace {
 
-struct TemplateTurn final : Operation {
+struct TemplateRevolve final : Operation {
     void describe(Parameters& p) override {
         p.input("sherds", Kind::mesh, files, "closed mesh of a sherd, in the pose that the sherd had in the vessel").many();
         p.output("output", Kind::folder, output, "folder to write: the template of the vessel").flag();
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
         options.describe(p.options);
         reading.describe(p.options);
-        p.report.schema = "turned";
+        p.report.schema = "vessel";
         p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"), number("lean", "own axis leans, degrees"),
                        number("aside", "aside"), number("weight", "share of the axis %"), number("disagreement"),
                        number("lowest", "from height"), number("highest", "to"), number("residual", "off the template"),
@@ -68,20 +68,20 @@ struct TemplateTurn final : Operation {
             write_file(place, bytes);
             file.contents.push_back({role, name, place, sha256(bytes)});
         };
-        part("mesh", "turned.ply", [&](const Path& path) { write_mesh(path, vessel.mesh, {}, write_options); });
-        part("annotations", "turned.ant.json",
-             [&](const Path& path) { write_annotations(path, vessel, "turned.ply", provenance); });
+        part("mesh", "vessel.ply", [&](const Path& path) { write_mesh(path, vessel.mesh, {}, write_options); });
+        part("annotations", "vessel.ant.json",
+             [&](const Path& path) { write_annotations(path, vessel, "vessel.ply", provenance); });
         std::string csv = "radius,height\n";
         for (const auto& p : vessel.profile) csv += fmt::format("{},{}\n", digits(p.x(), 10), digits(p.y(), 10));
         write_file(output.in("profile.csv"), csv);
-        write_json(output.in("turned.template.json"), template_to_json(file, provenance));
+        write_json(output.in("vessel.template.json"), template_to_json(file, provenance));
     }
 
     static void report_result(Report& report, const RevolutionTemplate& vessel) {
         const auto triple = [](const auto& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
         double height = 0, max_radius = 0;
         for (const auto& p : vessel.profile) height = std::max(height, p.y()), max_radius = std::max(max_radius, p.x());
-        report("format", "ostraka-turned")("version", 1)("through", triple(vessel.axis.point))(
+        report("format", "ostraka-vessel")("version", 1)("through", triple(vessel.axis.point))(
             "direction", triple(vessel.axis.direction))("directionError", vessel.direction_error)(
             "placeError", vessel.place_error)("height", height)("largestDiameter", 2 * max_radius)("base", vessel.base)(
             "rim", vessel.rim)("vertices", vessel.mesh.number_of_vertices());
@@ -124,6 +124,6 @@ struct TemplateTurn final : Operation {
 
 }  // namespace
 
-std::unique_ptr<Operation> make_template_turn() { return make<TemplateTurn>(); }
+std::unique_ptr<Operation> make_template_revolve() { return make<TemplateRevolve>(); }
 
 }  // namespace ostraka
