@@ -140,12 +140,9 @@ Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::
     add_nonempty_members(document, allocator, "unit", set.unit, "class", set.object_class);
     if (set.up) add_member(document, "up", numbers_of(*set.up, allocator), allocator);
     std::vector<RegionParts> parts(set.annotations.size());
-    parallel_for(
-        parts.size(),
-        [&](std::size_t i) {
-            if (set.annotations[i].type == AnnotationType::region) parts[i] = parts_of(set.annotations[i], mesh);
-        },
-        1);
+    parallel_for(parts.size(), 1, [&](std::size_t i) {
+        if (set.annotations[i].type == AnnotationType::region) parts[i] = parts_of(set.annotations[i], mesh);
+    });
     JsonValue list = json_list(set.annotations, allocator, [&](const Annotation& one) {
         return json_of(one, parts[static_cast<std::size_t>(&one - set.annotations.data())], allocator);
     });

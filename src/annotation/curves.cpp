@@ -264,7 +264,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
             to.polylines[k] = std::move(path);
         }
     };
-    parallel_for(set.annotations.size(), carry, 1);
+    parallel_for(set.annotations.size(), 1, carry);
     return cut;
 }
 

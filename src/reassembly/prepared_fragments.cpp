@@ -21,13 +21,10 @@ PreparedFragments::PreparedFragments(const std::vector<Fragment>& fragments, con
       middle_(fragments.size(), Vector3d::Zero()),
       radius_(fragments.size(), 0) {
     Progress progress("prepare fragments", fragments.size());
-    parallel_for(
-        fragments.size(),
-        [&](std::size_t k) {
-            prepare(fragments[k], k, alone[k]);
-            progress.advance();
-        },
-        1);
+    parallel_for(fragments.size(), 1, [&](std::size_t k) {
+        prepare(fragments[k], k, alone[k]);
+        progress.advance();
+    });
 }
 
 std::size_t PreparedFragments::taking_part() const {

@@ -118,40 +118,31 @@ bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_who
         return *cached_orientation;
     };
     const bool reversed = std::any_of(slices.begin(), slices.end(), has_negative_area) && orientation().inside_out;
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            auto& contours = slices[i].contours;
-            if (reversed) std::for_each(contours.begin(), contours.end(), turn_around);
-            sort_and_nest(contours);
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        auto& contours = slices[i].contours;
+        if (reversed) std::for_each(contours.begin(), contours.end(), turn_around);
+        sort_and_nest(contours);
+    });
     const bool closed = is_whole_mesh && std::any_of(slices.begin(), slices.end(), has_outermost_hole) && orientation().closed;
     const double tolerance = on_plane_share * box_diagonal(mesh);
     std::vector<std::vector<char>> wrong(slices.size());
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            const Crossings crossings = find_crossings(slices[i].contours, tolerance);
-            wrong[i] = against_nesting(slices[i].contours, crossings, closed);
-            slices[i].completeness.doubtful = crossings.doubtful;
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        const Crossings crossings = find_crossings(slices[i].contours, tolerance);
+        wrong[i] = against_nesting(slices[i].contours, crossings, closed);
+        slices[i].completeness.doubtful = crossings.doubtful;
+    });
     const auto has_wrong = [](const std::vector<char>& verdicts) {
         return std::find(verdicts.begin(), verdicts.end(), 1) != verdicts.end();
     };
     std::optional<WrongShells> shells;
     if (std::any_of(wrong.begin(), wrong.end(), has_wrong)) shells.emplace(mesh, slices, wrong);
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            for (Contour& contour : slices[i].contours)
-                if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
-            const double doubtful = slices[i].completeness.doubtful;
-            slices[i].completeness = completeness(slices[i].contours);
-            slices[i].completeness.doubtful = doubtful;
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        for (Contour& contour : slices[i].contours)
+            if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
+        const double doubtful = slices[i].completeness.doubtful;
+        slices[i].completeness = completeness(slices[i].contours);
+        slices[i].completeness.doubtful = doubtful;
+    });
     return reversed;
 }
 

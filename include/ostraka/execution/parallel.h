@@ -15,12 +15,16 @@ int threads();
 /// failed.
 void parallel_blocks(std::size_t count, std::size_t block, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Calls body(i) for each i in [0, count).
+/// Calls body(i) for each i in [0, count), in blocks of `block`.
 template <class Body>
-void parallel_for(std::size_t count, Body&& body, std::size_t block = 256) {
+void parallel_for(std::size_t count, std::size_t block, Body&& body) {
     parallel_blocks(count, block, [&body](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) body(i);
     });
+}
+template <class Body>
+void parallel_for(std::size_t count, Body&& body) {
+    parallel_for(count, 256, body);
 }
 
 }  // namespace ostraka
