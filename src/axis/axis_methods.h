@@ -9,9 +9,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// The sign that makes the largest component positive.
 inline Vector3d oriented(const Vector3d& v) {
     Eigen::Index largest = 0;

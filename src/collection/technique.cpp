@@ -21,8 +21,6 @@ namespace ostraka {
 
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr double unknown = TechniqueSlice::unknown;
 
 /// The slice reduced to one contour and the holes directly in it.

@@ -13,7 +13,6 @@
 namespace ostraka::coords {
 
 using Eigen::Matrix4d;
-using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 namespace {

@@ -17,8 +17,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Largest number of cage vertices that may have a weight at a node: those of largest harmonic weight.

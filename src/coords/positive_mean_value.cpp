@@ -13,8 +13,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int rays = 1024;

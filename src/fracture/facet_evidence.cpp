@@ -14,9 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 /// Local shape of the surface around a point.

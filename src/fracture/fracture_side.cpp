@@ -9,8 +9,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count) {
     SurfaceSamples samples;
     for (const Face face : mesh.faces())

@@ -20,8 +20,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Indices of about `count` elements at equal steps.

@@ -7,8 +7,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// A loop resampled at equal distances.

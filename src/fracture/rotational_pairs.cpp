@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 std::size_t step_of(double rotation, std::size_t steps) {

@@ -14,8 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr std::uint32_t leaf_size = 6;

@@ -20,8 +20,6 @@ using namespace detail;
 namespace {
 
 using Array3 = std::array<double, 3>;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 Vector3d vector(const Array3& p) { return {p[0], p[1], p[2]}; }
 

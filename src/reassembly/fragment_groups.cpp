@@ -15,8 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Prior log odds of a candidate: each pair has several, and most pairs do not meet.

@@ -11,8 +11,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 PreparedFragments::PreparedFragments(const std::vector<Fragment>& fragments, const ReassemblyOptions& options,
                                      const PairEffort& effort, std::vector<std::string>& alone)
     : options_(options),

@@ -15,9 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 /// The template with fewer vertices, for what is smooth anyway.

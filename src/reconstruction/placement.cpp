@@ -16,9 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const AnnotationSet& of_template, const Mesh& fragment,
                                            const AnnotationSet& of_fragment, std::vector<std::string>* notes) {
     using Tags = std::map<std::string, std::vector<const Annotation*>>;

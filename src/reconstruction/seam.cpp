@@ -13,8 +13,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// A patch's border traced on the surface, loop by loop.

@@ -21,9 +21,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 // Lengths here are in units of the root mean square distance of a surface from its centre.

@@ -12,9 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 namespace {
 
 /// A level of the scale space: the smoothed surface and the inputs of the descriptors.

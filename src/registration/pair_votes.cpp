@@ -13,9 +13,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int angles = 12;                    ///< bins from 0 to pi

@@ -23,7 +23,6 @@ using detail::Nearness;
 using detail::refined_on;
 using detail::score_on;
 using detail::thinned;
-using Eigen::Vector3d;
 
 namespace {
 

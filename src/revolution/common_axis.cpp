@@ -20,7 +20,6 @@
 namespace ostraka {
 
 using Eigen::Matrix4d;
-using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 namespace {

@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 void WallSection::drop_rare(const RevolutionOptions& options) {
     const double minimum = options.presence / 360 * 2 * std::max(4, options.columns / 2);
     for (std::size_t row = 0; row < image.rows; ++row)

@@ -16,8 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 /// Point at an arc length along the curve, clamped to its ends.

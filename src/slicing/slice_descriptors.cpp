@@ -15,8 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 void add_pieces(PlaneSegments& segments, const Contour& contour) {

@@ -8,8 +8,6 @@
 
 namespace ostraka::shapes {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int block_cubes = 4;                     // cubes along a block's edge

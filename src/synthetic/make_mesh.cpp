@@ -15,8 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Lattice vertices per wanted vertex: with fewer, thin triangles remain; with more, time is wasted.

@@ -16,9 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr std::uint64_t noise_numbers = std::uint64_t{1} << 40, hole_numbers = std::uint64_t{1} << 50;
