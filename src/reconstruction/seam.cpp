@@ -6,6 +6,7 @@
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

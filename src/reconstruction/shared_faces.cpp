@@ -2,7 +2,7 @@
 
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/submesh.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -206,8 +206,7 @@ Pairs nearest_position(Piece& piece, const Mesh& mesh, double scale, const std::
 
 std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, double scale, const std::vector<bool>& broken) {
     std::vector<Index> vertices(fragment.number_of_vertices(), no_index);
-    const FacePieces pieces = face_pieces(
-        fragment, [&](Face f) { return broken.empty() || !broken[f]; }, [](Halfedge) { return true; });
+    const FacePieces pieces = face_pieces(fragment, [&](Face f) { return broken.empty() || !broken[f]; });
     std::vector<std::vector<Index>> faces(pieces.count);
     for (Index f = 0; f < pieces.of_face.size(); ++f)
         if (pieces.of_face[f] != no_index) faces[pieces.of_face[f]].push_back(f);
