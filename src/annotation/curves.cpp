@@ -7,9 +7,6 @@
 #include "ostraka/mesh/flood.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <numeric>
 
 namespace ostraka {
 

@@ -25,12 +25,22 @@ public:
         const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
         buffer_.append(digits, end);
     }
+    /// Each after a blank.
     template <class T>
     void numbers(std::initializer_list<T> values) {
         for (const T value : values) {
             character(' ');
             number(value);
         }
+    }
+    /// Separated by blanks, then `end`.
+    template <class T>
+    void row(std::initializer_list<T> values, std::string_view end = "\n") {
+        for (const T& value : values) {
+            if (&value != values.begin()) character(' ');
+            number(value);
+        }
+        text(end);
     }
     /// The bytes of a value; the machine is little-endian (checked in core/mesh.cpp).
     template <class T>

@@ -3,7 +3,6 @@
 #include "ostraka/execution/parallel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace ostraka::detail {

@@ -11,7 +11,6 @@
 #include "ostraka/remesh/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 

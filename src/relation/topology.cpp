@@ -9,7 +9,6 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/execution/parallel.h"
 
-#include <bit>
 #include <numeric>
 #include <unordered_map>
 

@@ -4,7 +4,6 @@
 #include "ostraka/geom/chains.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 namespace ostraka::detail {

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 namespace ostraka {
 

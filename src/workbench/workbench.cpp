@@ -15,7 +15,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <set>
 
 namespace ostraka {

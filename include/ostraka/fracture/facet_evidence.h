@@ -55,9 +55,8 @@ struct FacetModel {
     [[nodiscard]] std::vector<double> log_odds(const FacetEvidence& evidence) const;
 };
 
-/// The built-in model (data/facets.model.json), and its SHA-256.
+/// The built-in model (data/facets.model.json).
 const FacetModel& facet_model();
-std::string facet_model_version();
 
 /// Log odds of each row.
 std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& rows);
