@@ -4,7 +4,6 @@
 #include "ostraka/core/text.h"
 #include "ostraka/execution/parallel.h"
 
-#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <map>

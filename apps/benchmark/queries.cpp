@@ -51,8 +51,7 @@ void run_queries(benchmark::State& state, Query query, int thread_count) {
     std::vector<Index> faces(query_points.points.size());
     set_threads(thread_count);
     for ([[maybe_unused]] const auto lap : state)
-        parallel_for(
-            faces.size(), [&](std::size_t i) { faces[i] = answer_query(search, query_points, query, i); }, 64);
+        parallel_for(faces.size(), 64, [&](std::size_t i) { faces[i] = answer_query(search, query_points, query, i); });
     set_threads(0);
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * faces.size()));
 

@@ -150,9 +150,8 @@ void closest_by_us(const Words& words) {
     const SurfaceSearch search(mesh);
     const double build = lap();
     std::vector<double> distances(other.number_of_vertices());
-    parallel_for(
-        distances.size(),
-        [&](std::size_t i) { distances[i] = search.closest(other.point(Vertex(static_cast<Index>(i)))).distance; }, 64);
+    parallel_for(distances.size(), 64,
+                 [&](std::size_t i) { distances[i] = search.closest(other.point(Vertex(static_cast<Index>(i)))).distance; });
     print_distances(read, build, lap(), distances);
 }
 

@@ -66,22 +66,19 @@ struct Detections {
 
 Detections over_seeds(SyntheticMeasuresOptions made, int seeds) {
     std::vector<Detections> list(static_cast<std::size_t>(seeds));
-    parallel_for(
-        list.size(),
-        [&](std::size_t s) {
-            SyntheticMeasuresOptions options = made;
-            ProportionOptions study;
-            options.seed = study.seed = s + 1;
-            const SyntheticMeasures measures = make_measures(options);
-            for (const RatioRow& ratio : study_proportions(measures.table, study).ratios) {
-                const int a = measures.groups[ratio.numerator], b = measures.groups[ratio.denominator];
-                const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
-                list[s].planted += planted;
-                list[s].hit += planted && called;
-                list[s].wrong += !planted && called;
-            }
-        },
-        1);
+    parallel_for(list.size(), 1, [&](std::size_t s) {
+        SyntheticMeasuresOptions options = made;
+        ProportionOptions study;
+        options.seed = study.seed = s + 1;
+        const SyntheticMeasures measures = make_measures(options);
+        for (const RatioRow& ratio : study_proportions(measures.table, study).ratios) {
+            const int a = measures.groups[ratio.numerator], b = measures.groups[ratio.denominator];
+            const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
+            list[s].planted += planted;
+            list[s].hit += planted && called;
+            list[s].wrong += !planted && called;
+        }
+    });
     Detections sum;
     for (const Detections& one : list) {
         sum.planted += one.planted, sum.hit += one.hit, sum.wrong += one.wrong;
@@ -96,25 +93,22 @@ Detections over_seeds(SyntheticMeasuresOptions made, int seeds) {
 double coverage(int seeds, double deviation) {
     const double truth = std::sqrt(std::expm1(deviation * deviation));
     std::vector<int> inside(static_cast<std::size_t>(seeds));
-    parallel_for(
-        inside.size(),
-        [&](std::size_t s) {
-            Random random(s + 1, 99);
-            MeasureTable table;
-            table.measures = {{"a", 1, "mm"}};
-            table.values.resize(40, 1);
-            for (Eigen::Index i = 0; i < 40; ++i) {
-                table.objects.push_back(std::to_string(i));
-                table.values(i, 0) = std::exp(random.normal(0, deviation));
-            }
-            table.units.assign(40, "mm");
-            ProportionOptions study;
-            study.seed = s + 1;
-            const MeasureRow row = study_proportions(table, study).measures.front();
-            inside[s] =
-                row.variation_interval && row.variation_interval->low <= truth && truth <= row.variation_interval->high ? 1 : 0;
-        },
-        1);
+    parallel_for(inside.size(), 1, [&](std::size_t s) {
+        Random random(s + 1, 99);
+        MeasureTable table;
+        table.measures = {{"a", 1, "mm"}};
+        table.values.resize(40, 1);
+        for (Eigen::Index i = 0; i < 40; ++i) {
+            table.objects.push_back(std::to_string(i));
+            table.values(i, 0) = std::exp(random.normal(0, deviation));
+        }
+        table.units.assign(40, "mm");
+        ProportionOptions study;
+        study.seed = s + 1;
+        const MeasureRow row = study_proportions(table, study).measures.front();
+        inside[s] =
+            row.variation_interval && row.variation_interval->low <= truth && truth <= row.variation_interval->high ? 1 : 0;
+    });
     return static_cast<double>(std::count(inside.begin(), inside.end(), 1)) / seeds;
 }
 

@@ -109,24 +109,21 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
                         if (g != Mesh::null_face()) near[g] = true;
     }
     std::vector<std::array<double, 3>> sums(mesh.number_of_faces());  // area inside, intersection, union
-    parallel_for(
-        mesh.number_of_faces(),
-        [&](std::size_t f) {
-            const Face face(static_cast<Index>(f));
-            const double area = face_area(mesh, face);
-            if (!(area > 0)) return;
-            const int n = near[f] ? 16 : 1;
-            const auto corner = corners(mesh, face);
-            for_each_part(n, [&](const std::array<double, 3>& at) {
-                const Point place = point_at(mesh.point(corner[0]), mesh.point(corner[1]), mesh.point(corner[2]), at);
-                const bool was = came_from_inside(face, place), is = after.holds(face, place);
-                const double part = area / (n * n);
-                sums[f][0] += was ? part : 0;
-                sums[f][1] += was && is ? part : 0;
-                sums[f][2] += was || is ? part : 0;
-            });
-        },
-        256);
+    parallel_for(mesh.number_of_faces(), 256, [&](std::size_t f) {
+        const Face face(static_cast<Index>(f));
+        const double area = face_area(mesh, face);
+        if (!(area > 0)) return;
+        const int n = near[f] ? 16 : 1;
+        const auto corner = corners(mesh, face);
+        for_each_part(n, [&](const std::array<double, 3>& at) {
+            const Point place = point_at(mesh.point(corner[0]), mesh.point(corner[1]), mesh.point(corner[2]), at);
+            const bool was = came_from_inside(face, place), is = after.holds(face, place);
+            const double part = area / (n * n);
+            sums[f][0] += was ? part : 0;
+            sums[f][1] += was && is ? part : 0;
+            sums[f][2] += was || is ? part : 0;
+        });
+    });
     double both = 0, either = 0;
     for (const auto& sum : sums) result.area += sum[0], both += sum[1], either += sum[2];
     result.overlap = either > 0 ? both / either : 0;

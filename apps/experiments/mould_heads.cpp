@@ -46,8 +46,7 @@ Heads synthetic_heads(const MouldPopulationOptions& population, const CastOption
     heads.meshes.resize(plan.size());
     heads.labels.resize(plan.size());
     std::vector<HeadCast> casts(plan.size());
-    parallel_for(
-        plan.size(), [&](std::size_t i) { casts[i] = cast_planned(plan[i], population); }, 1);
+    parallel_for(plan.size(), 1, [&](std::size_t i) { casts[i] = cast_planned(plan[i], population); });
     for (std::size_t i = 0; i < plan.size(); ++i) {
         heads.meshes[i] = std::move(casts[i].mesh);
         heads.labels[i] = std::move(casts[i].face_labels);
@@ -89,23 +88,20 @@ Heads scanned_heads(const std::vector<std::string>& files, int objects, std::uin
         heads.names.push_back("head-" + std::to_string(i + 1));
     }
     heads.labels.resize(heads.meshes.size());
-    parallel_for(
-        heads.meshes.size(),
-        [&](std::size_t i) {
-            // A different number of vertices for each cast, so that no two meshes coincide.
-            Random own(23, i);
-            Mesh mesh =
-                remeshed(heads.meshes[i], static_cast<std::uint64_t>(static_cast<double>(vertices / 2) * own.uniform(0.9, 1.1)));
-            const double size = std::sqrt(surface_area(mesh));
-            if (wear > 0) set_positions(mesh, Diffusion(mesh).smoothed(positions(mesh), wear * own.uniform(0.5, 1) * size, 3));
-            std::vector<Vector> normals;
-            for (const Vertex v : mesh.vertices()) normals.push_back(vertex_normal(mesh, v));
-            for (const Vertex v : mesh.vertices()) mesh.point(v) += 0.001 * size * own.normal() * normals[v];
-            const Eigen::Matrix3d rotation =
-                Eigen::Quaterniond(own.normal(), own.normal(), own.normal(), own.normal()).normalized().toRotationMatrix();
-            heads.meshes[i] = warped(std::move(mesh), [&](const Eigen::Vector3d& p) { return rotation * p; });
-        },
-        1);
+    parallel_for(heads.meshes.size(), 1, [&](std::size_t i) {
+        // A different number of vertices for each cast, so that no two meshes coincide.
+        Random own(23, i);
+        Mesh mesh =
+            remeshed(heads.meshes[i], static_cast<std::uint64_t>(static_cast<double>(vertices / 2) * own.uniform(0.9, 1.1)));
+        const double size = std::sqrt(surface_area(mesh));
+        if (wear > 0) set_positions(mesh, Diffusion(mesh).smoothed(positions(mesh), wear * own.uniform(0.5, 1) * size, 3));
+        std::vector<Vector> normals;
+        for (const Vertex v : mesh.vertices()) normals.push_back(vertex_normal(mesh, v));
+        for (const Vertex v : mesh.vertices()) mesh.point(v) += 0.001 * size * own.normal() * normals[v];
+        const Eigen::Matrix3d rotation =
+            Eigen::Quaterniond(own.normal(), own.normal(), own.normal(), own.normal()).normalized().toRotationMatrix();
+        heads.meshes[i] = warped(std::move(mesh), [&](const Eigen::Vector3d& p) { return rotation * p; });
+    });
     return heads;
 }
 
@@ -116,27 +112,23 @@ Compared compare(const Heads& heads, const std::function<bool(std::size_t)>& cho
         if (chosen(i)) list.push_back(i);
     std::vector<Mesh> meshes(list.size());
     std::vector<double> sizes(list.size());
-    parallel_for(
-        list.size(),
-        [&](std::size_t k) {
-            const auto& labels = heads.labels[list[k]];
-            const auto parts = without(list[k]);
-            std::vector<bool> keep;
-            for (std::size_t f = 0; f < heads.meshes[list[k]].number_of_faces(); ++f)
-                keep.push_back(labels.empty() ||
-                               std::find(parts.begin(), parts.end(), static_cast<HeadPart>(labels[f])) == parts.end());
-            meshes[k] = keep_faces(heads.meshes[list[k]], keep, true).mesh;
-            sizes[k] = std::sqrt(surface_area(meshes[k]));
-        },
-        1);
+    parallel_for(list.size(), 1, [&](std::size_t k) {
+        const auto& labels = heads.labels[list[k]];
+        const auto parts = without(list[k]);
+        std::vector<bool> keep;
+        for (std::size_t f = 0; f < heads.meshes[list[k]].number_of_faces(); ++f)
+            keep.push_back(labels.empty() ||
+                           std::find(parts.begin(), parts.end(), static_cast<HeadPart>(labels[f])) == parts.end());
+        meshes[k] = keep_faces(heads.meshes[list[k]], keep, true).mesh;
+        sizes[k] = std::sqrt(surface_area(meshes[k]));
+    });
     CompareOptions options;
     options.features.size = upper_median(sizes);
 
     Compared result;
     std::vector<std::optional<PreparedHead>> ready(list.size());
     Stopwatch finding;
-    parallel_for(
-        list.size(), [&](std::size_t k) { ready[k].emplace(prepare_head(meshes[k], options)); }, 1);
+    parallel_for(list.size(), 1, [&](std::size_t k) { ready[k].emplace(prepare_head(meshes[k], options)); });
     result.finding = finding.seconds();
     std::vector<PreparedHead> prepared;
     std::vector<std::string> names;

@@ -46,21 +46,18 @@ Outcome outcome_of(const PopulationOptions& options) {
     const auto population = draw_population(options);
     std::vector<std::optional<TechniqueObject>> measured(population.size());
     std::vector<std::array<std::size_t, 3>> counts(population.size());
-    parallel_for(
-        population.size(),
-        [&](std::size_t i) {
-            const Statuette statuette = generate_statuette(population[i]);
-            try {
-                TechniqueObject object{std::to_string(i), option_text(population[i], "technique"),
-                                       measure_technique(statuette.mesh, Vector(0, 0, 1))};
-                counts[i] = {object.measures.open_used > 0 ? std::size_t{1} : 0, object.measures.asked,
-                             object.measures.slices.size()};
-                measured[i] = std::move(object);
-            } catch (const Error& error) {
-                if (error.kind() != ErrorKind::input) throw;  // too few usable slices: counted below
-            }
-        },
-        1);
+    parallel_for(population.size(), 1, [&](std::size_t i) {
+        const Statuette statuette = generate_statuette(population[i]);
+        try {
+            TechniqueObject object{std::to_string(i), option_text(population[i], "technique"),
+                                   measure_technique(statuette.mesh, Vector(0, 0, 1))};
+            counts[i] = {object.measures.open_used > 0 ? std::size_t{1} : 0, object.measures.asked,
+                         object.measures.slices.size()};
+            measured[i] = std::move(object);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;  // too few usable slices: counted below
+        }
+    });
     Outcome outcome;
     std::vector<TechniqueObject> objects;
     for (std::size_t i = 0; i < measured.size(); ++i) {

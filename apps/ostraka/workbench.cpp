@@ -19,10 +19,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
-#include <mutex>
 #include <thread>
-#include <utility>
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): not in every <unistd.h>
 

@@ -140,13 +140,10 @@ Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file,
     add_nonempty_members(document, allocator, "unit", object.annotations.unit, "class", object.annotations.object_class);
     if (object.annotations.up) add_member(document, "up", numbers_of(*object.annotations.up, allocator), allocator);
     std::vector<RegionParts> parts(object.annotations.annotations.size());
-    parallel_for(
-        parts.size(),
-        [&](std::size_t i) {
-            if (object.annotations.annotations[i].type == AnnotationType::region)
+    parallel_for(parts.size(), 1, [&](std::size_t i) {
+        if (object.annotations.annotations[i].type == AnnotationType::region)
                 parts[i] = parts_of(object.annotations.annotations[i], object.mesh);
-        },
-        1);
+    });
     JsonValue list = json_list(object.annotations.annotations, allocator, [&](const Annotation& one) {
         return json_of(one, parts[static_cast<std::size_t>(&one - object.annotations.annotations.data())], allocator);
     });

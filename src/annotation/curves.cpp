@@ -7,9 +7,6 @@
 #include "ostraka/mesh/flood.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <numeric>
 
 namespace ostraka {
 
@@ -264,7 +261,7 @@ CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurv
             to.polylines[k] = std::move(path);
         }
     };
-    parallel_for(object.annotations.annotations.size(), carry, 1);
+    parallel_for(object.annotations.annotations.size(), 1, carry);
     return cut;
 }
 

@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -154,25 +155,21 @@ Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
     const std::map<Edge, int> net = net_edges(mesh, edges);
     Filling filling;
     filling.selected.assign(mesh.number_of_faces(), false);
-    std::vector<Face> stack;
-    const auto take = [&](Halfedge h) {
-        if (mesh.is_border(h) || filling.selected[mesh.face(h)]) return;
-        filling.selected[mesh.face(h)] = true;
-        stack.push_back(mesh.face(h));
-    };
+    std::vector<Face> starts;
     std::vector<bool> wall(mesh.number_of_edges(), false);
     for (const auto& [edge, count] : net) {
         wall[edge] = count != 0;
-        if (count != 0) take(mesh.halfedge(edge, count > 0 ? 0 : 1));
+        const Halfedge h = mesh.halfedge(edge, count > 0 ? 0 : 1);
+        if (count == 0 || mesh.is_border(h) || filling.selected[mesh.face(h)]) continue;
+        filling.selected[mesh.face(h)] = true;
+        starts.push_back(mesh.face(h));
     }
     CancelCheck check;
-    while (!stack.empty()) {
+    flood(std::move(starts), filling.selected, [&](Face f, auto&& reach) {
         check();
-        const Face f = stack.back();
-        stack.pop_back();
         for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
-            if (!wall[mesh.edge(h)]) take(mesh.opposite(h));
-    }
+            if (const Halfedge o = mesh.opposite(h); !wall[mesh.edge(h)] && !mesh.is_border(o)) reach(mesh.face(o));
+    });
     std::vector<Face> right;
     for (const auto& [edge, count] : net) {
         const Halfedge h = mesh.halfedge(edge, count > 0 ? 1 : 0);

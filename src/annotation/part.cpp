@@ -4,7 +4,6 @@
 #include "ostraka/annotation/remap.h"
 #include "ostraka/core/error.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace ostraka {

@@ -9,9 +9,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// The vector v or -v, whichever has a positive component of largest magnitude.
 inline Vector3d oriented(const Vector3d& v) {
     Eigen::Index largest = 0;

@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/execution/run_interruptibly.h"
 #include "ostraka/geom/submesh.h"
+#include "ostraka/mesh/flood.h"
 
 // The library orders the edges of its working mesh by their addresses, so that the result depends on its allocator. This one
 // returns ascending addresses, independent of earlier allocations.
@@ -29,21 +30,13 @@ namespace {
 
 /// The component of `faces`, connected over edges, with the most faces.
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<bool> remaining(mesh.number_of_faces(), false);
-    for (const Index f : faces) remaining[f] = true;
+    std::vector<bool> visited(mesh.number_of_faces(), true);
+    for (const Index f : faces) visited[f] = false;
     std::vector<Index> best;
     for (const Index seed : faces) {
-        if (!remaining[seed]) continue;
-        std::vector<Index> piece{seed};
-        remaining[seed] = false;
-        for (std::size_t i = 0; i < piece.size(); ++i)
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(piece[i])))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !remaining[next]) continue;
-                remaining[next] = false;
-                piece.push_back(next.idx());
-            }
-        if (piece.size() > best.size()) best = std::move(piece);
+        if (visited[seed]) continue;
+        const std::vector<Face> piece = flood_faces(mesh, Face(seed), visited);
+        if (piece.size() > best.size()) best.assign(piece.begin(), piece.end());
     }
     std::sort(best.begin(), best.end());
     return best;

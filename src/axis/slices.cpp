@@ -87,26 +87,20 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
     const double diagonal = part_diagonal(mesh, faces);
     const auto count = static_cast<std::size_t>(options.slices);
     std::vector<PatchSlice> first(count);
-    parallel_for(
-        count,
-        [&](std::size_t i) {
-            const double h = ends.first + (ends.second - ends.first) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
-            first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
-        },
-        1);
+    parallel_for(count, 1, [&](std::size_t i) {
+        const double h = ends.first + (ends.second - ends.first) * (0.03 + 0.94 * (double(i) + 0.5) / double(count));
+        first[i] = cut(mesh, faces, centroid + h * direction, direction, 2 * diagonal);
+    });
     std::vector<PatchSlice> rough;
     for (const auto& slice : first)
         if (slice.valid) rough.push_back(slice);
     std::vector<PatchSlice> fine(rough.size());
-    parallel_for(
-        rough.size(),
-        [&](std::size_t i) {
-            const std::size_t previous = i >= 2 ? i - 2 : 0, next = std::min(i + 2, rough.size() - 1);
-            const Vector3d tangent = rough[next].centre - rough[previous].centre;
-            if (tangent.norm() > 0)
-                fine[i] = cut(mesh, faces, rough[i].centre, tangent.normalized(), 3 * rough[i].radius + 1e-9 * diagonal);
-        },
-        1);
+    parallel_for(rough.size(), 1, [&](std::size_t i) {
+        const std::size_t previous = i >= 2 ? i - 2 : 0, next = std::min(i + 2, rough.size() - 1);
+        const Vector3d tangent = rough[next].centre - rough[previous].centre;
+        if (tangent.norm() > 0)
+            fine[i] = cut(mesh, faces, rough[i].centre, tangent.normalized(), 3 * rough[i].radius + 1e-9 * diagonal);
+    });
     std::vector<Vector3d> centres;
     std::vector<Point> line;
     double radius = 0, length = 0;

@@ -22,17 +22,6 @@ namespace {
 
 constexpr std::size_t max_listed = 1000;
 
-std::size_t count_components(const Mesh& mesh) {
-    std::vector<bool> visited(mesh.number_of_faces(), false);
-    std::size_t count = 0;
-    for (const Face first : mesh.faces()) {
-        if (visited[first]) continue;
-        ++count;
-        flood_faces(mesh, first, visited);
-    }
-    return count;
-}
-
 double largest_coordinate_of(const Mesh& mesh) {
     double largest = 0;
     for (const Point& p : mesh.points()) largest = std::max({largest, std::abs(p.x()), std::abs(p.y()), std::abs(p.z())});
@@ -52,7 +41,7 @@ Mesh scaled(const Mesh& mesh, int exponent) {
 CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     CageCheck result;
     if (cage.number_of_faces() == 0) return result;
-    result.components = count_components(cage);
+    result.components = face_pieces(cage).count;
     for (const Face f : cage.faces()) {
         const auto [a, b, c] = corners(cage, f);
         result.degenerate += CGAL::collinear(cage.point(a), cage.point(b), cage.point(c));

@@ -16,9 +16,6 @@ namespace ostraka::cage {
 
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// Weighted sum of squared distances to planes: x'Ax - 2 b'x + c.
 struct Quadric {
     Matrix3d a = Matrix3d::Zero();

@@ -136,15 +136,11 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
     for (std::size_t i = 0; i < prepared.results.size(); ++i)
         if (prepared.results[i].problem.empty()) prepared.objects.push_back(i);
     std::vector<std::optional<PreparedHead>> heads(prepared.objects.size());
-    parallel_for(
-        heads.size(),
-        [&](std::size_t k) {
-            const std::size_t i = prepared.objects[k];
-            heads[k].emplace(
-                PreparedHead{from_json(prepared.results[i].result),
-                             AlignSurface(read_head(collection.objects[i], leave_out, parts), options.align.samples)});
-        },
-        1);
+    parallel_for(heads.size(), 1, [&](std::size_t k) {
+        const std::size_t i = prepared.objects[k];
+        heads[k].emplace(PreparedHead{from_json(prepared.results[i].result),
+                                      AlignSurface(read_head(collection.objects[i], leave_out, parts), options.align.samples)});
+    });
     for (std::size_t k = 0; k < heads.size(); ++k) {
         const std::size_t i = prepared.objects[k];
         prepared.heads.push_back(std::move(*heads[k]));

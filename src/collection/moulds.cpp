@@ -103,13 +103,10 @@ MouldMatrices compare_heads(const std::vector<std::string>& names, const std::ve
             if (known_comparison == nullptr || !from_json(*known_comparison, row[k])) missing.push_back(k);
         }
         progress.advance(row.size() - missing.size());
-        parallel_for(
-            missing.size(),
-            [&](std::size_t w) {
-                row[missing[w]] = compare_pair(heads[i], heads[i + missing[w]], options);
-                progress.advance();
-            },
-            1);
+        parallel_for(missing.size(), 1, [&](std::size_t w) {
+            row[missing[w]] = compare_pair(heads[i], heads[i + missing[w]], options);
+            progress.advance();
+        });
         if (is_kept && !missing.empty()) {
             Json document;
             document.SetObject();

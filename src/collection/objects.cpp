@@ -184,12 +184,9 @@ Collection read_collection(const Path& folder_or_file, const Share& share) {
         if (collection.objects[i].name == collection.objects[i - 1].name)
             fail_input(where, fmt::format("two objects have the name '{}'", collection.objects[i].name),
                        "give each object its own name");
-    parallel_for(
-        collection.objects.size(),
-        [&](std::size_t i) {
-            if (share.has(i)) collection.objects[i].checksum = checksum_of(collection.objects[i]);
-        },
-        1);
+    parallel_for(collection.objects.size(), 1, [&](std::size_t i) {
+        if (share.has(i)) collection.objects[i].checksum = checksum_of(collection.objects[i]);
+    });
     note_copies(collection);
     return collection;
 }

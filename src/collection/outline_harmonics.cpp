@@ -7,8 +7,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 constexpr int directions = 360;

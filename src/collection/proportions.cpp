@@ -114,31 +114,27 @@ std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, bo
             candidates.push_back(std::move(candidate));
         }
     const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
-    parallel_for(
-        candidates.size(),
-        [&](std::size_t r) {
-            Candidate& candidate = candidates[r];
-            RatioRow& ratio = candidate.ratio;
-            std::vector<double> values;
-            for (Eigen::Index i = 0; i < centred.rows(); ++i) {
-                if (std::isnan(centred(i, candidate.pair.a)) || std::isnan(centred(i, candidate.pair.b))) continue;
-                const double value = table.values(i, static_cast<Eigen::Index>(ratio.numerator)) /
-                                     table.values(i, static_cast<Eigen::Index>(ratio.denominator));
-                if (std::isfinite(value) && value > 0) values.push_back(value);
-            }
-            candidate.count = values.size();
-            candidate.constant =
-                !identical && values.size() >= 4 &&
-                all_same(*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()));
-            ratio.row =
-                row_of(fmt::format("{} / {}", table.measures[ratio.numerator].name, table.measures[ratio.denominator].name), "",
-                       values, options.confidence);
-            if (values.empty()) return;
-            ratio.log_deviation = std::sqrt(proportions::ratio_variance(centred, candidate.pair).value);
-            ratio.low = sample_quantile(values, (1 - options.range) / 2);
-            ratio.high = sample_quantile(values, (1 + options.range) / 2);
-        },
-        1);
+    parallel_for(candidates.size(), 1, [&](std::size_t r) {
+        Candidate& candidate = candidates[r];
+        RatioRow& ratio = candidate.ratio;
+        std::vector<double> values;
+        for (Eigen::Index i = 0; i < centred.rows(); ++i) {
+            if (std::isnan(centred(i, candidate.pair.a)) || std::isnan(centred(i, candidate.pair.b))) continue;
+            const double value = table.values(i, static_cast<Eigen::Index>(ratio.numerator)) /
+                                 table.values(i, static_cast<Eigen::Index>(ratio.denominator));
+            if (std::isfinite(value) && value > 0) values.push_back(value);
+        }
+        candidate.count = values.size();
+        candidate.constant =
+            !identical && values.size() >= 4 &&
+            all_same(*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()));
+        ratio.row = row_of(fmt::format("{} / {}", table.measures[ratio.numerator].name, table.measures[ratio.denominator].name),
+                           "", values, options.confidence);
+        if (values.empty()) return;
+        ratio.log_deviation = std::sqrt(proportions::ratio_variance(centred, candidate.pair).value);
+        ratio.low = sample_quantile(values, (1 - options.range) / 2);
+        ratio.high = sample_quantile(values, (1 + options.range) / 2);
+    });
     return candidates;
 }
 

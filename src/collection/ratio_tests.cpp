@@ -94,31 +94,28 @@ Variance ratio_variance(const Eigen::MatrixXd& logs, const Pair& pair) {
 std::vector<double> pairing_test(const Eigen::MatrixXd& centred, const std::vector<Pair>& pairs, int permutations,
                                  std::uint64_t seed) {
     std::vector<double> p(pairs.size(), 1.0);
-    parallel_for(
-        pairs.size(),
-        [&](std::size_t r) {
-            std::vector<double> a, b;
-            for (Eigen::Index i = 0; i < centred.rows(); ++i)
-                if (is_known(centred(i, pairs[r].a)) && is_known(centred(i, pairs[r].b)))
-                    a.push_back(centred(i, pairs[r].a)), b.push_back(centred(i, pairs[r].b));
-            // The variance of the difference decreases as the sum of products increases.
-            const auto products = [&] {
-                double sum = 0;
-                for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-                return sum;
-            };
-            double size = 0;
-            for (std::size_t i = 0; i < a.size(); ++i) size += std::abs(a[i] * b[i]);
-            const double observed = products() - rounding * size;
-            Random random(seed, r);
-            std::vector<double> chance;
-            for (int k = 0; k < permutations; ++k) {
-                random.shuffle(b);
-                chance.push_back(products());
-            }
-            p[r] = permutation_p_value(observed, chance);
-        },
-        1);
+    parallel_for(pairs.size(), 1, [&](std::size_t r) {
+        std::vector<double> a, b;
+        for (Eigen::Index i = 0; i < centred.rows(); ++i)
+            if (is_known(centred(i, pairs[r].a)) && is_known(centred(i, pairs[r].b)))
+                a.push_back(centred(i, pairs[r].a)), b.push_back(centred(i, pairs[r].b));
+        // The variance of the difference decreases as the sum of products increases.
+        const auto products = [&] {
+            double sum = 0;
+            for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+            return sum;
+        };
+        double size = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) size += std::abs(a[i] * b[i]);
+        const double observed = products() - rounding * size;
+        Random random(seed, r);
+        std::vector<double> chance;
+        for (int k = 0; k < permutations; ++k) {
+            random.shuffle(b);
+            chance.push_back(products());
+        }
+        p[r] = permutation_p_value(observed, chance);
+    });
     return p;
 }
 
@@ -146,29 +143,26 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
     // For each block of permutations, the number of ratios that vary no more than each of the observed ones.
     const std::size_t block = 64, blocks = (static_cast<std::size_t>(permutations) + block - 1) / block;
     std::vector<std::map<std::size_t, std::vector<std::size_t>>> counted(blocks);
-    parallel_for(
-        blocks,
-        [&](std::size_t part) {
-            for (const auto& [count, values] : observed) counted[part][count].assign(values.size() + 1, 0);
-            Eigen::MatrixXd permuted = row_centred;
-            for (std::size_t k = part * block; k < std::min((part + 1) * block, static_cast<std::size_t>(permutations)); ++k) {
-                Random random(seed, k);
-                for (Eigen::Index i = 0; i < n; ++i) {
-                    const auto& columns = present[static_cast<std::size_t>(i)];
-                    std::vector<Eigen::Index> order = columns;
-                    random.shuffle(order);
-                    for (std::size_t c = 0; c < columns.size(); ++c) permuted(i, columns[c]) = row_centred(i, order[c]);
-                }
-                for (const Pair& pair : pairs) {
-                    const Variance v = ratio_variance(permuted, pair);
-                    const std::vector<double>& values = observed.at(v.count);
-                    // The first observed variance that is at least as large.
-                    const auto at = std::lower_bound(values.begin(), values.end(), v.value * (1 - rounding)) - values.begin();
-                    ++counted[part].at(v.count)[static_cast<std::size_t>(at)];
-                }
+    parallel_for(blocks, 1, [&](std::size_t part) {
+        for (const auto& [count, values] : observed) counted[part][count].assign(values.size() + 1, 0);
+        Eigen::MatrixXd permuted = row_centred;
+        for (std::size_t k = part * block; k < std::min((part + 1) * block, static_cast<std::size_t>(permutations)); ++k) {
+            Random random(seed, k);
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const auto& columns = present[static_cast<std::size_t>(i)];
+                std::vector<Eigen::Index> order = columns;
+                random.shuffle(order);
+                for (std::size_t c = 0; c < columns.size(); ++c) permuted(i, columns[c]) = row_centred(i, order[c]);
             }
-        },
-        1);
+            for (const Pair& pair : pairs) {
+                const Variance v = ratio_variance(permuted, pair);
+                const std::vector<double>& values = observed.at(v.count);
+                // The first observed variance that is at least as large.
+                const auto at = std::lower_bound(values.begin(), values.end(), v.value * (1 - rounding)) - values.begin();
+                ++counted[part].at(v.count)[static_cast<std::size_t>(at)];
+            }
+        }
+    });
     std::vector<double> p;
     for (const Variance& v : variances) {
         const std::vector<double>& values = observed.at(v.count);
@@ -224,23 +218,20 @@ std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair
     }
     const double observed = residual_correlation(columns) - rounding;
     std::vector<double> chance(static_cast<std::size_t>(permutations));
-    parallel_for(
-        chance.size(),
-        [&](std::size_t k) {
-            Random random(seed, k);
-            Eigen::MatrixXd shuffled = columns;
-            for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-                std::vector<double> values;
-                for (Eigen::Index i = 0; i < rows; ++i)
-                    if (is_known(columns(i, j))) values.push_back(columns(i, j));
-                random.shuffle(values);
-                std::size_t next = 0;
-                for (Eigen::Index i = 0; i < rows; ++i)
-                    if (is_known(columns(i, j))) shuffled(i, j) = values[next++];
-            }
-            chance[k] = residual_correlation(shuffled);
-        },
-        64);
+    parallel_for(chance.size(), 64, [&](std::size_t k) {
+        Random random(seed, k);
+        Eigen::MatrixXd shuffled = columns;
+        for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+            std::vector<double> values;
+            for (Eigen::Index i = 0; i < rows; ++i)
+                if (is_known(columns(i, j))) values.push_back(columns(i, j));
+            random.shuffle(values);
+            std::size_t next = 0;
+            for (Eigen::Index i = 0; i < rows; ++i)
+                if (is_known(columns(i, j))) shuffled(i, j) = values[next++];
+        }
+        chance[k] = residual_correlation(shuffled);
+    });
     return permutation_p_value(observed, chance);
 }
 

@@ -72,37 +72,34 @@ std::vector<ObjectResult> for_each_object(const Collection& collection, const Re
                                           const std::function<Json(const CollectionObject&)>& work) {
     std::vector<ObjectResult> results(collection.objects.size());
     Progress progress("objects", results.size());
-    parallel_for(
-        results.size(),
-        [&](std::size_t i) {
-            const CollectionObject& object = collection.objects[i];
-            ObjectResult& object_result = results[i];
-            std::vector<std::string> parts = key_parts;
-            parts.insert(parts.end(), {object.name, object.checksum, object.unit});
-            const std::string key = ResultStore::key(parts);
-            try {
-                if (!object.checksum.empty())
-                    if (auto kept = store.find(object.name, key)) {
-                        object_result.result = std::move(*kept);
-                        object_result.resumed = true;
-                    }
-                if (!object_result.resumed && !store.share().has(i)) {
-                    object_result.elsewhere = true;
-                } else if (!object_result.resumed) {
-                    object_result.result = work(object);
-                    if (!object.checksum.empty()) store.keep(object.name, key, object_result.result);
+    parallel_for(results.size(), 1, [&](std::size_t i) {
+        const CollectionObject& object = collection.objects[i];
+        ObjectResult& object_result = results[i];
+        std::vector<std::string> parts = key_parts;
+        parts.insert(parts.end(), {object.name, object.checksum, object.unit});
+        const std::string key = ResultStore::key(parts);
+        try {
+            if (!object.checksum.empty())
+                if (auto kept = store.find(object.name, key)) {
+                    object_result.result = std::move(*kept);
+                    object_result.resumed = true;
                 }
-            } catch (const Error& error) {
-                if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::cancelled) throw;
-                object_result.result.SetNull();
-                object_result.problem = error.what();
-            } catch (const std::bad_alloc&) {
-                object_result.result.SetNull();
-                object_result.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
+            if (!object_result.resumed && !store.share().has(i)) {
+                object_result.elsewhere = true;
+            } else if (!object_result.resumed) {
+                object_result.result = work(object);
+                if (!object.checksum.empty()) store.keep(object.name, key, object_result.result);
             }
-            progress.advance();
-        },
-        1);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::cancelled) throw;
+            object_result.result.SetNull();
+            object_result.problem = error.what();
+        } catch (const std::bad_alloc&) {
+            object_result.result.SetNull();
+            object_result.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
+        }
+        progress.advance();
+    });
     return results;
 }
 

@@ -21,8 +21,6 @@ namespace ostraka {
 
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr double unknown = TechniqueSlice::unknown;
 
 /// The slice reduced to one contour and the holes directly in it.
@@ -203,16 +201,13 @@ TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const Te
     TechniqueMeasures result;
     result.asked = stack.slices.size();
     std::vector<std::optional<TechniqueSlice>> measured(stack.slices.size());
-    parallel_for(
-        stack.slices.size(),
-        [&](std::size_t i) {
-            const Slice& slice = stack.slices[i];
-            const auto outline = main_outline(slice);
-            if (!outline) return;
-            measured[i] = measure_slice(slice, *outline, options.min_turn);
-            measured[i]->height = (slice.height - low) / height;
-        },
-        1);
+    parallel_for(stack.slices.size(), 1, [&](std::size_t i) {
+        const Slice& slice = stack.slices[i];
+        const auto outline = main_outline(slice);
+        if (!outline) return;
+        measured[i] = measure_slice(slice, *outline, options.min_turn);
+        measured[i]->height = (slice.height - low) / height;
+    });
     for (const auto& slice : measured) {
         if (!slice) ++result.empty;
         else if (!std::isfinite(slice->radius)) ++result.too_open;

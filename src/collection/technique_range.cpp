@@ -50,26 +50,23 @@ std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vecto
         if (!compared(descriptor)) continue;
         const DescriptorTable table = descriptor_table(objects, {descriptor.name});
         const Labelled labelled_rows = labelled(objects, table, positive);
-        parallel_for(
-            table.objects.size(),
-            [&](std::size_t row) {
-                const auto value = [&](std::size_t table_row) {
-                    return on_scale(descriptor, table.values(static_cast<Eigen::Index>(table_row), 0));
-                };
-                LabelledValues other_values;
-                for (const std::size_t other : labelled_rows.rows)
-                    if (other != row) other_values.values[labelled_rows.truth[other] ? 1 : 0].push_back(value(other));
-                if (!other_values.enough()) return;
-                const double distance = distance_outside(other_values, value(row));
-                auto& maximum = result[table.objects[row]];
-                if (distance < unlike_from || (maximum && maximum->distance >= distance)) return;
-                std::vector<double> scaled_values = other_values.values[0];
-                scaled_values.insert(scaled_values.end(), other_values.values[1].begin(), other_values.values[1].end());
-                for (double& scaled_value : scaled_values) scaled_value = from_scale(descriptor, scaled_value);
-                const auto [low, high] = std::minmax_element(scaled_values.begin(), scaled_values.end());
-                maximum = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
-            },
-            8);
+        parallel_for(table.objects.size(), 8, [&](std::size_t row) {
+            const auto value = [&](std::size_t table_row) {
+                return on_scale(descriptor, table.values(static_cast<Eigen::Index>(table_row), 0));
+            };
+            LabelledValues other_values;
+            for (const std::size_t other : labelled_rows.rows)
+                if (other != row) other_values.values[labelled_rows.truth[other] ? 1 : 0].push_back(value(other));
+            if (!other_values.enough()) return;
+            const double distance = distance_outside(other_values, value(row));
+            auto& maximum = result[table.objects[row]];
+            if (distance < unlike_from || (maximum && maximum->distance >= distance)) return;
+            std::vector<double> scaled_values = other_values.values[0];
+            scaled_values.insert(scaled_values.end(), other_values.values[1].begin(), other_values.values[1].end());
+            for (double& scaled_value : scaled_values) scaled_value = from_scale(descriptor, scaled_value);
+            const auto [low, high] = std::minmax_element(scaled_values.begin(), scaled_values.end());
+            maximum = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
+        });
     }
     return result;
 }

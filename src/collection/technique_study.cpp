@@ -77,35 +77,29 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
     study.separated = chosen.better;
     const std::size_t rows = table.objects.size();
     std::vector<TechniqueModel> models(rows);
-    parallel_for(
-        rows,
-        [&](std::size_t row) {
-            std::vector<std::size_t> training_rows = labelled_rows.rows;
-            std::erase(training_rows, row);
-            models[row] = learn(table.values, labelled_rows.truth, training_rows);
-        },
-        8);
+    parallel_for(rows, 8, [&](std::size_t row) {
+        std::vector<std::size_t> training_rows = labelled_rows.rows;
+        std::erase(training_rows, row);
+        models[row] = learn(table.values, labelled_rows.truth, training_rows);
+    });
     // Bootstrap: each class is resampled with replacement to its original size.
     std::vector<std::vector<std::int8_t>> votes(static_cast<std::size_t>(options.resamples));
     std::vector<std::size_t> class_rows[2];
     for (const std::size_t row : labelled_rows.rows) class_rows[labelled_rows.truth[row] ? 1 : 0].push_back(row);
-    parallel_for(
-        votes.size(),
-        [&](std::size_t i) {
-            Random random(options.seed, i);
-            std::vector<std::size_t> drawn;
-            std::vector<bool> is_drawn(rows, false);
-            for (const auto& rows_of_class : class_rows)
-                for (const std::size_t sample : random.resample(rows_of_class.size())) {
-                    drawn.push_back(rows_of_class[sample]);
-                    is_drawn[rows_of_class[sample]] = true;
-                }
-            const TechniqueModel model = learn(table.values, labelled_rows.truth, drawn);
-            votes[i].assign(rows, -1);
-            for (std::size_t row = 0; row < rows; ++row)
-                if (!is_drawn[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
-        },
-        8);
+    parallel_for(votes.size(), 8, [&](std::size_t i) {
+        Random random(options.seed, i);
+        std::vector<std::size_t> drawn;
+        std::vector<bool> is_drawn(rows, false);
+        for (const auto& rows_of_class : class_rows)
+            for (const std::size_t sample : random.resample(rows_of_class.size())) {
+                drawn.push_back(rows_of_class[sample]);
+                is_drawn[rows_of_class[sample]] = true;
+            }
+        const TechniqueModel model = learn(table.values, labelled_rows.truth, drawn);
+        votes[i].assign(rows, -1);
+        for (std::size_t row = 0; row < rows; ++row)
+            if (!is_drawn[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
+    });
     const auto unlike = technique_outliers(objects, study.positive, options.unlike_from);
     for (std::size_t row = 0; row < rows; ++row) {
         TechniqueAnswer& answer = study.answers[table.objects[row]];
@@ -162,15 +156,12 @@ TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::
         if (values[i] <= groups.threshold) ++split.lower;
     }
     std::vector<double> chance(static_cast<std::size_t>(options.simulations));
-    parallel_for(
-        chance.size(),
-        [&](std::size_t i) {
-            Random random(options.seed, 2000000 + i);
-            std::vector<double> simulated(values.size());
-            for (double& value : simulated) value = random.normal();
-            chance[i] = divide_in_two(std::move(simulated)).share;
-        },
-        16);
+    parallel_for(chance.size(), 16, [&](std::size_t i) {
+        Random random(options.seed, 2000000 + i);
+        std::vector<double> simulated(values.size());
+        for (double& value : simulated) value = random.normal();
+        chance[i] = divide_in_two(std::move(simulated)).share;
+    });
     split.p_value = split.share > 0 ? permutation_p_value(split.share, chance) : 1;
     ConfusionScores scores_by_side[2];
     for (std::size_t i = 0; i < objects.size(); ++i) {

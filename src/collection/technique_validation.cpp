@@ -31,20 +31,17 @@ void judge(ClassifierResult& result, const std::vector<bool>& truth, const Techn
     result.trivial_f1 = 2 * positives / (positives + count);
     result.error = ((1 - result.validation.mean_accuracy) * count + 1) / (count + 2);
     std::vector<double> f1(1000);
-    parallel_for(
-        f1.size(),
-        [&](std::size_t i) {
-            Random random(options.seed, 3000000 + i);
-            std::vector<std::size_t> drawn;
-            for (const auto& kind : kinds)
-                for (const std::size_t sample : random.resample(kind.size())) drawn.push_back(kind[sample]);
-            for (const auto& answers : result.validation.answers) {
-                ConfusionScores scores;
-                for (const std::size_t sample : drawn) scores.add(answers[sample], truth[sample]);
-                f1[i] += scores.f1() / static_cast<double>(result.validation.answers.size());
-            }
-        },
-        32);
+    parallel_for(f1.size(), 32, [&](std::size_t i) {
+        Random random(options.seed, 3000000 + i);
+        std::vector<std::size_t> drawn;
+        for (const auto& kind : kinds)
+            for (const std::size_t sample : random.resample(kind.size())) drawn.push_back(kind[sample]);
+        for (const auto& answers : result.validation.answers) {
+            ConfusionScores scores;
+            for (const std::size_t sample : drawn) scores.add(answers[sample], truth[sample]);
+            f1[i] += scores.f1() / static_cast<double>(result.validation.answers.size());
+        }
+    });
     result.f1_interval = {std::min(1.0, sample_quantile(f1, 0.025)), std::min(1.0, sample_quantile(f1, 0.975))};
     result.better = result.f1_interval.low > result.trivial_f1;
 }
@@ -83,21 +80,18 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
         folds);
     std::vector<double> scores(labelled_rows.rows.size());
     const TechniqueModel full_model = learn(table.values, labelled_rows.truth, labelled_rows.rows);
-    parallel_for(
-        scores.size(),
-        [&](std::size_t i) {
-            if (full_model.threshold) {
-                scores[i] =
-                    (full_model.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(labelled_rows.rows[i]), 0);
-                return;
-            }
-            std::vector<std::size_t> training_rows = labelled_rows.rows;
-            training_rows.erase(training_rows.begin() + static_cast<std::ptrdiff_t>(i));
-            // Held-out weights, but a common threshold: a threshold trained without an object shifts against its label.
-            const VectorXd x = table.values.row(static_cast<Eigen::Index>(labelled_rows.rows[i]));
-            scores[i] = learn(table.values, labelled_rows.truth, training_rows).weights.dot(x - full_model.middle);
-        },
-        8);
+    parallel_for(scores.size(), 8, [&](std::size_t i) {
+        if (full_model.threshold) {
+            scores[i] =
+                (full_model.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(labelled_rows.rows[i]), 0);
+            return;
+        }
+        std::vector<std::size_t> training_rows = labelled_rows.rows;
+        training_rows.erase(training_rows.begin() + static_cast<std::ptrdiff_t>(i));
+        // Held-out weights, but a common threshold: a threshold trained without an object shifts against its label.
+        const VectorXd x = table.values.row(static_cast<Eigen::Index>(labelled_rows.rows[i]));
+        scores[i] = learn(table.values, labelled_rows.truth, training_rows).weights.dot(x - full_model.middle);
+    });
     judge(result, truth, options);
     result.roc = roc_curve(scores, truth);
     result.threshold = full_model.threshold;

@@ -8,12 +8,10 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka::coords {
 
 using Eigen::Matrix4d;
-using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 namespace {

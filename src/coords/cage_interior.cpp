@@ -20,8 +20,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 namespace {
 
 using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel, Mesh>;

@@ -13,8 +13,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 CellGradients gradients_of(const CageInterior& inside) {
     CellGradients result;
     result.volume.reserve(inside.cells().size());

@@ -17,8 +17,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Largest number of cage vertices that may have a weight at a node: those of largest harmonic weight.
@@ -94,10 +92,8 @@ public:
         Progress progress("local coordinates", static_cast<std::size_t>(max_steps));
         double previous_variation = std::numeric_limits<double>::infinity();
         for (int step = 1; step <= max_steps; ++step) {
-            parallel_for(
-                columns_.size(), [&](std::size_t i) { update_column(columns_[i]); }, 1);
-            parallel_for(
-                inner_.size(), [&](std::size_t k) { update_node(k); }, 64);
+            parallel_for(columns_.size(), 1, [&](std::size_t i) { update_column(columns_[i]); });
+            parallel_for(inner_.size(), 64, [&](std::size_t k) { update_node(k); });
             progress.advance();
             if (step % check_interval != 0) continue;
             double gap = 0, change = 0, variation = 0;
@@ -110,8 +106,7 @@ public:
             else if (change > 100 * gap) scale_penalty(0.5);
         }
         // The result: the smooth weights, projected to the constraints.
-        parallel_for(
-            inner_.size(), [&](std::size_t k) { project_node(k); }, 64);
+        parallel_for(inner_.size(), 64, [&](std::size_t k) { project_node(k); });
         for (std::size_t c = 0; c < columns_.size(); ++c)
             for (std::size_t k = 0; k < columns_[c].nodes.size(); ++k)
                 weights_(static_cast<Eigen::Index>(columns_[c].nodes[k]), static_cast<Eigen::Index>(c)) = columns_[c].z[k];
@@ -128,28 +123,25 @@ private:
             if (inside_.is_within(v)) inner_.push_back(v);
         rows_.resize(inner_.size());
         std::vector<std::vector<double>> start(inner_.size());
-        parallel_for(
-            inner_.size(),
-            [&](std::size_t k) {
-                const double* row = weights_.row(static_cast<Eigen::Index>(inner_[k])).data();
-                std::vector<Index> order(cage_.corners.size());
-                std::iota(order.begin(), order.end(), Index{0});
-                for (std::size_t count = max_candidates;; count *= 2) {
-                    count = std::min(count, order.size());
-                    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                                      [&](Index a, Index b) { return row[a] != row[b] ? row[a] > row[b] : a < b; });
-                    rows_[k].column.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
-                    std::sort(rows_[k].column.begin(), rows_[k].column.end());
-                    start[k].clear();
-                    std::vector<Vector3d> corners;
-                    for (const Index c : rows_[k].column) {
-                        start[k].push_back(std::max(row[c], 0.0));
-                        corners.push_back(cage_.corners[c]);
-                    }
-                    if (project_row(start[k], corners, inside_.nodes()[inner_[k]]) || count == order.size()) break;
+        parallel_for(inner_.size(), 64, [&](std::size_t k) {
+            const double* row = weights_.row(static_cast<Eigen::Index>(inner_[k])).data();
+            std::vector<Index> order(cage_.corners.size());
+            std::iota(order.begin(), order.end(), Index{0});
+            for (std::size_t count = max_candidates;; count *= 2) {
+                count = std::min(count, order.size());
+                std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                                  [&](Index a, Index b) { return row[a] != row[b] ? row[a] > row[b] : a < b; });
+                rows_[k].column.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+                std::sort(rows_[k].column.begin(), rows_[k].column.end());
+                start[k].clear();
+                std::vector<Vector3d> corners;
+                for (const Index c : rows_[k].column) {
+                    start[k].push_back(std::max(row[c], 0.0));
+                    corners.push_back(cage_.corners[c]);
                 }
-            },
-            64);
+                if (project_row(start[k], corners, inside_.nodes()[inner_[k]]) || count == order.size()) break;
+            }
+        });
         for (std::size_t k = 0; k < inner_.size(); ++k)
             for (std::size_t j = 0; j < rows_[k].column.size(); ++j) {
                 Column& column = columns_[rows_[k].column[j]];
@@ -180,8 +172,7 @@ private:
             cage_edge_length += (cage_.corners[cage_.mesh.vertex(e, 0)] - cage_.corners[cage_.mesh.vertex(e, 1)]).norm();
         cage_edge_length /= static_cast<double>(cage_.mesh.number_of_edges());
         step_ = 0.1 / cage_edge_length;
-        parallel_for(
-            columns_.size(), [&](std::size_t i) { set_up_column(i, cells_of, edges); }, 1);
+        parallel_for(columns_.size(), 1, [&](std::size_t i) { set_up_column(i, cells_of, edges); });
     }
 
     /// The node at a corner of the cage.

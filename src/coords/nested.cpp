@@ -4,6 +4,7 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/flood.h"
 
 #include <CGAL/Side_of_triangle_mesh.h>
 
@@ -78,19 +79,14 @@ std::vector<double> level_influence(const Mesh& cage, const Mesh& mesh, double f
     const std::vector<bool> inside = strictly_inside(cage, points);
     // Only the largest piece inside counts: other parts of the object that reach into the cage are ignored.
     std::vector<bool> visited(points.size(), false);
-    std::vector<Index> piece;
+    std::vector<Vertex> piece;
     for (const Vertex first : mesh.vertices()) {
         if (!inside[first] || visited[first]) continue;
-        std::vector<Index> component{first};
-        visited[first] = true;
-        for (std::size_t i = 0; i < component.size(); ++i)
-            if (!mesh.is_isolated(Vertex(component[i])))
-                for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(component[i]))))
-                    if (inside[v] && !visited[v]) visited[v] = true, component.push_back(v);
+        std::vector<Vertex> component = flood_vertices(mesh, first, visited, [&](Vertex v) -> bool { return inside[v]; });
         if (component.size() > piece.size()) piece = std::move(component);
     }
     std::vector<bool> in_piece(points.size(), false);
-    for (const Index v : piece) in_piece[v] = true;
+    for (const Vertex v : piece) in_piece[v] = true;
     const SurfaceSearch search(cage);
     std::vector<Point> entries;
     for (const Edge e : mesh.edges()) {
@@ -104,7 +100,7 @@ std::vector<double> level_influence(const Mesh& cage, const Mesh& mesh, double f
     }
     std::vector<double> influence(points.size(), 0);
     if (entries.empty()) {
-        for (const Index v : piece) influence[v] = 1;
+        for (const Vertex v : piece) influence[v] = 1;
         return influence;
     }
     const PointTree tree(entries);
@@ -119,8 +115,7 @@ std::vector<double> level_influence(const Mesh& cage, const Mesh& mesh, double f
 }  // namespace
 
 std::vector<CageLevel> cage_levels(const Mesh& cage) {
-    const FacePieces pieces = face_pieces(
-        cage, [](Face) { return true; }, [](Halfedge) { return true; });
+    const FacePieces pieces = face_pieces(cage);
     const bool open =
         std::any_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
     const auto select_pieces = [&](auto&& condition) {

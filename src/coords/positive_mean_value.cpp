@@ -13,8 +13,6 @@
 
 namespace ostraka::coords {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int rays = 1024;
@@ -77,15 +75,12 @@ WeightMatrix visible_weights(const CageInterior& inside, const UnitCage& cage) {
         if (u.cross(v).norm() > 0) faces.push_back({a, u, v, {c[0], c[1], c[2]}});
     }
     Progress progress("visibility from the nodes", inside.nodes().size());
-    parallel_for(
-        inside.nodes().size(),
-        [&](std::size_t v) {
-            progress.advance();
-            if (!inside.is_within(static_cast<Index>(v))) return;
-            add_visible_weights(faces, directions, inside.nodes()[v], weights.row(static_cast<Eigen::Index>(v)).data(),
-                                cage.corners.size());
-        },
-        16);
+    parallel_for(inside.nodes().size(), 16, [&](std::size_t v) {
+        progress.advance();
+        if (!inside.is_within(static_cast<Index>(v))) return;
+        add_visible_weights(faces, directions, inside.nodes()[v], weights.row(static_cast<Eigen::Index>(v)).data(),
+                            cage.corners.size());
+    });
     return weights;
 }
 

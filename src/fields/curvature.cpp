@@ -126,31 +126,28 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
     Curvature result;
     result.mean.assign(mesh.number_of_vertices(), 0);
     result.gaussian = result.mean;
-    parallel_for(
-        result.mean.size(),
-        [&](std::size_t i) {
-            if (!(radius > 0)) {
-                if (!(shares.area[i] > 0)) return;
-                result.mean[i] = shares.mean[i] / shares.area[i];
-                result.gaussian[i] = shares.gaussian[i] / shares.area[i];
-                return;
-            }
-            check_cancelled();  // a ball may be large
-            const double squared_radius = radius * radius;
-            Vector h(0, 0, 0), a(0, 0, 0);
-            double gaussian = 0, area = 0;
-            this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
-                const double falloff = 1 - squared / squared_radius, w = falloff * falloff;
-                h += w * shares.mean_vector[v];
-                a += w * shares.area_vector[v];
-                gaussian += w * shares.gaussian[v];
-                area += w * shares.area[v];
-            });
-            const double projected = a.squared_length();
-            if (projected > 0) result.mean[i] = h * a / projected;
-            if (area > 0) result.gaussian[i] = gaussian / area;
-        },
-        4096);
+    parallel_for(result.mean.size(), 4096, [&](std::size_t i) {
+        if (!(radius > 0)) {
+            if (!(shares.area[i] > 0)) return;
+            result.mean[i] = shares.mean[i] / shares.area[i];
+            result.gaussian[i] = shares.gaussian[i] / shares.area[i];
+            return;
+        }
+        check_cancelled();  // a ball may be large
+        const double squared_radius = radius * radius;
+        Vector h(0, 0, 0), a(0, 0, 0);
+        double gaussian = 0, area = 0;
+        this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
+            const double falloff = 1 - squared / squared_radius, w = falloff * falloff;
+            h += w * shares.mean_vector[v];
+            a += w * shares.area_vector[v];
+            gaussian += w * shares.gaussian[v];
+            area += w * shares.area[v];
+        });
+        const double projected = a.squared_length();
+        if (projected > 0) result.mean[i] = h * a / projected;
+        if (area > 0) result.gaussian[i] = gaussian / area;
+    });
     return result;
 }
 

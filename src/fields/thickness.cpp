@@ -47,15 +47,12 @@ std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
         centroids[f] = centroid(mesh, Face(static_cast<Index>(f)));
     });
     if (!(radius > 0)) return area_vectors;
-    parallel_for(
-        result.size(),
-        [&](std::size_t f) {
-            check_cancelled();  // a ball may be large
-            this_threads_neighbourhood().walk(
-                mesh, centroids, Face(static_cast<Index>(f)), radius,
-                [&](Face face, double squared) { result[f] += (1 - squared / (radius * radius)) * area_vectors[face]; });
-        },
-        4096);
+    parallel_for(result.size(), 4096, [&](std::size_t f) {
+        check_cancelled();  // a ball may be large
+        this_threads_neighbourhood().walk(mesh, centroids, Face(static_cast<Index>(f)), radius, [&](Face face, double squared) {
+            result[f] += (1 - squared / (radius * radius)) * area_vectors[face];
+        });
+    });
     return result;
 }
 
@@ -110,31 +107,27 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
     const std::vector<ConeRay> rays = cone_rays(options.rays, options.cone);
     const std::vector<Vector> normals = smooth_normals(mesh, options.scale * box_diagonal(mesh));
     const Caster caster(mesh);
-    parallel_for(
-        result.size(),
-        [&](std::size_t f) {
-            const Face face(static_cast<Index>(f));
-            Vector axis = -normals[f];
-            const double length = std::sqrt(axis.squared_length());
-            if (!(length > 0)) return;
-            axis = axis / length;
-            const Vector perpendicular =
-                std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
-            const Vector u = perpendicular / std::sqrt(perpendicular.squared_length()), w = CGAL::cross_product(axis, u);
-            std::vector<double> lengths, weights;
-            double expected = 0;
-            const Point origin = centroid(mesh, face);
-            for (const ConeRay& ray : rays) {
-                const auto distance =
-                    caster.exit_distance(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
-                if (!distance) continue;
-                expected = 1.5 * *distance;
-                lengths.push_back(*distance);
-                weights.push_back(ray.weight);
-            }
-            if (2 * lengths.size() >= rays.size()) result[f] = robust_mean(lengths, weights);
-        },
-        64);
+    parallel_for(result.size(), 64, [&](std::size_t f) {
+        const Face face(static_cast<Index>(f));
+        Vector axis = -normals[f];
+        const double length = std::sqrt(axis.squared_length());
+        if (!(length > 0)) return;
+        axis = axis / length;
+        const Vector perpendicular = std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
+        const Vector u = perpendicular / std::sqrt(perpendicular.squared_length()), w = CGAL::cross_product(axis, u);
+        std::vector<double> lengths, weights;
+        double expected = 0;
+        const Point origin = centroid(mesh, face);
+        for (const ConeRay& ray : rays) {
+            const auto distance =
+                caster.exit_distance(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
+            if (!distance) continue;
+            expected = 1.5 * *distance;
+            lengths.push_back(*distance);
+            weights.push_back(ray.weight);
+        }
+        if (2 * lengths.size() >= rays.size()) result[f] = robust_mean(lengths, weights);
+    });
     return result;
 }
 

@@ -15,7 +15,6 @@
 namespace ostraka {
 
 using namespace figures;
-using Eigen::Vector2d;
 
 namespace {
 

@@ -16,7 +16,6 @@
 namespace ostraka {
 
 using namespace figures;
-using Eigen::Vector2d;
 
 namespace {
 

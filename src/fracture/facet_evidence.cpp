@@ -14,9 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 /// Local shape of the surface around a point.
@@ -92,22 +89,19 @@ private:
         std::array<std::vector<Shape>, scale_count> shapes;
         for (std::size_t s = 0; s < scale_count; ++s) {
             shapes[s].resize(n);
-            parallel_for(
-                n,
-                [&](std::size_t p) {
-                    const Neighbourhoods& around = evidence_.around[s];
-                    std::vector<Vector3d> points, normals;
-                    for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
-                        const Index sample = around.samples[k];
-                        const Vector& normal = graph_.normals[samples_.patch[sample]];
-                        if (normal * graph_.normals[p] <= -0.4) continue;  // on another side
-                        points.push_back(eigen(samples_.points[sample]));
-                        normals.push_back(eigen(normal));
-                    }
-                    shapes[s][p] = shape_about(eigen(graph_.places[p]), eigen(graph_.normals[p]), evidence_.around[s].radius,
-                                               points, normals);
-                },
-                64);
+            parallel_for(n, 64, [&](std::size_t p) {
+                const Neighbourhoods& around = evidence_.around[s];
+                std::vector<Vector3d> points, normals;
+                for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                    const Index sample = around.samples[k];
+                    const Vector& normal = graph_.normals[samples_.patch[sample]];
+                    if (normal * graph_.normals[p] <= -0.4) continue;  // on another side
+                    points.push_back(eigen(samples_.points[sample]));
+                    normals.push_back(eigen(normal));
+                }
+                shapes[s][p] =
+                    shape_about(eigen(graph_.places[p]), eigen(graph_.normals[p]), evidence_.around[s].radius, points, normals);
+            });
         }
         // Means over the next two larger neighbourhoods describe the surroundings.
         for (std::size_t s = 0; s < scale_count; ++s) {
@@ -189,27 +183,24 @@ private:
         std::vector<double> along(n, -1), sides(n, 0), nearest_side(n, 1);
         const double radius = std::min(1.6 * typical, 0.3 * graph_.size);
         const Neighbourhoods around = neighbourhoods(graph_, samples_, radius);
-        parallel_for(
-            n,
-            [&](std::size_t p) {
-                Matrix3d sum = Matrix3d::Zero();
-                double count = 0, nearest = radius;
-                for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
-                    const Index q = samples_.patch[around.samples[k]];
-                    if (!over_wall(q)) continue;
-                    const Vector3d normal = eigen(graph_.normals[q]);
-                    sum += normal * normal.transpose();
-                    ++count;
-                    nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(graph_.places[p], graph_.places[q])));
-                }
-                const auto total = static_cast<double>(around.first[p + 1] - around.first[p]);
-                if (total > 0) sides[p] = count / total;
-                nearest_side[p] = nearest / radius;
-                if (count < 3) return;
-                const SymmetricEigen<3> main(sum);
-                along[p] = std::abs(main.eigenvectors().col(2).dot(eigen(graph_.normals[p])));
-            },
-            64);
+        parallel_for(n, 64, [&](std::size_t p) {
+            Matrix3d sum = Matrix3d::Zero();
+            double count = 0, nearest = radius;
+            for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+                const Index q = samples_.patch[around.samples[k]];
+                if (!over_wall(q)) continue;
+                const Vector3d normal = eigen(graph_.normals[q]);
+                sum += normal * normal.transpose();
+                ++count;
+                nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(graph_.places[p], graph_.places[q])));
+            }
+            const auto total = static_cast<double>(around.first[p + 1] - around.first[p]);
+            if (total > 0) sides[p] = count / total;
+            nearest_side[p] = nearest / radius;
+            if (count < 3) return;
+            const SymmetricEigen<3> main(sum);
+            along[p] = std::abs(main.eigenvectors().col(2).dot(eigen(graph_.normals[p])));
+        });
         columns_.add("along the wall's normal", [&](std::size_t p) { return along[p]; });
         for (std::size_t p = 0; p < n; ++p) values_.over_wall.push_back(over_wall(p));
         columns_.add("share of sides nearby", [&](std::size_t p) { return sides[p]; });
@@ -237,21 +228,18 @@ private:
     [[nodiscard]] std::vector<double> jaggedness(const PointTree& tree, const std::vector<Point>& places) const {
         const double radius = std::min(std::max(0.05 * graph_.size, 3 * graph_.edge), 0.3 * graph_.size);
         std::vector<double> result(places.size(), 1);
-        parallel_for(
-            places.size(),
-            [&](std::size_t k) {
-                std::vector<Index> neighbours;
-                tree.within(places[k], radius, neighbours);
-                if (neighbours.size() < 4) return;
-                Vector3d mean = Vector3d::Zero();
-                for (const Index q : neighbours) mean += eigen(places[q]);
-                mean /= static_cast<double>(neighbours.size());
-                Matrix3d spread = Matrix3d::Zero();
-                for (const Index q : neighbours) spread += (eigen(places[q]) - mean) * (eigen(places[q]) - mean).transpose();
-                const Vector3d main = SymmetricEigen<3>(spread).eigenvalues();
-                if (main[2] > 0) result[k] = std::sqrt(std::max(0.0, main[0] + main[1]) / main[2]);
-            },
-            64);
+        parallel_for(places.size(), 64, [&](std::size_t k) {
+            std::vector<Index> neighbours;
+            tree.within(places[k], radius, neighbours);
+            if (neighbours.size() < 4) return;
+            Vector3d mean = Vector3d::Zero();
+            for (const Index q : neighbours) mean += eigen(places[q]);
+            mean /= static_cast<double>(neighbours.size());
+            Matrix3d spread = Matrix3d::Zero();
+            for (const Index q : neighbours) spread += (eigen(places[q]) - mean) * (eigen(places[q]) - mean).transpose();
+            const Vector3d main = SymmetricEigen<3>(spread).eigenvalues();
+            if (main[2] > 0) result[k] = std::sqrt(std::max(0.0, main[0] + main[1]) / main[2]);
+        });
         return result;
     }
 
@@ -278,19 +266,16 @@ private:
                 for (std::size_t k = 0; k < contacts.size(); ++k) values_.jagged[contacts[k]] = jagged_here[k];
             }
             const double radius = 0.1 * graph_.size;
-            parallel_for(
-                n,
-                [&](std::size_t p) {
-                    const PointTree::Near near = tree.nearest(graph_.places[p], graph_.size);
-                    if (near.index == no_index) return;
-                    nearest[p] = std::sqrt(near.squared) / graph_.size;
-                    if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].turn;
-                    if (nearest[p] > 0.1) return;
-                    std::vector<Index> near_edges;
-                    tree.within(graph_.places[p], radius, near_edges);
-                    for (const Index k : near_edges) density[p] += lengths[k] / radius;
-                },
-                64);
+            parallel_for(n, 64, [&](std::size_t p) {
+                const PointTree::Near near = tree.nearest(graph_.places[p], graph_.size);
+                if (near.index == no_index) return;
+                nearest[p] = std::sqrt(near.squared) / graph_.size;
+                if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].turn;
+                if (nearest[p] > 0.1) return;
+                std::vector<Index> near_edges;
+                tree.within(graph_.places[p], radius, near_edges);
+                for (const Index k : near_edges) density[p] += lengths[k] / radius;
+            });
             const std::string name = outward ? "outward edges" : "inward edges";
             columns_.add("distance to " + name, [&](std::size_t p) { return nearest[p]; });
             columns_.add("density of " + name, [&](std::size_t p) { return density[p]; });

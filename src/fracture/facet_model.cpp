@@ -31,9 +31,4 @@ const FacetModel& facet_model() {
     return model;
 }
 
-std::string facet_model_version() {
-    static const std::string version = sha256(to_text(built_in_document("facets.model")));
-    return version;
-}
-
 }  // namespace ostraka

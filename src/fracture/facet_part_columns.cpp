@@ -11,8 +11,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 using Row6 = Eigen::Matrix<double, 6, 1>;

@@ -34,8 +34,7 @@ Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& sampl
     for (std::size_t k = stride / 2; k < samples.points.size(); k += stride) points.push_back(samples.points[k]);
     const PointTree tree(points);
     std::vector<std::vector<Index>> neighbour_lists(graph.count());
-    parallel_for(
-        neighbour_lists.size(), [&](std::size_t p) { tree.within(graph.places[p], radius, neighbour_lists[p]); }, 64);
+    parallel_for(neighbour_lists.size(), 64, [&](std::size_t p) { tree.within(graph.places[p], radius, neighbour_lists[p]); });
     Neighbourhoods result;
     result.radius = radius;
     for (const auto& neighbour_list : neighbour_lists) {
@@ -60,19 +59,16 @@ std::vector<double> neighbourhood_means(const FacetEvidence& evidence, std::size
     const FacetGraph& graph = evidence.graph;
     const Neighbourhoods& around = evidence.around[scale];
     std::vector<double> result(values.size());
-    parallel_for(
-        values.size(),
-        [&](std::size_t p) {
-            double sum = 1e-3 * values[p], count = 1e-3;
-            for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
-                const Index q = evidence.samples.patch[around.samples[k]];
-                if (graph.normals[q] * graph.normals[p] < 0.5) continue;
-                sum += values[q];
-                ++count;
-            }
-            result[p] = sum / count;
-        },
-        64);
+    parallel_for(values.size(), 64, [&](std::size_t p) {
+        double sum = 1e-3 * values[p], count = 1e-3;
+        for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
+            const Index q = evidence.samples.patch[around.samples[k]];
+            if (graph.normals[q] * graph.normals[p] < 0.5) continue;
+            sum += values[q];
+            ++count;
+        }
+        result[p] = sum / count;
+    });
     return result;
 }
 

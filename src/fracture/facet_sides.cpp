@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const std::vector<Index>& sides,
                                 std::vector<std::string>& notes) {
     std::vector<double> result(graph.count(), 0);

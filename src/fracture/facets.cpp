@@ -4,7 +4,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
-#include "ostraka/geom/submesh.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 FractureTrees::FractureTrees(Mesh mesh, const FractureSide& side)
     : mesh_(std::move(mesh)),
       side_(side),

@@ -9,8 +9,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count) {
     SurfaceSamples samples;
     for (const Face face : mesh.faces())
@@ -191,38 +189,35 @@ FractureSide::FractureSide(const Fragment& fragment, double radius, int frame_co
     }
     std::vector<RimFrame> candidate_frames(places.size());
     std::vector<char> valid(places.size(), 0);
-    parallel_for(
-        places.size(),
-        [&](std::size_t i) {
-            const RimEdge& edge = places[i];
-            RimFrame& frame = candidate_frames[i];
-            frame.facet = fragment.facets[edge.side];
-            frame.place = 0.5 * (eigen(mesh.point(mesh.vertex(edge.edge, 0))) + eigen(mesh.point(mesh.vertex(edge.edge, 1))));
-            Vector3d side = Vector3d::Zero(), across = Vector3d::Zero(), beside = Vector3d::Zero();
-            double area = 0;
-            std::vector<Index> near_faces;
-            tree.within(point_of(frame.place), frame_radius, near_faces);
-            near_faces.push_back(edge.side);
-            near_faces.push_back(edge.broken);
-            for (const Index f : near_faces) {
-                // Ignores the other side of a thin wall.
-                if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0) {
-                    const double weight = face_area(mesh, Face(f));
-                    side += weight * eigen(normals[f]);
-                    beside += weight * eigen(centroids[f]);
-                    area += weight;
-                } else if (is_fracture[f] && normals[f] * normals[edge.broken] > 0)
-                    across += face_area(mesh, Face(f)) * eigen(normals[f]);
-            }
-            if (!(side.norm() > 0)) return;
-            frame.side = side.normalized();
-            frame.beside = beside / area;
-            across -= across.dot(frame.side) * frame.side;
-            if (!(across.norm() > 0)) return;
-            frame.fracture = across.normalized();
-            valid[i] = 1;
-        },
-        16);
+    parallel_for(places.size(), 16, [&](std::size_t i) {
+        const RimEdge& edge = places[i];
+        RimFrame& frame = candidate_frames[i];
+        frame.facet = fragment.facets[edge.side];
+        frame.place = 0.5 * (eigen(mesh.point(mesh.vertex(edge.edge, 0))) + eigen(mesh.point(mesh.vertex(edge.edge, 1))));
+        Vector3d side = Vector3d::Zero(), across = Vector3d::Zero(), beside = Vector3d::Zero();
+        double area = 0;
+        std::vector<Index> near_faces;
+        tree.within(point_of(frame.place), frame_radius, near_faces);
+        near_faces.push_back(edge.side);
+        near_faces.push_back(edge.broken);
+        for (const Index f : near_faces) {
+            // Ignores the other side of a thin wall.
+            if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0) {
+                const double weight = face_area(mesh, Face(f));
+                side += weight * eigen(normals[f]);
+                beside += weight * eigen(centroids[f]);
+                area += weight;
+            } else if (is_fracture[f] && normals[f] * normals[edge.broken] > 0)
+                across += face_area(mesh, Face(f)) * eigen(normals[f]);
+        }
+        if (!(side.norm() > 0)) return;
+        frame.side = side.normalized();
+        frame.beside = beside / area;
+        across -= across.dot(frame.side) * frame.side;
+        if (!(across.norm() > 0)) return;
+        frame.fracture = across.normalized();
+        valid[i] = 1;
+    });
     for (std::size_t i = 0; i < candidate_frames.size(); ++i)
         if (valid[i] != 0) frames.push_back(candidate_frames[i]);
     loops = loops_of(mesh, is_fracture, normals, fragment.facets, 0.4 * radius);
@@ -261,20 +256,17 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin, int c
     nearest_.resize(count_[0] * count_[1] * count_[2]);
     const PointTree tree(points_of(places));
     const double max_distance = 4 * extent.sum();
-    parallel_for(
-        count_[1] * count_[2],
-        [&](std::size_t row) {
-            // The nearest sample of the previous cell bounds the distance for this cell.
-            double bound = max_distance;
-            const std::size_t y = row % count_[1], z = row / count_[1];
+    parallel_for(count_[1] * count_[2], 16, [&](std::size_t row) {
+        // The nearest sample of the previous cell bounds the distance for this cell.
+        double bound = max_distance;
+        const std::size_t y = row % count_[1], z = row / count_[1];
             for (std::size_t x = 0; x < count_[0]; ++x) {
-                const Vector3d middle = low_ + width_ * Vector3d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5,
+            const Vector3d middle = low_ + width_ * Vector3d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5,
                                                                  static_cast<double>(z) + 0.5);
-                if (x > 0) bound = (1 + 1e-9) * (places[nearest_[row * count_[0] + x - 1]] - middle).norm();
-                nearest_[row * count_[0] + x] = tree.nearest(point_of(middle), bound).index;
-            }
-        },
-        16);
+            if (x > 0) bound = (1 + 1e-9) * (places[nearest_[row * count_[0] + x - 1]] - middle).norm();
+            nearest_[row * count_[0] + x] = tree.nearest(point_of(middle), bound).index;
+        }
+    });
 }
 
 }  // namespace ostraka

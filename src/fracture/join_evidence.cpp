@@ -10,8 +10,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr double could_touch = 3;  // in tolerances

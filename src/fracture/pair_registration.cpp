@@ -20,8 +20,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Indices of about `count` elements at equal steps.
@@ -284,14 +282,11 @@ std::vector<PairCandidate> measured_candidates(const PreparedFracture& a, const 
                                                const std::vector<ScoredPose>& poses, double tolerance, std::size_t samples,
                                                Align&& aligned) {
     std::vector<PairCandidate> candidates(poses.size());
-    parallel_for(
-        poses.size(),
-        [&](std::size_t i) {
-            candidates[i].pose = aligned(poses[i].pose);
-            candidates[i].evidence = measure_join(a, b, candidates[i].pose, tolerance, samples);
-            candidates[i].log_odds = join_log_odds(candidates[i].evidence);
-        },
-        1);
+    parallel_for(poses.size(), 1, [&](std::size_t i) {
+        candidates[i].pose = aligned(poses[i].pose);
+        candidates[i].evidence = measure_join(a, b, candidates[i].pose, tolerance, samples);
+        candidates[i].log_odds = join_log_odds(candidates[i].evidence);
+    });
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const PairCandidate& x, const PairCandidate& y) { return x.log_odds > y.log_odds; });
     return candidates;
@@ -326,13 +321,9 @@ PairRegistration search(const PreparedFracture& a, const PreparedFracture& b, co
     std::vector<ScoredPose> coarse = by_stretches;
     coarse.insert(coarse.end(), by_frames.begin(), by_frames.end());
     const QuickScore quick_score(first, second, search_radius);
-    parallel_for(
-        coarse.size(),
-        [&](std::size_t k) {
-            coarse[k] =
-                quick_score.refined_coarsely(coarse[k].pose, first.frames, std::max(0.4 * search_radius, 1.5 * tolerance));
-        },
-        8);
+    parallel_for(coarse.size(), 8, [&](std::size_t k) {
+        coarse[k] = quick_score.refined_coarsely(coarse[k].pose, first.frames, std::max(0.4 * search_radius, 1.5 * tolerance));
+    });
     coarse = distinct_poses(std::move(coarse), starts + starts / 2, 5);
     std::vector<ScoredPose> poses, reserve;
     for (std::size_t k = 0; k < coarse.size(); ++k) (k < starts / 2 ? poses : reserve).push_back(coarse[k]);
@@ -392,16 +383,13 @@ double initial_pair_score(const PreparedFracture& a, const PreparedFracture& b, 
     const QuickScore quick_score(first, second, options.search_radius * size);
     const auto rows = thinned(first.side.frames.size(), places), columns = thinned(second.side.frames.size(), places);
     std::vector<double> best(rows.size(), 0);
-    parallel_for(
-        rows.size(),
-        [&](std::size_t r) {
-            const RimFrame& frame = first.side.frames[rows[r]];
-            for (const std::size_t c : columns) {
-                const RimFrame& other = second.side.frames[c];
-                if (other.facet == frame.facet) best[r] = std::max(best[r], quick_score(other.onto(frame)));
-            }
-        },
-        4);
+    parallel_for(rows.size(), 4, [&](std::size_t r) {
+        const RimFrame& frame = first.side.frames[rows[r]];
+        for (const std::size_t c : columns) {
+            const RimFrame& other = second.side.frames[c];
+            if (other.facet == frame.facet) best[r] = std::max(best[r], quick_score(other.onto(frame)));
+        }
+    });
     const double max_score = best.empty() ? 0 : *std::max_element(best.begin(), best.end());
     return max_score / std::min(first.side.fracture.area, second.side.fracture.area);
 }

@@ -7,8 +7,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// A loop resampled at equal distances.
@@ -78,61 +76,57 @@ private:
         // Chord lengths are invariant under rigid motion.
         const std::size_t half = count / 2, last = count - 1;
         std::vector<std::vector<StretchFit>> row_fits(rows);
-        parallel_for(
-            rows,
-            [&](std::size_t r) {
-                const auto place_a = [&](std::size_t t) -> const Vector3d& { return a.places[(r + t) % n]; };
-                const double chord_length = (place_a(last) - place_a(0)).norm(),
-                             first_chord = (place_a(half) - place_a(0)).norm(),
-                             second_chord = (place_a(last) - place_a(half)).norm();
-                double bend = 0;
-                const Vector3d chord =
-                    chord_length > 0 ? Vector3d((place_a(last) - place_a(0)) / chord_length) : Vector3d(Vector3d::UnitX());
+        parallel_for(rows, 4, [&](std::size_t r) {
+            const auto place_a = [&](std::size_t t) -> const Vector3d& { return a.places[(r + t) % n]; };
+            const double chord_length = (place_a(last) - place_a(0)).norm(), first_chord = (place_a(half) - place_a(0)).norm(),
+                         second_chord = (place_a(last) - place_a(half)).norm();
+            double bend = 0;
+            const Vector3d chord =
+                chord_length > 0 ? Vector3d((place_a(last) - place_a(0)) / chord_length) : Vector3d(Vector3d::UnitX());
+            for (std::size_t t = 0; t < count; ++t) {
+                const Vector3d offset = place_a(t) - place_a(0);
+                bend += (offset - offset.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
+            }
+            bend = std::sqrt(bend);
+            if (bend < straight * tolerance_) return;  // too straight: it matches any straight stretch
+            std::vector<Vector3d> from(2 * count), to(2 * count);
+            std::vector<double> weights(2 * count, 1);
+            const double lever = 0.3 * spacing_ * static_cast<double>(count);
+            for (std::size_t t = count; t < 2 * count; ++t) weights[t] = 0.3;
+            for (std::size_t c = 0; c < columns; ++c) {
+                // The second rim is traversed backwards from the end of its stretch.
+                const auto place_b = [&](std::size_t t) -> const Vector3d& { return b.places[(c + last - t) % m]; };
+                if (a.facets[(r + half) % n] != b.facets[(c + half) % m]) continue;
+                const double slack = 2 * tolerance_;
+                if (std::abs((place_b(last) - place_b(0)).norm() - chord_length) > slack ||
+                    std::abs((place_b(half) - place_b(0)).norm() - first_chord) > slack ||
+                    std::abs((place_b(last) - place_b(half)).norm() - second_chord) > slack)
+                    continue;
                 for (std::size_t t = 0; t < count; ++t) {
-                    const Vector3d offset = place_a(t) - place_a(0);
-                    bend += (offset - offset.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
+                    from[t] = place_b(t);
+                    to[t] = place_a(t);
+                    from[count + t] = place_b(t) + lever * b.sides[(c + last - t) % m];
+                    to[count + t] = place_a(t) + lever * a.sides[(r + t) % n];
                 }
-                bend = std::sqrt(bend);
-                if (bend < straight * tolerance_) return;  // too straight: it matches any straight stretch
-                std::vector<Vector3d> from(2 * count), to(2 * count);
-                std::vector<double> weights(2 * count, 1);
-                const double lever = 0.3 * spacing_ * static_cast<double>(count);
-                for (std::size_t t = count; t < 2 * count; ++t) weights[t] = 0.3;
-                for (std::size_t c = 0; c < columns; ++c) {
-                    // The second rim is traversed backwards from the end of its stretch.
-                    const auto place_b = [&](std::size_t t) -> const Vector3d& { return b.places[(c + last - t) % m]; };
-                    if (a.facets[(r + half) % n] != b.facets[(c + half) % m]) continue;
-                    const double slack = 2 * tolerance_;
-                    if (std::abs((place_b(last) - place_b(0)).norm() - chord_length) > slack ||
-                        std::abs((place_b(half) - place_b(0)).norm() - first_chord) > slack ||
-                        std::abs((place_b(last) - place_b(half)).norm() - second_chord) > slack)
-                        continue;
-                    for (std::size_t t = 0; t < count; ++t) {
-                        from[t] = place_b(t);
-                        to[t] = place_a(t);
-                        from[count + t] = place_b(t) + lever * b.sides[(c + last - t) % m];
-                        to[count + t] = place_a(t) + lever * a.sides[(r + t) % n];
-                    }
-                    StretchFit fit;
-                    fit.pose = fit_motion(from, to, weights);
-                    double squares = 0;
-                    for (std::size_t t = 0; t < count; ++t)
-                        squares += (fit.pose(from[t]) - to[t]).squaredNorm() / static_cast<double>(count);
-                    fit.deviation = std::sqrt(squares);
-                    if (fit.deviation > widest * tolerance_) continue;
-                    fit.length = spacing_ * static_cast<double>(count);
-                    fit.bend = bend;
-                    // Information of the match: each position is known to the deviation within a range of the bend.
-                    fit.information =
-                        static_cast<double>(count) * std::log((noise * tolerance_ + bend) / (noise * tolerance_ + fit.deviation));
-                    if (fit.information > 0) row_fits[r].push_back(fit);
-                }
-                // Keeps the best ten of a row: neighbouring rows give the same matches.
-                std::stable_sort(row_fits[r].begin(), row_fits[r].end(),
-                                 [](const auto& x, const auto& y) { return x.information > y.information; });
-                if (row_fits[r].size() > 10) row_fits[r].resize(10);
-            },
-            4);
+                StretchFit fit;
+                fit.pose = fit_motion(from, to, weights);
+                double squares = 0;
+                for (std::size_t t = 0; t < count; ++t)
+                    squares += (fit.pose(from[t]) - to[t]).squaredNorm() / static_cast<double>(count);
+                fit.deviation = std::sqrt(squares);
+                if (fit.deviation > widest * tolerance_) continue;
+                fit.length = spacing_ * static_cast<double>(count);
+                fit.bend = bend;
+                // Information of the match: each position is known to the deviation within a range of the bend.
+                fit.information =
+                    static_cast<double>(count) * std::log((noise * tolerance_ + bend) / (noise * tolerance_ + fit.deviation));
+                if (fit.information > 0) row_fits[r].push_back(fit);
+            }
+            // Keeps the best ten of a row: neighbouring rows give the same matches.
+            std::stable_sort(row_fits[r].begin(), row_fits[r].end(),
+                             [](const auto& x, const auto& y) { return x.information > y.information; });
+            if (row_fits[r].size() > 10) row_fits[r].resize(10);
+        });
         for (const auto& row : row_fits) fits.insert(fits.end(), row.begin(), row.end());
     }
 

@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 int ProfileCells::row(const Vector3d& p, const Vector3d& normal, double search_radius) {
     const auto hit = surface_.closest_compatible(point_of(p), vector_of(normal), 0.5, search_radius);
     if (!hit) return -1;

@@ -14,8 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 class RotationMatcher {

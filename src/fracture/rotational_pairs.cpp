@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 std::size_t step_of(double rotation, std::size_t steps) {
@@ -24,21 +22,18 @@ std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int s
     const SampleGrid grid(a.side.fracture.places, search_radius);
     const std::size_t size = b.side.fracture.places.size(), count = std::min<std::size_t>(size, 500);
     const double each = b.side.fracture.area / static_cast<double>(count);
-    parallel_for(
-        area.size(),
-        [&](std::size_t t) {
-            const Motion motion = rotated_by(2 * pi * static_cast<double>(t) / steps);
-            for (std::size_t i = 0; i < count; ++i) {
-                const std::size_t k = (2 * i + 1) * size / (2 * count);
-                const Vector3d p = motion(b.side.fracture.places[k]);
-                const Index near = grid.near(p);
-                if (near == no_index) continue;
-                const double ratio = (p - a.side.fracture.places[near]).squaredNorm() / (search_radius * search_radius),
-                             facing = -a.side.fracture.normals[near].dot(motion.rotation * b.side.fracture.normals[k]);
-                if (ratio < 1 && facing > 0.3) area[t] += each * (1 - ratio) * facing;
-            }
-        },
-        8);
+    parallel_for(area.size(), 8, [&](std::size_t t) {
+        const Motion motion = rotated_by(2 * pi * static_cast<double>(t) / steps);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = (2 * i + 1) * size / (2 * count);
+            const Vector3d p = motion(b.side.fracture.places[k]);
+            const Index near = grid.near(p);
+            if (near == no_index) continue;
+            const double ratio = (p - a.side.fracture.places[near]).squaredNorm() / (search_radius * search_radius),
+                         facing = -a.side.fracture.normals[near].dot(motion.rotation * b.side.fracture.normals[k]);
+            if (ratio < 1 && facing > 0.3) area[t] += each * (1 - ratio) * facing;
+        }
+    });
     return area;
 }
 
@@ -107,23 +102,19 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     const FractureAligner aligner(trees.target(), b.side, wall, 0.5 * wall, 1);
     const double area = std::min(a.side.fracture.area, b.side.fracture.area);
     std::vector<MeetingRotation> meetings(tops.size());
-    parallel_for(
-        tops.size(),
-        [&](std::size_t i) {
-            const Motion start = rotated_by(2 * pi * static_cast<double>(tops[i]) / steps);
-            const auto samples = static_cast<std::size_t>(options.samples);
-            MeetingRotation& meeting = meetings[i];
-            meeting.fit =
-                aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
-            meeting.rotation = rotation_about_axis(meeting.fit.pose);
-            meeting.value = meeting.fit.score * area;
-            // Poses off the template are not positions on this vessel.
-            const Motion residual_motion = meeting.fit.pose.after(rotated_by(-meeting.rotation));
-            double squares = 0;
-            for (const Vector3d& p : b.side.intact.places) squares += (residual_motion(p) - p).squaredNorm();
-            if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) meeting.value = 0;
-        },
-        1);
+    parallel_for(tops.size(), 1, [&](std::size_t i) {
+        const Motion start = rotated_by(2 * pi * static_cast<double>(tops[i]) / steps);
+        const auto samples = static_cast<std::size_t>(options.samples);
+        MeetingRotation& meeting = meetings[i];
+        meeting.fit = aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
+        meeting.rotation = rotation_about_axis(meeting.fit.pose);
+        meeting.value = meeting.fit.score * area;
+        // Poses off the template are not positions on this vessel.
+        const Motion residual_motion = meeting.fit.pose.after(rotated_by(-meeting.rotation));
+        double squares = 0;
+        for (const Vector3d& p : b.side.intact.places) squares += (residual_motion(p) - p).squaredNorm();
+        if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) meeting.value = 0;
+    });
     std::stable_sort(meetings.begin(), meetings.end(),
                      [](const MeetingRotation& x, const MeetingRotation& y) { return x.value > y.value; });
     for (MeetingRotation& meeting : meetings) {

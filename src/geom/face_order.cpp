@@ -90,14 +90,11 @@ void sort_by_code(FaceOrder& order) {
         std::uint32_t* const own = &places[begin / block_size * buckets];
         for (std::size_t i = begin; i < end; ++i) sorted.copy(own[bucket(unsorted.codes[i])]++, unsorted, i);
     });
-    parallel_for(
-        buckets,
-        [&](std::size_t d) {
-            const std::size_t begin = first[d], size = first[d + 1] - begin;
-            const Lists list{sorted.codes + begin, sorted.faces + begin}, other{unsorted.codes + begin, unsorted.faces + begin};
-            if (size > 1) sort_by_last(code_bits - bucket_bits, list, other, size);
-        },
-        16);
+    parallel_for(buckets, 16, [&](std::size_t d) {
+        const std::size_t begin = first[d], size = first[d + 1] - begin;
+        const Lists list{sorted.codes + begin, sorted.faces + begin}, other{unsorted.codes + begin, unsorted.faces + begin};
+        if (size > 1) sort_by_last(code_bits - bucket_bits, list, other, size);
+    });
     order.codes = std::move(codes);
     order.faces = std::move(faces);
 }

@@ -14,8 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr std::uint32_t leaf_size = 6;
@@ -151,12 +149,9 @@ void FaceTree::build(const FaceOrder& order) {
     };
     cut(cut, 0, order.count);
     std::vector<std::uint32_t> nodes(pieces.size(), 1);
-    parallel_for(
-        pieces.size(),
-        [&](std::size_t i) {
-            if (pieces[i].second == 0) nodes[i] = node_count(order, pieces[i].begin, pieces[i].end);
-        },
-        1);
+    parallel_for(pieces.size(), 1, [&](std::size_t i) {
+        if (pieces[i].second == 0) nodes[i] = node_count(order, pieces[i].begin, pieces[i].end);
+    });
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         pieces[i].node = count;
@@ -164,12 +159,9 @@ void FaceTree::build(const FaceOrder& order) {
     }
     nodes_ = std::make_unique_for_overwrite<Node[]>(count);
     triangles_ = std::make_unique_for_overwrite<Triangle[]>(order.count);
-    parallel_for(
-        pieces.size(),
-        [&](std::size_t i) {
-            if (pieces[i].second == 0) build(order, pieces[i].begin, pieces[i].end, pieces[i].node);
-        },
-        1);
+    parallel_for(pieces.size(), 1, [&](std::size_t i) {
+        if (pieces[i].second == 0) build(order, pieces[i].begin, pieces[i].end, pieces[i].node);
+    });
     for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
         if (piece->second == 0) continue;
         nodes_[piece->node].first = pieces[piece->second].node;

@@ -20,8 +20,6 @@ using namespace detail;
 namespace {
 
 using Array3 = std::array<double, 3>;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 Vector3d vector(const Array3& p) { return {p[0], p[1], p[2]}; }
 
@@ -38,18 +36,15 @@ std::vector<Vector3d> directions(int count) {
 /// The extreme points in each direction and in its opposite.
 std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const std::vector<Vector3d>& along) {
     std::vector<Index> extreme(2 * along.size(), 0);
-    parallel_for(
-        along.size(),
-        [&](std::size_t d) {
-            const Vector3d& n = along[d];
-            double low = std::numeric_limits<double>::infinity(), high = -low;
-            for (Index v = 0; v < points.size(); ++v) {
-                const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
-                if (height < low) low = height, extreme[2 * d] = v;
-                if (height > high) high = height, extreme[2 * d + 1] = v;
-            }
-        },
-        4);
+    parallel_for(along.size(), 4, [&](std::size_t d) {
+        const Vector3d& n = along[d];
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (Index v = 0; v < points.size(); ++v) {
+            const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
+            if (height < low) low = height, extreme[2 * d] = v;
+            if (height > high) high = height, extreme[2 * d + 1] = v;
+        }
+    });
     std::sort(extreme.begin(), extreme.end());
     extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
     std::vector<Vector3d> list;
@@ -143,8 +138,7 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
 
 /// Refines all candidates and sorts them by volume.
 void refine_all(std::vector<Candidate>& candidates, const std::vector<Vector3d>& points, double coarsest, double finest) {
-    parallel_for(
-        candidates.size(), [&](std::size_t i) { candidates[i] = refine(candidates[i], points, coarsest, finest); }, 1);
+    parallel_for(candidates.size(), 1, [&](std::size_t i) { candidates[i] = refine(candidates[i], points, coarsest, finest); });
     std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
 }
 
@@ -190,8 +184,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
         tried.push_back(principal.eigenvectors().col(k).normalized());
     }
     std::vector<Candidate> all(tried.size());
-    parallel_for(
-        tried.size(), [&](std::size_t i) { all[i] = box_across(tried[i], extreme); }, 16);
+    parallel_for(tried.size(), 16, [&](std::size_t i) { all[i] = box_across(tried[i], extreme); });
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
     // The best candidate of each neighbourhood, since their local minima differ.
     std::vector<Candidate> candidates;

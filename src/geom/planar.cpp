@@ -8,7 +8,6 @@
 namespace ostraka {
 
 using namespace detail;
-using Eigen::Vector2d;
 
 std::vector<Vector2d> convex_hull(const std::vector<Vector2d>& points) {
     if (points.size() < 2) return points;

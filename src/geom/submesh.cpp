@@ -3,6 +3,7 @@
 #include "geom/surface_patch.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/mesh/flood.h"
 
 #include <string>
 
@@ -14,22 +15,14 @@ namespace {
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<bool>& keep) {
     std::vector<Index> best;
     double maximum = -1;
-    std::vector<bool> seen(mesh.number_of_faces(), false);
+    std::vector<bool> seen = keep;
+    seen.flip();
     for (const Face start : mesh.faces()) {
-        if (!keep[start] || seen[start]) continue;
-        std::vector<Index> piece{start};
-        seen[start] = true;
+        if (seen[start]) continue;
+        const std::vector<Face> piece = flood_faces(mesh, start, seen);
         double area = 0;
-        for (std::size_t i = 0; i < piece.size(); ++i) {
-            area += face_area(mesh, Face(piece[i]));
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(piece[i])))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !keep[next] || seen[next]) continue;
-                seen[next] = true;
-                piece.push_back(next);
-            }
-        }
-        if (area > maximum) maximum = area, best = std::move(piece);
+        for (const Face face : piece) area += face_area(mesh, face);
+        if (area > maximum) maximum = area, best.assign(piece.begin(), piece.end());
     }
     std::sort(best.begin(), best.end());
     return best;

@@ -1,7 +1,6 @@
 #include "ostraka/interchange/edit.h"
 
 #include "interchange/fields.h"
-
 #include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -40,16 +39,10 @@ EntryName name_of(const JsonValue& value) {
 /// The edge-connected patches of a region, in the order of their smallest face.
 std::vector<std::vector<Index>> patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
-    std::vector<bool> visited(selected.size(), false);
-    std::vector<std::vector<Index>> result;
-    for (const Index start : faces) {
-        if (visited[start]) continue;
-        const std::vector<Face> patch = flood_faces(mesh, Face(start), visited, [&](Halfedge h) {
-            return !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
-        });
-        std::vector<Index>& indices = result.emplace_back(patch.begin(), patch.end());
-        std::sort(indices.begin(), indices.end());
-    }
+    const auto [piece, count] = face_pieces(mesh, [&](Face f) -> bool { return selected[f]; });
+    std::vector<std::vector<Index>> result(count);
+    for (Index f = 0; f < piece.size(); ++f)
+        if (piece[f] != no_index) result[piece[f]].push_back(f);
     return result;
 }
 

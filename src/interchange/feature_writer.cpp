@@ -29,7 +29,6 @@ namespace ostraka {
 namespace {
 
 using namespace interchange;
-using Eigen::Vector3d;
 using glb::append;
 
 constexpr std::size_t exact_in_float = std::size_t{1} << 24;

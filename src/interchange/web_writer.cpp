@@ -120,17 +120,7 @@ private:
     }
 
     /// The index of the connected component of each face.
-    [[nodiscard]] std::vector<Index> components() const {
-        std::vector<Index> number(object_.mesh.number_of_faces());
-        std::vector<bool> visited(number.size(), false);
-        Index count = 0;
-        for (const Face start : object_.mesh.faces()) {
-            if (visited[start]) continue;
-            for (const Face face : flood_faces(object_.mesh, start, visited)) number[face] = count;
-            ++count;
-        }
-        return number;
-    }
+    [[nodiscard]] std::vector<Index> components() const { return face_pieces(object_.mesh).of_face; }
 
     /// One part per component of the mesh that the region covers, since winding numbers are defined per component.
     JsonValue parts(const Annotation& annotation) {

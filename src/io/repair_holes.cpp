@@ -237,8 +237,7 @@ Counts fill_once(RepairSoup& work, const HoleLimits& limits, const std::vector<I
         else chosen.push_back(&hole);
     }
     std::vector<std::vector<Triple>> fillings(chosen.size());
-    parallel_for(
-        chosen.size(), [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); }, 1);
+    parallel_for(chosen.size(), 1, [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); });
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Hole& hole = *chosen[i];
         if (fillings[i].empty()) {

@@ -4,6 +4,7 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/point_tree.h"
+#include "ostraka/mesh/flood.h"
 
 #include <cmath>
 #include <limits>
@@ -230,25 +231,23 @@ std::vector<std::uint8_t> merge_knots(const TriangleSoup& soup, const Border& bo
     constexpr std::size_t max_neighbours = 64;  // maximum number of neighbours examined per point, which
                                                 // avoids quadratic time for large sets of coincident points
     std::vector<std::uint8_t> knotted(count, 0);
-    std::vector<Index> queue;
+    std::vector<Index> starts;
     for (Index i = 0; i < count; ++i)
-        if (border.shortest[i] < 3 * crack) knotted[i] = 1, queue.push_back(i);
-    if (queue.empty()) return knotted;
+        if (border.shortest[i] < 3 * crack) knotted[i] = 1, starts.push_back(i);
+    if (starts.empty()) return knotted;
     struct Pair {
         double squared;
         Index a, q, b, p;
         auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr): false positive
     };
     std::vector<Pair> points, sides;
-    while (!queue.empty()) {  // propagates to all points within a crack width
-        const Index i = queue.back();
-        queue.pop_back();
+    flood(std::move(starts), knotted, [&](Index i, auto&& reach) {  // propagates to all points within a crack width
         for (const auto& neighbour : tree.neighbours(border.places[i], max_neighbours)) {
             if (neighbour.squared > crack * crack || neighbour.index == i) continue;
             points.push_back({neighbour.squared, std::min(i, neighbour.index), std::max(i, neighbour.index), 0, 0});
-            if (knotted[neighbour.index] == 0) knotted[neighbour.index] = 1, queue.push_back(neighbour.index);
+            reach(neighbour.index);
         }
-    }
+    });
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
 

@@ -213,8 +213,7 @@ private:
     void search_leaves(const detail::TriangleTree& tree, const std::vector<Index>& triangle, std::size_t begin,
                        std::size_t count) {
         leaves_.resize(std::max(leaves_.size(), count));
-        parallel_for(
-            count, [&](std::size_t i) { search_leaf(tree, triangle, static_cast<Index>(begin + i), leaves_[i]); }, 16);
+        parallel_for(count, 16, [&](std::size_t i) { search_leaf(tree, triangle, static_cast<Index>(begin + i), leaves_[i]); });
         for (std::size_t i = 0; i < count; ++i) {
             const Leaf& leaf = leaves_[i];
             result.pairs.insert(result.pairs.end(), leaf.pairs.begin(), leaf.pairs.end());

@@ -38,9 +38,8 @@ SoupEdges group_edges(const TriangleSoup& soup) {
         std::vector<Index> next(bucket_begin);
         each_halfedge([&](Index h, std::pair<Index, Index> ends) { bucket[next[ends.first]++] = {ends.second, h}; });
     }
-    parallel_for(
-        soup.points.size(),
-        [&](std::size_t v) { std::sort(bucket.begin() + bucket_begin[v], bucket.begin() + bucket_begin[v + 1]); }, 4096);
+    parallel_for(soup.points.size(), 4096,
+                 [&](std::size_t v) { std::sort(bucket.begin() + bucket_begin[v], bucket.begin() + bucket_begin[v + 1]); });
     SoupEdges edges;
     edges.halfedges.resize(bucket.size());
     edges.begin.reserve(bucket.size() / 2 + 1);

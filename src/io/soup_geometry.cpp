@@ -19,8 +19,7 @@ bool has_no_area(const TriangleSoup& soup, const std::array<Index, 3>& t) {
 
 std::vector<std::uint8_t> triangles_without_area(const TriangleSoup& soup) {
     std::vector<std::uint8_t> none(soup.triangles.size(), 0);
-    parallel_for(
-        none.size(), [&](std::size_t t) { none[t] = has_no_area(soup, soup.triangles[t]) ? 1 : 0; }, 4096);
+    parallel_for(none.size(), 4096, [&](std::size_t t) { none[t] = has_no_area(soup, soup.triangles[t]) ? 1 : 0; });
     return none;
 }
 
@@ -85,34 +84,30 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
     // Thousands of nested shells would take quadratic time.
     const std::size_t max_boxes = std::max<std::size_t>(20'000, 200'000'000 / inner.size());
     const double ray_length = 2 * diagonal(box_of_triangles(soup));
-    parallel_for(
-        inner.size(),
-        [&](std::size_t i) {
-            const Index own_component = inner[i];
-            // Triangles of the component itself are ignored, so the ray may start on one of them.
-            const auto& t = soup.triangles[first_triangle[own_component]];
-            const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
-            // Fixed generic directions; if a ray touches an edge, the next direction is used.
-            for (int attempt = 0; attempt < 16; ++attempt) {
-                const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
-                const double r = std::sqrt(1 - z * z);
-                const Point end = start + ray_length * Vector(r * std::cos(s), r * std::sin(s), z);
-                std::vector<std::pair<Index, bool>> parity;
-                if (!crossing_parity(soup, tree, component_of_triangle, own_component, start, end, max_boxes, parity) &&
-                    attempt < 15)
-                    continue;
-                bool inside = false;
-                for (const auto& [other, is_odd] : parity) {
-                    if (!is_odd || !closed[other]) continue;
-                    const auto &a = boxes[own_component], &b = boxes[other];
-                    inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() &&
-                                        a.ymax() <= b.ymax() && a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
-                }
-                enclosed[own_component] = inside ? 1 : 0;
-                break;
+    parallel_for(inner.size(), 8, [&](std::size_t i) {
+        const Index own_component = inner[i];
+        // Triangles of the component itself are ignored, so the ray may start on one of them.
+        const auto& t = soup.triangles[first_triangle[own_component]];
+        const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
+        // Fixed generic directions; if a ray touches an edge, the next direction is used.
+        for (int attempt = 0; attempt < 16; ++attempt) {
+            const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
+            const double r = std::sqrt(1 - z * z);
+            const Point end = start + ray_length * Vector(r * std::cos(s), r * std::sin(s), z);
+            std::vector<std::pair<Index, bool>> parity;
+            if (!crossing_parity(soup, tree, component_of_triangle, own_component, start, end, max_boxes, parity) && attempt < 15)
+                continue;
+            bool inside = false;
+            for (const auto& [other, is_odd] : parity) {
+                if (!is_odd || !closed[other]) continue;
+                const auto &a = boxes[own_component], &b = boxes[other];
+                inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() &&
+                                    a.ymax() <= b.ymax() && a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
             }
-        },
-        8);
+            enclosed[own_component] = inside ? 1 : 0;
+            break;
+        }
+    });
     return enclosed;
 }
 

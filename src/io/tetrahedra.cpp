@@ -290,25 +290,15 @@ Notes write_medit(const Path& file, const TriangleSoup& soup, const MeshExtras& 
     writer.text("MeshVersionFormatted 2\n");
     if (!options.comment.empty()) writer.text(fmt::format("# {}\n", one_line(options.comment)));
     writer.text(fmt::format("Dimension 3\nVertices\n{}\n", soup.points.size()));
-    for (const auto& [x, y, z] : soup.points) {
-        writer.number(x);
-        writer.numbers({y, z});
-        writer.text(" 0\n");
-    }
+    for (const auto& [x, y, z] : soup.points) writer.row({x, y, z}, " 0\n");
     writer.text(fmt::format("Triangles\n{}\n", soup.triangles.size()));
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        writer.number(soup.triangles[t][0] + 1);
-        writer.numbers({soup.triangles[t][1] + 1, soup.triangles[t][2] + 1});
-        writer.numbers({extras.face_labels.empty() ? 0 : extras.face_labels[t]});
-        writer.end_line();
+        const auto [a, b, c] = soup.triangles[t];
+        writer.row<std::int64_t>({a + 1, b + 1, c + 1, extras.face_labels.empty() ? 0 : extras.face_labels[t]});
     }
     if (!extras.tetrahedra.empty()) {
         writer.text(fmt::format("Tetrahedra\n{}\n", extras.tetrahedra.size()));
-        for (const Tetrahedron& t : extras.tetrahedra) {
-            writer.number(t[0] + 1);
-            writer.numbers({t[1] + 1, t[2] + 1, t[3] + 1});
-            writer.text(" 0\n");
-        }
+        for (const auto& [a, b, c, d] : extras.tetrahedra) writer.row({a + 1, b + 1, c + 1, d + 1}, " 0\n");
     }
     writer.text("End\n");
     writer.commit();
@@ -325,11 +315,7 @@ Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
                     "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" "
                     "NumberOfCells=\"{}\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
                     soup.points.size(), cells));
-    for (const auto& [x, y, z] : soup.points) {
-        writer.number(x);
-        writer.numbers({y, z});
-        writer.end_line();
-    }
+    for (const auto& [x, y, z] : soup.points) writer.row({x, y, z});
     writer.text("</DataArray>\n</Points>\n<Cells>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n");
     for (const auto& t : soup.triangles) {
         writer.numbers({t[0], t[1], t[2]});
@@ -340,19 +326,13 @@ Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         writer.end_line();
     }
     writer.text("</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n");
-    for (std::size_t i = 0; i < cells; ++i) {
-        writer.number(i < triangles ? 3 * (i + 1) : 3 * triangles + 4 * (i + 1 - triangles));
-        writer.end_line();
-    }
+    for (std::size_t i = 0; i < cells; ++i) writer.row({i < triangles ? 3 * (i + 1) : 3 * triangles + 4 * (i + 1 - triangles)});
     writer.text("</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n");
     for (std::size_t i = 0; i < cells; ++i) writer.text(i < triangles ? "5\n" : "10\n");
     writer.text("</DataArray>\n</Cells>\n");
     if (!extras.face_labels.empty()) {
         writer.text("<CellData>\n<DataArray type=\"Int32\" Name=\"label\" format=\"ascii\">\n");
-        for (std::size_t i = 0; i < cells; ++i) {
-            writer.number(i < triangles ? extras.face_labels[i] : 0);
-            writer.end_line();
-        }
+        for (std::size_t i = 0; i < cells; ++i) writer.row({i < triangles ? extras.face_labels[i] : 0});
         writer.text("</DataArray>\n</CellData>\n");
     }
     writer.text("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");

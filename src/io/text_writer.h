@@ -34,6 +34,15 @@ public:
             number(value);
         }
     }
+    /// Writes numbers separated by blanks, then `end`.
+    template <class T>
+    void row(std::initializer_list<T> values, std::string_view end = "\n") {
+        for (const T& value : values) {
+            if (&value != values.begin()) character(' ');
+            number(value);
+        }
+        text(end);
+    }
     /// Writes the bytes of a value; the machine is little-endian (checked at compile time).
     template <class T>
     void bytes(const T& value) {

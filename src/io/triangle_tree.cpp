@@ -3,7 +3,6 @@
 #include "ostraka/execution/parallel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace ostraka::detail {
@@ -66,19 +65,16 @@ void TriangleTree::find_frame() {
 void TriangleTree::order_triangles() {
     const std::array<double, 3>& low = corner_;
     std::vector<std::pair<std::uint64_t, Index>> codes(soup_.triangles.size());
-    parallel_for(
-        codes.size(),
-        [&](std::size_t t) {
-            const auto& [a, b, c] = soup_.triangles[t];
-            std::uint64_t code = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double middle =
-                    (soup_.points[a][k] - low[k]) / 3 + (soup_.points[b][k] - low[k]) / 3 + (soup_.points[c][k] - low[k]) / 3;
-                code |= spread(static_cast<std::uint64_t>(std::clamp(middle * scale_, 0.0, 1.0) * 65535)) << k;
-            }
-            codes[t] = {code, static_cast<Index>(t)};
-        },
-        4096);
+    parallel_for(codes.size(), 4096, [&](std::size_t t) {
+        const auto& [a, b, c] = soup_.triangles[t];
+        std::uint64_t code = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double middle =
+                (soup_.points[a][k] - low[k]) / 3 + (soup_.points[b][k] - low[k]) / 3 + (soup_.points[c][k] - low[k]) / 3;
+            code |= spread(static_cast<std::uint64_t>(std::clamp(middle * scale_, 0.0, 1.0) * 65535)) << k;
+        }
+        codes[t] = {code, static_cast<Index>(t)};
+    });
     if (!groups_.empty()) std::erase_if(codes, [&](const auto& item) { return groups_[item.second] == left_out; });
     order_ = sorted_by_code(codes);
     if (std::any_of(order_.begin(), order_.end(), [&](Index t) { return !groups_.empty() && groups_[t] != 0; }))
@@ -87,19 +83,16 @@ void TriangleTree::order_triangles() {
 
 void TriangleTree::find_boxes() {
     boxes_.resize(order_.size());
-    parallel_for(
-        order_.size(),
-        [&](std::size_t i) {
-            const auto& [a, b, c] = soup_.triangles[order_[i]];
-            const auto &p = soup_.points[a], &q = soup_.points[b], &r = soup_.points[c];
-            std::array<double, 3> low, high;
-            for (std::size_t k = 0; k < 3; ++k) {
-                low[k] = std::min({p[k], q[k], r[k]});
-                high[k] = std::max({p[k], q[k], r[k]});
-            }
-            boxes_[i] = scaled_box(low, high);
-        },
-        4096);
+    parallel_for(order_.size(), 4096, [&](std::size_t i) {
+        const auto& [a, b, c] = soup_.triangles[order_[i]];
+        const auto &p = soup_.points[a], &q = soup_.points[b], &r = soup_.points[c];
+        std::array<double, 3> low, high;
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min({p[k], q[k], r[k]});
+            high[k] = std::max({p[k], q[k], r[k]});
+        }
+        boxes_[i] = scaled_box(low, high);
+    });
     const std::vector<Box>* below = &boxes_;
     do {
         std::vector<Box> level((below->size() + fan - 1) / fan);

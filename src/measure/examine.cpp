@@ -21,17 +21,7 @@ using std::to_string;
 
 std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
-    std::vector<bool> visited(selected.size(), false);
-    std::size_t patches = 0;
-    const auto stays = [&](Halfedge h) { return !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))]; };
-    CancelCheck check;
-    for (const Index first : faces) {
-        check();
-        if (visited[first]) continue;
-        ++patches;
-        flood_faces(mesh, Face(first), visited, stays);
-    }
-    return patches;
+    return face_pieces(mesh, [&](Face f) -> bool { return selected[f]; }).count;
 }
 
 class Examiner {

@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace ostraka {
 
@@ -118,12 +117,9 @@ private:
             progress.advance();
         };
         const auto in_memory = [&](std::size_t k) { return !given_files[k].listed && files.sources[given_files[k].slot].object; };
-        parallel_for(
-            given_files.size(),
-            [&](std::size_t k) {
-                if (!in_memory(k)) attempt(k, [&] { return read_fragment(given_files[k].file, reading); });
-            },
-            1);
+        parallel_for(given_files.size(), 1, [&](std::size_t k) {
+            if (!in_memory(k)) attempt(k, [&] { return read_fragment(given_files[k].file, reading); });
+        });
         // The files were read by several threads; record them as inputs here.
         context.record([&] {
             for (std::size_t k = 0; k < given_files.size(); ++k)

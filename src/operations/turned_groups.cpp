@@ -5,8 +5,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 namespace ostraka {
 
 namespace {
@@ -94,12 +92,9 @@ GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragmen
 
 std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result) {
     std::vector<GroupAxis> axes(fragments.size());
-    parallel_for(
-        fragments.size(),
-        [&](std::size_t k) {
-            if (result.group[k] < 0 && fragments[k].mesh.number_of_faces() > 0) axes[k] = axis_of_group({fragments[k]}, {});
-        },
-        1);
+    parallel_for(fragments.size(), 1, [&](std::size_t k) {
+        if (result.group[k] < 0 && fragments[k].mesh.number_of_faces() > 0) axes[k] = axis_of_group({fragments[k]}, {});
+    });
     return axes;
 }
 

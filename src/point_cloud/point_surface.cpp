@@ -7,10 +7,75 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <tuple>
+#include <unordered_map>
 
 namespace ostraka {
 
 namespace {
+
+/// The library orders border edges of the front whose priorities are equal by their addresses. This class numbers them in the
+/// order of their first use on this thread, during the lifetime of the object, so that the surface depends on the points alone.
+class EdgeNumbers {
+public:
+    EdgeNumbers() : before_(current()) { current() = this; }
+    ~EdgeNumbers() { current() = before_; }
+    EdgeNumbers(const EdgeNumbers&) = delete;
+    EdgeNumbers& operator=(const EdgeNumbers&) = delete;
+
+    static std::size_t number(const void* edge) {
+        return current()->numbers_.try_emplace(edge, current()->numbers_.size()).first->second;
+    }
+
+private:
+    static EdgeNumbers*& current() {
+        thread_local EdgeNumbers* numbers = nullptr;
+        return numbers;
+    }
+    EdgeNumbers* before_;
+    std::unordered_map<const void*, std::size_t> numbers_;
+};
+
+/// A vertex or cell of the triangulation that is ordered by its creation where the library otherwise orders by address.
+template <class Base>
+class Stamped : public Base {
+public:
+    template <class Triangulation>
+    struct Rebind_TDS {
+        using Other = Stamped<typename Base::template Rebind_TDS<Triangulation>::Other>;
+    };
+    using Base::Base;
+
+    using Has_timestamp = CGAL::Tag_true;
+    [[nodiscard]] std::size_t time_stamp() const { return time_stamp_; }
+    void set_time_stamp(std::size_t stamp) { time_stamp_ = stamp; }
+
+private:
+    std::size_t time_stamp_ = static_cast<std::size_t>(-1);
+};
+
+/// The library's vertex, with numbered border edges.
+template <class Base>
+class FrontVertex : public Base {
+public:
+    template <class Triangulation>
+    struct Rebind_TDS {
+        using Other = FrontVertex<typename Base::template Rebind_TDS<Triangulation>::Other>;
+    };
+    using Base::Base;
+
+    struct Radius_ptr_type {
+        typename Base::criteria first;
+        typename Base::IO_edge_type* second;
+        std::size_t number;
+
+        Radius_ptr_type(typename Base::criteria priority, typename Base::IO_edge_type* edge)
+            : first(priority), second(edge), number(EdgeNumbers::number(edge)) {}
+        bool operator<(const Radius_ptr_type& other) const {
+            return std::tie(first, number) < std::tie(other.first, other.number);
+        }
+    };
+};
 
 /// Gives edges far longer than the point spacing the worst priority, so that the front never crosses them.
 struct EdgeLimit {
@@ -28,6 +93,22 @@ struct EdgeLimit {
         return reconstruction.smallest_radius_delaunay_sphere(cell, index);
     }
 };
+
+/// Triples of point indices: the triangles of the surface through the points. Results depend on the points alone.
+std::vector<std::array<std::size_t, 3>> surface_triangles(const std::vector<Point>& points, double longest_edge) {
+    using Vertex = FrontVertex<Stamped<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
+    using Cell = Stamped<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
+    using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
+    std::vector<std::pair<Point, std::size_t>> numbered;
+    for (const Point& p : points) numbered.emplace_back(p, numbered.size());
+    Triangulation triangulation(numbered.begin(), numbered.end());
+    const EdgeNumbers numbers;
+    CGAL::Advancing_front_surface_reconstruction<Triangulation, EdgeLimit> front(triangulation, EdgeLimit{longest_edge});
+    front.run();
+    std::vector<std::array<std::size_t, 3>> triangles;
+    CGAL::write_triple_indices(std::back_inserter(triangles), front);
+    return triangles;
+}
 
 bool on_a_line(const std::vector<Point>& points) {
     const auto farthest = std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
@@ -55,9 +136,7 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     std::vector<Point> points;
     for (const Point& p : cloud.points) points.push_back(CGAL::ORIGIN + (p - middle) / size);
     std::vector<std::array<std::size_t, 3>> facets;
-    if (!on_a_line(points))
-        CGAL::advancing_front_surface_reconstruction(points.begin(), points.end(), std::back_inserter(facets),
-                                                     EdgeLimit{options.longest * point_spacing(points)});
+    if (!on_a_line(points)) facets = surface_triangles(points, options.longest * point_spacing(points));
     if (facets.empty()) fail_input("points", "do not define a surface", "check whether they are collinear or coincide");
     CloudSurface result;
     std::vector<Index> number(cloud.points.size(), no_index);

@@ -15,8 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Prior log odds of a candidate: each pair has several, and most pairs do not meet.
@@ -100,17 +98,14 @@ Motion FragmentGroups::registered(std::size_t a, std::size_t b, Motion join) con
         const double radius_factor = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
         const FragmentPairs close = close_pairs(a, b, join);
         std::vector<std::vector<ContactPoint>> contacts(2 * close.size());
-        parallel_for(
-            close.size(),
-            [&](std::size_t k) {
-                const auto [i, j] = close[k];
-                const Motion pose = poses_[i].inverse().after(join).after(poses_[j]);
-                contacts[2 * k] =
-                    contact_points(fragments_[i], fragments_[j], pose, radius_factor * fragments_.tolerance(i, j), samples);
-                contacts[2 * k + 1] = contact_points(fragments_[j], fragments_[i], pose.inverse(),
-                                                     radius_factor * fragments_.tolerance(i, j), samples);
-            },
-            1);
+        parallel_for(close.size(), 1, [&](std::size_t k) {
+            const auto [i, j] = close[k];
+            const Motion pose = poses_[i].inverse().after(join).after(poses_[j]);
+            contacts[2 * k] =
+                contact_points(fragments_[i], fragments_[j], pose, radius_factor * fragments_.tolerance(i, j), samples);
+            contacts[2 * k + 1] =
+                contact_points(fragments_[j], fragments_[i], pose.inverse(), radius_factor * fragments_.tolerance(i, j), samples);
+        });
         std::vector<PlanePoint> planes;
         for (std::size_t k = 0; k < close.size(); ++k) {
             const auto [i, j] = close[k];
@@ -148,14 +143,11 @@ FragmentGroups::Verdict FragmentGroups::examine(const PairEdge& edge) const {
     double other_log_odds = 0;
     const FragmentPairs close = close_pairs(edge.a, edge.b, join);
     std::vector<JoinEvidence> evidence(close.size());
-    parallel_for(
-        close.size(),
-        [&](std::size_t k) {
-            const auto [i, j] = close[k];
-            evidence[k] = measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(join).after(poses_[j]),
-                                       fragments_.tolerance(i, j));
-        },
-        1);
+    parallel_for(close.size(), 1, [&](std::size_t k) {
+        const auto [i, j] = close[k];
+        evidence[k] = measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(join).after(poses_[j]),
+                                   fragments_.tolerance(i, j));
+    });
     for (std::size_t k = 0; k < close.size(); ++k) {
         const auto [i, j] = close[k];
         const double t = fragments_.tolerance(i, j),
@@ -278,14 +270,11 @@ std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> Fragme
             const std::size_t i = std::min(group[x], group[y]), j = std::max(group[x], group[y]);
             if (fragments_.near(i, poses_[i], j, poses_[j])) contacts.push_back({{i, j}, {}});
         }
-    parallel_for(
-        contacts.size(),
-        [&](std::size_t k) {
-            const auto [i, j] = contacts[k].first;
-            contacts[k].second =
-                measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(poses_[j]), fragments_.tolerance(i, j));
-        },
-        1);
+    parallel_for(contacts.size(), 1, [&](std::size_t k) {
+        const auto [i, j] = contacts[k].first;
+        contacts[k].second =
+            measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(poses_[j]), fragments_.tolerance(i, j));
+    });
     std::erase_if(contacts, [](const auto& contact) { return contact.second.share < 0.02; });
     return contacts;
 }

@@ -58,13 +58,10 @@ FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedFracture
     const std::size_t places = pairs.size() > very_many ? 24 : 64;
     std::vector<double> score(pairs.size());
     Progress progress("compare fractures quickly", pairs.size());
-    parallel_for(
-        pairs.size(),
-        [&](std::size_t p) {
-            score[p] = initial_pair_score(*fragments[pairs[p].first], *fragments[pairs[p].second], effort.first, places);
-            progress.advance();
-        },
-        16);
+    parallel_for(pairs.size(), 16, [&](std::size_t p) {
+        score[p] = initial_pair_score(*fragments[pairs[p].first], *fragments[pairs[p].second], effort.first, places);
+        progress.advance();
+    });
     std::vector<std::vector<std::size_t>> fragment_pairs(fragments.size());
     for (std::size_t p = 0; p < pairs.size(); ++p)
         fragment_pairs[pairs[p].first].push_back(p), fragment_pairs[pairs[p].second].push_back(p);

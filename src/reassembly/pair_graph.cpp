@@ -40,26 +40,23 @@ std::vector<PairResult> PairGraph::register_pairs(const std::string& phase, cons
     std::vector<PairResult> result(pairs.size());
     std::mutex memory_mutex;
     Progress progress(phase, pairs.size());
-    parallel_for(
-        pairs.size(),
-        [&](std::size_t p) {
-            check_cancelled();
-            const auto [i, j] = pairs[p];
-            std::optional<PairResult> pair;
-            if (memory.recall) {
-                const std::lock_guard lock(memory_mutex);
-                pair = memory.recall(i, j, options);
-            }
-            if (!pair) {
-                PairRegistration registration = register_fractures(fragments_[i], fragments_[j], options);
-                pair = PairResult{i, j, std::move(registration.candidates), registration.confidence};
-                const std::lock_guard lock(memory_mutex);
-                if (memory.keep) memory.keep(*pair, options);
-            }
-            result[p] = std::move(*pair);
-            progress.advance();
-        },
-        1);
+    parallel_for(pairs.size(), 1, [&](std::size_t p) {
+        check_cancelled();
+        const auto [i, j] = pairs[p];
+        std::optional<PairResult> pair;
+        if (memory.recall) {
+            const std::lock_guard lock(memory_mutex);
+            pair = memory.recall(i, j, options);
+        }
+        if (!pair) {
+            PairRegistration registration = register_fractures(fragments_[i], fragments_[j], options);
+            pair = PairResult{i, j, std::move(registration.candidates), registration.confidence};
+            const std::lock_guard lock(memory_mutex);
+            if (memory.keep) memory.keep(*pair, options);
+        }
+        result[p] = std::move(*pair);
+        progress.advance();
+    });
     return result;
 }
 

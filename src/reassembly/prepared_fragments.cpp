@@ -11,8 +11,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 PreparedFragments::PreparedFragments(const std::vector<Fragment>& fragments, const ReassemblyOptions& options,
                                      const PairEffort& effort, std::vector<std::string>& alone)
     : options_(options),
@@ -21,13 +19,10 @@ PreparedFragments::PreparedFragments(const std::vector<Fragment>& fragments, con
       middle_(fragments.size(), Vector3d::Zero()),
       radius_(fragments.size(), 0) {
     Progress progress("prepare fragments", fragments.size());
-    parallel_for(
-        fragments.size(),
-        [&](std::size_t k) {
-            prepare(fragments[k], k, alone[k]);
-            progress.advance();
-        },
-        1);
+    parallel_for(fragments.size(), 1, [&](std::size_t k) {
+        prepare(fragments[k], k, alone[k]);
+        progress.advance();
+    });
 }
 
 std::size_t PreparedFragments::taking_part() const {

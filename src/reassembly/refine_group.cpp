@@ -14,7 +14,6 @@
 namespace ostraka {
 
 using Eigen::Quaterniond;
-using Eigen::Vector3d;
 
 namespace {
 

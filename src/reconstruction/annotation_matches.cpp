@@ -16,8 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Features of an annotation for matching.

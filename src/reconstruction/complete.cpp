@@ -14,8 +14,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 std::string to_string(Origin origin) { return enum_name(origin, {"observed", "interpolated", "hypothesis"}); }
 
 namespace {

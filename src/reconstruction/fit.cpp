@@ -11,12 +11,8 @@
 #include "ostraka/remesh/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 namespace {
 

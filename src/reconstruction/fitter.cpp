@@ -11,9 +11,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 Fitter::Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
                const std::vector<CorrespondenceConstraint>& correspondences, double diagonal, const NonRigidOptions& options)
     : system_(system),

@@ -6,8 +6,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 void JointCurves::add(int fragment, const Mesh& mesh, const std::vector<int>& labels, const std::vector<Facet>& facets,
                       const std::vector<bool>& ends, double scale) {
     const auto broken = [&](Face face) { return !facets.empty() && facets[face] == Facet::fracture; };

@@ -12,9 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 double cotangent(const Vector3d& a, const Vector3d& b, const Vector3d& c) {

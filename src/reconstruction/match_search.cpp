@@ -10,8 +10,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Any face at a vertex that has one, also at a border.

@@ -9,8 +9,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Whether the motions that the search left open include a rotation about the axis. For a small or nearly round part it is one

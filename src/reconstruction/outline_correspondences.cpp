@@ -11,8 +11,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 std::vector<VertexPath> vertex_paths_of(const Mesh& mesh, const Annotation& part, const std::vector<bool>& broken) {
     std::vector<VertexPath> vertex_paths;
     for (const auto& line : part.polylines) {

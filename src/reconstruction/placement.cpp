@@ -16,9 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 std::vector<LandmarkPair> common_landmarks(AnnotatedMeshView template_object, AnnotatedMeshView fragment,
                                            std::vector<std::string>* notes) {
     using Tags = std::map<std::string, std::vector<const Annotation*>>;

@@ -6,14 +6,13 @@
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace ostraka {
-
-using Eigen::Vector3d;
 
 namespace {
 

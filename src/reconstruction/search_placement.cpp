@@ -70,7 +70,6 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
 
 bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
                           FragmentPlacement& placed) {
-    using Eigen::Vector3d;
     if (pairs.empty() || search.ways.empty()) return false;
     Motion pose = placed.pose;
     for (const SlippableRange& range : search.ways) {

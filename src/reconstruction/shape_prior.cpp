@@ -20,9 +20,7 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
 using Eigen::MatrixXd;
-using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 void ShapePrior::check(std::size_t vertices) const {

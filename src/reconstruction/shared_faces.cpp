@@ -2,7 +2,7 @@
 
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
-#include "ostraka/geom/submesh.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -96,23 +96,19 @@ std::vector<Seed> seeds_of(const Mesh& mesh, const Degrees& degrees, const std::
 void find_seeds(const Mesh& mesh, const Degrees& degrees, std::vector<Seed>& seeds) {
     std::vector<std::uint64_t> matching_seeds(mesh.number_of_halfedges(), 0);
     const std::uint64_t all_seeds = seeds.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << seeds.size()) - 1;
-    parallel_for(
-        matching_seeds.size(),
-        [&](std::size_t i) {
-            const Halfedge h(static_cast<Index>(i));
-            if (mesh.is_border(h) || mesh.is_border(mesh.opposite(h))) return;
-            std::uint64_t remaining = all_seeds;
-            std::size_t position = 0;
-            walk(mesh, h, [&](Vertex v) {
-                for (std::size_t s = 0; s < seeds.size(); ++s)
-                    if ((remaining >> s & 1U) != 0 && seeds[s].degrees[position] != degrees[v])
-                        remaining &= ~(std::uint64_t{1} << s);
-                if (degrees[v] == 0) remaining = 0;
-                return remaining != 0 && ++position < neighbourhood;
-            });
-            if (position == neighbourhood) matching_seeds[i] = remaining;
-        },
-        256);
+    parallel_for(matching_seeds.size(), 256, [&](std::size_t i) {
+        const Halfedge h(static_cast<Index>(i));
+        if (mesh.is_border(h) || mesh.is_border(mesh.opposite(h))) return;
+        std::uint64_t remaining = all_seeds;
+        std::size_t position = 0;
+        walk(mesh, h, [&](Vertex v) {
+            for (std::size_t s = 0; s < seeds.size(); ++s)
+                if ((remaining >> s & 1U) != 0 && seeds[s].degrees[position] != degrees[v]) remaining &= ~(std::uint64_t{1} << s);
+            if (degrees[v] == 0) remaining = 0;
+            return remaining != 0 && ++position < neighbourhood;
+        });
+        if (position == neighbourhood) matching_seeds[i] = remaining;
+    });
     for (std::size_t i = 0; i < matching_seeds.size(); ++i)
         for (std::size_t s = 0; matching_seeds[i] != 0 && s < seeds.size(); ++s) {
             if ((matching_seeds[i] >> s & 1U) != 0 && seeds[s].positions.size() <= max_positions)
@@ -210,8 +206,7 @@ Pairs nearest_position(Piece& piece, const Mesh& mesh, double scale, const std::
 
 std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, double scale, const std::vector<bool>& broken) {
     std::vector<Index> vertices(fragment.number_of_vertices(), no_index);
-    const FacePieces pieces = face_pieces(
-        fragment, [&](Face f) { return broken.empty() || !broken[f]; }, [](Halfedge) { return true; });
+    const FacePieces pieces = face_pieces(fragment, [&](Face f) { return broken.empty() || !broken[f]; });
     std::vector<std::vector<Index>> faces(pieces.count);
     for (Index f = 0; f < pieces.of_face.size(); ++f)
         if (pieces.of_face[f] != no_index) faces[pieces.of_face[f]].push_back(f);

@@ -124,8 +124,7 @@ public:
         const bool each_once = options_.counterpart == VertexAssignmentOptions::Counterpart::one_to_one;
         const auto max_count = static_cast<std::size_t>(each_once ? options_.candidates : 1);
         std::vector<std::vector<std::pair<double, int>>> candidates(n);
-        parallel_for(
-            n, [&](std::size_t i) { candidates[i] = best(static_cast<int>(i), max_count); }, 64);
+        parallel_for(n, 64, [&](std::size_t i) { candidates[i] = best(static_cast<int>(i), max_count); });
         std::vector<int> chosen(n, -1);
         if (each_once) {
             const double sum = options_.boundary + options_.distance + options_.outline, unit = 1e9 / std::max(sum, 1e-300);
@@ -174,32 +173,26 @@ private:
     /// Min and max of each cost over all pairs.
     void find_scales() {
         std::vector<double> nearest(ours_.vertices.size()), farthest(ours_.vertices.size());
-        parallel_for(
-            nearest.size(),
-            [&](std::size_t i) {
-                nearest[i] = std::numeric_limits<double>::infinity();
-                farthest[i] = 0;
-                for (const PointTree& tree : trees_) {
-                    nearest[i] = std::min(nearest[i], std::sqrt(tree.nearest(ours_.places[i]).squared));
-                    farthest[i] = std::max(farthest[i], std::sqrt(tree.farthest_squared(ours_.places[i])));
-                }
-            },
-            64);
+        parallel_for(nearest.size(), 64, [&](std::size_t i) {
+            nearest[i] = std::numeric_limits<double>::infinity();
+            farthest[i] = 0;
+            for (const PointTree& tree : trees_) {
+                nearest[i] = std::min(nearest[i], std::sqrt(tree.nearest(ours_.places[i]).squared));
+                farthest[i] = std::max(farthest[i], std::sqrt(tree.farthest_squared(ours_.places[i])));
+            }
+        });
         distance_ = {*std::min_element(nearest.begin(), nearest.end()), *std::max_element(farthest.begin(), farthest.end())};
         const bool same = (!ours_.inner.empty() && !theirs_.inner.empty()) || (!ours_.outer.empty() && !theirs_.outer.empty());
         const bool differ = (!ours_.inner.empty() && !theirs_.outer.empty()) || (!ours_.outer.empty() && !theirs_.inner.empty());
         boundary_ = {same ? 0.0 : 1.0, differ ? 1.0 : 0.0};
         std::vector<double> minimum(ours_.outer.size(), std::numeric_limits<double>::infinity()), maximum(ours_.outer.size(), 0);
-        parallel_for(
-            ours_.outer.size(),
-            [&](std::size_t k) {
-                for (const int j : theirs_.outer) {
-                    const double d = outline_difference(ours_.outer[k], j);
-                    minimum[k] = std::min(minimum[k], d);
-                    maximum[k] = std::max(maximum[k], d);
-                }
-            },
-            16);
+        parallel_for(ours_.outer.size(), 16, [&](std::size_t k) {
+            for (const int j : theirs_.outer) {
+                const double d = outline_difference(ours_.outer[k], j);
+                minimum[k] = std::min(minimum[k], d);
+                maximum[k] = std::max(maximum[k], d);
+            }
+        });
         const bool has_zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with an interior vertex cost nothing
         if (!ours_.outer.empty() && !theirs_.outer.empty())
             outline_ = {has_zero ? 0.0 : *std::min_element(minimum.begin(), minimum.end()),

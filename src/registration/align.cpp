@@ -15,9 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 struct AlignSurface::State {
     std::vector<Vector3d> points, normals;  ///< of the vertices
     std::vector<bool> border;

@@ -5,9 +5,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 Matrix3d frame(const Feature& feature) {

@@ -8,8 +8,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector3d;
-
 SurfacePoints thinned(const SurfacePoints& points, std::size_t count) {
     if (points.size() <= count) return points;
     SurfacePoints result;

@@ -21,9 +21,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 // Lengths here are in units of the root mean square distance of a surface from its centre.
@@ -195,22 +192,16 @@ std::vector<Motion> poses_on_grid(const UnitSurface& source, const detail::Neare
     const SurfacePoints sample = detail::thinned(points, scored_points);
     std::vector<Motion> poses(rotation_count);
     std::vector<double> scores(poses.size());
-    parallel_for(
-        poses.size(),
-        [&](std::size_t i) {
-            poses[i].rotation = spread_rotation(static_cast<int>(i), rotation_count);
-            scores[i] = score_on(grid, sample, poses[i], detail::Nearness(coarse_tolerance));
-        },
-        64);
+    parallel_for(poses.size(), 64, [&](std::size_t i) {
+        poses[i].rotation = spread_rotation(static_cast<int>(i), rotation_count);
+        scores[i] = score_on(grid, sample, poses[i], detail::Nearness(coarse_tolerance));
+    });
     poses = best_distinct(poses, scores, refined_on_grid, 10 * degree);
     scores.resize(poses.size());
-    parallel_for(
-        poses.size(),
-        [&](std::size_t i) {
-            poses[i] = refined_on(grid, points, poses[i], fine_tolerance, 16, scaled);
-            scores[i] = score_on(grid, points, poses[i], detail::Nearness(fine_tolerance));
-        },
-        1);
+    parallel_for(poses.size(), 1, [&](std::size_t i) {
+        poses[i] = refined_on(grid, points, poses[i], fine_tolerance, 16, scaled);
+        scores[i] = score_on(grid, points, poses[i], detail::Nearness(fine_tolerance));
+    });
     return best_distinct(poses, scores, refined_on_faces, 5 * degree);
 }
 
@@ -255,13 +246,10 @@ private:
         const std::size_t count = samples_a_.size() + samples_b_.size();
         std::vector<std::optional<detail::PlanePair>> partners(count);
         const Motion back = pose.inverse();
-        parallel_for(
-            count,
-            [&](std::size_t i) {
-                const bool first = i < samples_a_.size();
-                partners[i] = partner(first ? samples_a_[i] : samples_b_[i - samples_a_.size()], first, pose, back);
-            },
-            64);
+        parallel_for(count, 64, [&](std::size_t i) {
+            const bool first = i < samples_a_.size();
+            partners[i] = partner(first ? samples_a_[i] : samples_b_[i - samples_a_.size()], first, pose, back);
+        });
         pairs_.pairs.clear();
         for (const auto& pair : partners)
             if (pair) pairs_.pairs.push_back(*pair);
@@ -341,14 +329,10 @@ public:
         for (const bool of_source : {true, false}) {
             const std::vector<AreaSample>& samples = of_source ? samples_a_ : samples_b_;
             std::vector<double> distances(samples.size(), farthest_pair), allowed(samples.size());
-            parallel_for(
-                samples.size(),
-                [&](std::size_t i) {
-                    if (const auto pair = pairs.partner(samples[i], of_source, pose, back))
-                        distances[i] = std::sqrt(pair->squared);
-                    allowed[i] = tolerance_at(samples[i], of_source, hand, pose, back);
-                },
-                64);
+            parallel_for(samples.size(), 64, [&](std::size_t i) {
+                if (const auto pair = pairs.partner(samples[i], of_source, pose, back)) distances[i] = std::sqrt(pair->squared);
+                allowed[i] = tolerance_at(samples[i], of_source, hand, pose, back);
+            });
             std::size_t within = 0, close = 0;
             for (std::size_t i = 0; i < samples.size(); ++i) {
                 squares += distances[i] * distances[i] / static_cast<double>(samples_a_.size() + samples_b_.size());

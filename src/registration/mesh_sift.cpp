@@ -12,9 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 namespace {
 
 /// A level of the scale space: the smoothed surface and the inputs of the descriptors.
@@ -236,21 +233,18 @@ FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
 
     std::vector<std::vector<Feature>> features(salient.size());
     std::vector<Eigen::MatrixXf> descriptors(salient.size());
-    parallel_for(
-        salient.size(),
-        [&](std::size_t i) {
-            const Level& level = levels[salient[i].level];
-            if (level.normals[salient[i].vertex].isZero()) return;
-            const Describer describer(level, salient[i].vertex);
-            const std::vector<double> directions = describer.directions(options.second_direction);
-            features[i].resize(directions.size());
-            descriptors[i].resize(FeatureSet::length, static_cast<Eigen::Index>(directions.size()));
-            for (std::size_t k = 0; k < directions.size(); ++k) {
-                const auto column = static_cast<Eigen::Index>(k);
-                describer.describe(directions[k], features[i][k], descriptors[i].col(column));
-            }
-        },
-        8);
+    parallel_for(salient.size(), 8, [&](std::size_t i) {
+        const Level& level = levels[salient[i].level];
+        if (level.normals[salient[i].vertex].isZero()) return;
+        const Describer describer(level, salient[i].vertex);
+        const std::vector<double> directions = describer.directions(options.second_direction);
+        features[i].resize(directions.size());
+        descriptors[i].resize(FeatureSet::length, static_cast<Eigen::Index>(directions.size()));
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const auto column = static_cast<Eigen::Index>(k);
+            describer.describe(directions[k], features[i][k], descriptors[i].col(column));
+        }
+    });
     for (const auto& point_features : features)
         set.features.insert(set.features.end(), point_features.begin(), point_features.end());
     set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(set.features.size()));

@@ -7,8 +7,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector3d;
-
 template <class Visit>
 void NearestGrid::around(std::size_t point, Visit&& visit) const {
     const Vector3d& p = points_.places[point];

@@ -13,9 +13,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int angles = 12;                    ///< bins from 0 to pi
@@ -70,15 +67,12 @@ PairTable::PairTable(SurfacePoints points, double max_distance, double step)
     distances_ = static_cast<int>(std::min(1000.0, std::ceil(max_distance / step)));
     const std::size_t n = points_.size();
     std::vector<std::int32_t> keys(n * n, -1);
-    parallel_for(
-        n,
-        [&](std::size_t i) {
-            for (std::size_t j = 0; j < n; ++j)
-                if (j != i)
-                    keys[i * n + j] = static_cast<std::int32_t>(
-                        key(points_.places[i], points_.normals[i], points_.places[j], points_.normals[j]));
-        },
-        16);
+    parallel_for(n, 16, [&](std::size_t i) {
+        for (std::size_t j = 0; j < n; ++j)
+            if (j != i)
+                keys[i * n + j] =
+                    static_cast<std::int32_t>(key(points_.places[i], points_.normals[i], points_.places[j], points_.normals[j]));
+    });
     starts_.assign(static_cast<std::size_t>(distances_) * angles * angles * angles + 1, 0);
     for (const std::int32_t k : keys)
         if (k >= 0) ++starts_[static_cast<std::size_t>(k) + 1];
@@ -104,84 +98,80 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
     if (n < 2 || point_count == 0) return {};
     const std::size_t count = std::min(n, static_cast<std::size_t>(references));
     std::vector<std::vector<VotedMotion>> reference_motions(count);
-    parallel_for(
-        count,
-        [&](std::size_t r) {
-            const std::size_t i = r * n / count;
-            Random random(seed, i);
-            std::vector<std::size_t> others(n);
-            for (std::size_t k = 0; k < n; ++k) others[k] = k;
-            if (n > static_cast<std::size_t>(partners)) {
-                random.shuffle(others);
-                others.resize(static_cast<std::size_t>(partners));
+    parallel_for(count, 1, [&](std::size_t r) {
+        const std::size_t i = r * n / count;
+        Random random(seed, i);
+        std::vector<std::size_t> others(n);
+        for (std::size_t k = 0; k < n; ++k) others[k] = k;
+        if (n > static_cast<std::size_t>(partners)) {
+            random.shuffle(others);
+            others.resize(static_cast<std::size_t>(partners));
+        }
+        const Matrix3d axes = frame(part.normals[i]);
+        std::vector<float> votes(point_count * rotation_bins, 0.0F);
+        // Rare features first, within the budget: on a sphere or a plane all pairs have few distinct features.
+        struct Kind {
+            std::size_t begin, end, partner;
+        };
+        std::vector<Kind> kinds;
+        for (const std::size_t j : others) {
+            const long k = j == i ? -1 : key(part.places[i], part.normals[i], part.places[j], part.normals[j]);
+            if (k < 0) continue;
+            const std::size_t begin = starts_[static_cast<std::size_t>(k)], end = starts_[static_cast<std::size_t>(k) + 1];
+            if (begin < end) kinds.push_back({begin, end, j});
+        }
+        std::stable_sort(kinds.begin(), kinds.end(),
+                         [](const Kind& a, const Kind& b) { return a.end - a.begin < b.end - b.begin; });
+        std::size_t visited = 0;
+        for (const auto& [begin, end, j] : kinds) {
+            if (visited > max_entries) break;
+            visited += end - begin;
+            const Vector3d d = part.places[j] - part.places[i];
+            const double part_bin = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * rotation_bins;
+            const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
+            for (std::size_t e = begin; e < end; ++e) {
+                const double turn = entries_[e].angle * (rotation_bins / 65536.0) - part_bin + rotation_bins;
+                int bin = static_cast<int>(turn + 0.5);  // NOLINT(bugprone-incorrect-roundings): never negative
+                if (bin >= rotation_bins) bin -= rotation_bins;
+                if (bin >= rotation_bins) bin -= rotation_bins;
+                votes[entries_[e].reference * static_cast<std::size_t>(rotation_bins) + static_cast<std::size_t>(bin)] += weight;
             }
-            const Matrix3d axes = frame(part.normals[i]);
-            std::vector<float> votes(point_count * rotation_bins, 0.0F);
-            // Rare features first, within the budget: on a sphere or a plane all pairs have few distinct features.
-            struct Kind {
-                std::size_t begin, end, partner;
-            };
-            std::vector<Kind> kinds;
-            for (const std::size_t j : others) {
-                const long k = j == i ? -1 : key(part.places[i], part.normals[i], part.places[j], part.normals[j]);
-                if (k < 0) continue;
-                const std::size_t begin = starts_[static_cast<std::size_t>(k)], end = starts_[static_cast<std::size_t>(k) + 1];
-                if (begin < end) kinds.push_back({begin, end, j});
+        }
+        // The best rotation for each point of the whole (with the votes of adjacent bins), then the best points.
+        struct ReferencePeak {
+            float votes;
+            std::uint32_t reference;
+            double turn;
+        };
+        std::vector<ReferencePeak> best;
+        best.reserve(point_count);
+        for (std::size_t p = 0; p < point_count; ++p) {
+            const float* v = &votes[p * rotation_bins];
+            float maximum = 0;
+            int best_bin = 0;
+            for (int b = 0; b < rotation_bins; ++b) {
+                const float sum = v[b] + 0.5F * (v[(b + 1) % rotation_bins] + v[(b + rotation_bins - 1) % rotation_bins]);
+                if (sum > maximum) maximum = sum, best_bin = b;
             }
-            std::stable_sort(kinds.begin(), kinds.end(),
-                             [](const Kind& a, const Kind& b) { return a.end - a.begin < b.end - b.begin; });
-            std::size_t visited = 0;
-            for (const auto& [begin, end, j] : kinds) {
-                if (visited > max_entries) break;
-                visited += end - begin;
-                const Vector3d d = part.places[j] - part.places[i];
-                const double part_bin = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * rotation_bins;
-                const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
-                for (std::size_t e = begin; e < end; ++e) {
-                    const double turn = entries_[e].angle * (rotation_bins / 65536.0) - part_bin + rotation_bins;
-                    int bin = static_cast<int>(turn + 0.5);  // NOLINT(bugprone-incorrect-roundings): never negative
-                    if (bin >= rotation_bins) bin -= rotation_bins;
-                    if (bin >= rotation_bins) bin -= rotation_bins;
-                    votes[entries_[e].reference * static_cast<std::size_t>(rotation_bins) + static_cast<std::size_t>(bin)] +=
-                        weight;
-                }
-            }
-            // The best rotation for each point of the whole (with the votes of adjacent bins), then the best points.
-            struct ReferencePeak {
-                float votes;
-                std::uint32_t reference;
-                double turn;
-            };
-            std::vector<ReferencePeak> best;
-            best.reserve(point_count);
-            for (std::size_t p = 0; p < point_count; ++p) {
-                const float* v = &votes[p * rotation_bins];
-                float maximum = 0;
-                int best_bin = 0;
-                for (int b = 0; b < rotation_bins; ++b) {
-                    const float sum = v[b] + 0.5F * (v[(b + 1) % rotation_bins] + v[(b + rotation_bins - 1) % rotation_bins]);
-                    if (sum > maximum) maximum = sum, best_bin = b;
-                }
-                const float before = v[(best_bin + rotation_bins - 1) % rotation_bins], after = v[(best_bin + 1) % rotation_bins];
-                const double shift =
-                    v[best_bin] + before + after > 0 ? double(after - before) / double(v[best_bin] + before + after) : 0;
-                if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), best_bin + shift});
-            }
-            const auto better = [](const ReferencePeak& a, const ReferencePeak& b) {
-                return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;
-            };
-            const std::size_t kept_count = std::min(best.size(), static_cast<std::size_t>(kept));
-            std::partial_sort(best.begin(), best.begin() + static_cast<long>(kept_count), best.end(), better);
-            for (std::size_t k = 0; k < kept_count; ++k) {
-                const double angle = 2 * pi * best[k].turn / rotation_bins;
-                Motion motion;
-                motion.rotation = frame(points_.normals[best[k].reference]) *
-                                  Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
-                motion.translation = points_.places[best[k].reference] - motion.rotation * part.places[i];
-                reference_motions[r].push_back({motion, best[k].votes});
-            }
-        },
-        1);
+            const float before = v[(best_bin + rotation_bins - 1) % rotation_bins], after = v[(best_bin + 1) % rotation_bins];
+            const double shift =
+                v[best_bin] + before + after > 0 ? double(after - before) / double(v[best_bin] + before + after) : 0;
+            if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), best_bin + shift});
+        }
+        const auto better = [](const ReferencePeak& a, const ReferencePeak& b) {
+            return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;
+        };
+        const std::size_t kept_count = std::min(best.size(), static_cast<std::size_t>(kept));
+        std::partial_sort(best.begin(), best.begin() + static_cast<long>(kept_count), best.end(), better);
+        for (std::size_t k = 0; k < kept_count; ++k) {
+            const double angle = 2 * pi * best[k].turn / rotation_bins;
+            Motion motion;
+            motion.rotation = frame(points_.normals[best[k].reference]) *
+                              Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
+            motion.translation = points_.places[best[k].reference] - motion.rotation * part.places[i];
+            reference_motions[r].push_back({motion, best[k].votes});
+        }
+    });
     std::vector<VotedMotion> result;
     for (auto& motions : reference_motions) result.insert(result.end(), motions.begin(), motions.end());
     return result;

@@ -23,7 +23,6 @@ using detail::Nearness;
 using detail::refined_on;
 using detail::score_on;
 using detail::thinned;
-using Eigen::Vector3d;
 
 namespace {
 
@@ -114,25 +113,19 @@ struct PoseSearch::State {
         const auto voted = table->vote(small, options.references, options.partners, 8, options.seed);
         std::vector<std::pair<double, std::size_t>> order(voted.size());
         const Nearness wide(2 * tolerance);
-        parallel_for(
-            voted.size(),
-            [&](std::size_t i) {
-                order[i] = {-score_on(*grid, scored_sample, voted[i].motion, wide), i};
-            },
-            16);
+        parallel_for(voted.size(), 16, [&](std::size_t i) {
+            order[i] = {-score_on(*grid, scored_sample, voted[i].motion, wide), i};
+        });
         std::sort(order.begin(), order.end());
         if (order.size() > refined_count) order.resize(refined_count);
         const std::size_t first = proposals.size();
         proposals.resize(first + order.size());
-        parallel_for(
-            order.size(),
-            [&](std::size_t k) {
-                Proposal& proposal = proposals[first + k];
-                proposal.pose = refined_on(*grid, scored_sample, voted[order[k].second].motion, tolerance, 14, free);
-                proposal.scale = scale / proposal.pose.scale;
-                proposal.score = score_on(*grid, scored_sample, proposal.pose, near);
-            },
-            8);
+        parallel_for(order.size(), 8, [&](std::size_t k) {
+            Proposal& proposal = proposals[first + k];
+            proposal.pose = refined_on(*grid, scored_sample, voted[order[k].second].motion, tolerance, 14, free);
+            proposal.scale = scale / proposal.pose.scale;
+            proposal.score = score_on(*grid, scored_sample, proposal.pose, near);
+        });
     }
 
     /// Whether two poses of the part are distinct.

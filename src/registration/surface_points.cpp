@@ -12,8 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Dense samples of the faces, more than needed: each represents an area.

@@ -12,7 +12,6 @@
 
 #include <map>
 #include <queue>
-#include <set>
 #include <unordered_map>
 
 namespace ostraka {

@@ -10,9 +10,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 inline std::array<double, 3> array_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Weighted points of a part: centroids of faces by area, midpoints of edges by length, or vertices.

@@ -9,7 +9,6 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/execution/parallel.h"
 
-#include <bit>
 #include <numeric>
 #include <unordered_map>
 
@@ -127,23 +126,21 @@ Containments contain(AnnotatedMeshView object, const FaceClasses& classes) {
     std::vector<bool> used(classes.parent.size(), false);
     for (const std::uint32_t c : classes.of_face) used[c] = true;
     constexpr std::size_t words_of_thread = 16;
-    parallel_for((words + words_of_thread - 1) / words_of_thread,
-                 [&](std::size_t slice) {
-                     const std::size_t begin = slice * words_of_thread, end = std::min(words, begin + words_of_thread);
-                     CancelCheck cancelled;
-                     for (std::uint32_t c = 1; c < used.size(); ++c) {
-                         cancelled();
-                         if (!used[c]) continue;
-                         const auto regions = classes.regions(c);
-                         Bits bits(words, 0);
-                         for (const std::size_t r : regions) mark(bits, r);
-                         for (const std::size_t r : regions) {
-                             contains.keep(r, bits, begin, end);
-                             result.overlaps.add(r, bits.data(), begin, end);
-                         }
-                     }
-                 },
-                 1);
+    parallel_for((words + words_of_thread - 1) / words_of_thread, 1, [&](std::size_t slice) {
+        const std::size_t begin = slice * words_of_thread, end = std::min(words, begin + words_of_thread);
+        CancelCheck cancelled;
+        for (std::uint32_t c = 1; c < used.size(); ++c) {
+            cancelled();
+            if (!used[c]) continue;
+            const auto regions = classes.regions(c);
+            Bits bits(words, 0);
+            for (const std::size_t r : regions) mark(bits, r);
+            for (const std::size_t r : regions) {
+                contains.keep(r, bits, begin, end);
+                result.overlaps.add(r, bits.data(), begin, end);
+            }
+        }
+    });
 
     // Points and lines in others: the intersection over their vertices; for lines in lines over their edges.
     const CurveIndex curves(object.annotations);

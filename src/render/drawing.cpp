@@ -4,7 +4,6 @@
 #include "ostraka/geom/chains.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 namespace ostraka::detail {
@@ -123,8 +122,8 @@ std::vector<Line> edge_lines(const Surface& surface, const Rgb& colour, double w
 void draw_points(Canvas& canvas, const Surface& surface, const Camera& camera, const std::vector<Rgb>& colours, double radius) {
     const std::vector<Index>& points = surface.used_points();
     std::vector<char> visible(points.size(), 0);
-    parallel_for(
-        points.size(), [&](std::size_t i) { visible[i] = in_sight(surface, camera, surface.point(points[i])) ? 1 : 0; }, 1024);
+    parallel_for(points.size(), 1024,
+                 [&](std::size_t i) { visible[i] = in_sight(surface, camera, surface.point(points[i])) ? 1 : 0; });
     for (std::size_t i = 0; i < points.size(); ++i) {
         Canvas::Place place{};
         if (visible[i] != 0 && camera.project(surface.point(points[i]), place.x, place.y))

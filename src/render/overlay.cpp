@@ -126,8 +126,8 @@ void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& s
     std::vector<Step*> all_steps;
     for (auto& line_steps : steps)
         for (Step& step : line_steps) all_steps.push_back(&step);
-    parallel_for(
-        all_steps.size(), [&](std::size_t i) { all_steps[i]->shown = in_sight(surface, camera, all_steps[i]->sight); }, 256);
+    parallel_for(all_steps.size(), 256,
+                 [&](std::size_t i) { all_steps[i]->shown = in_sight(surface, camera, all_steps[i]->sight); });
     if (drawing.bridged > 0)
         for (auto& line_steps : steps) bridge(line_steps, drawing.bridged);
     std::vector<Stroke> strokes;

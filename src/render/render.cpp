@@ -197,26 +197,23 @@ void copy_into(std::vector<detail::Light>& target, int width, const std::vector<
 DeepPicture composed(const std::vector<detail::Light>& surface_light, const Picture& over, std::optional<Rgb> background) {
     DeepPicture picture{over.width, over.height, {}};
     picture.rgba.resize(surface_light.size());
-    parallel_for(
-        surface_light.size(),
-        [&](std::size_t i) {
-            std::array<double, 4> sum{0, 0, 0, 0};  // premultiplied, 0 to 1
-            if (background) sum = {background->red / 255.0, background->green / 255.0, background->blue / 255.0, 1};
-            const auto composite = [&](const std::array<double, 4>& top) {
-                for (std::size_t k = 0; k < 4; ++k) sum[k] = top[k] + (1 - top[3]) * sum[k];
-            };
-            const auto surface = detail::to_deep(surface_light[i]);
-            const double alpha = surface[3] / 65535.0;
-            composite({alpha * surface[0] / 65535.0, alpha * surface[1] / 65535.0, alpha * surface[2] / 65535.0, alpha});
-            const std::uint32_t pixel = over.argb[i];
-            const auto byte = [&](unsigned shift) { return (pixel >> shift & 255U) / 255.0; };
-            composite({byte(16), byte(8), byte(0), byte(24)});
-            for (std::size_t k = 0; k < 4; ++k) {
-                const double value = k == 3 ? sum[3] : sum[3] > 0 ? sum[k] / sum[3] : 0;
-                picture.rgba[i][k] = static_cast<std::uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
-            }
-        },
-        4096);
+    parallel_for(surface_light.size(), 4096, [&](std::size_t i) {
+        std::array<double, 4> sum{0, 0, 0, 0};  // premultiplied, 0 to 1
+        if (background) sum = {background->red / 255.0, background->green / 255.0, background->blue / 255.0, 1};
+        const auto composite = [&](const std::array<double, 4>& top) {
+            for (std::size_t k = 0; k < 4; ++k) sum[k] = top[k] + (1 - top[3]) * sum[k];
+        };
+        const auto surface = detail::to_deep(surface_light[i]);
+        const double alpha = surface[3] / 65535.0;
+        composite({alpha * surface[0] / 65535.0, alpha * surface[1] / 65535.0, alpha * surface[2] / 65535.0, alpha});
+        const std::uint32_t pixel = over.argb[i];
+        const auto byte = [&](unsigned shift) { return (pixel >> shift & 255U) / 255.0; };
+        composite({byte(16), byte(8), byte(0), byte(24)});
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double value = k == 3 ? sum[3] : sum[3] > 0 ? sum[k] / sum[3] : 0;
+            picture.rgba[i][k] = static_cast<std::uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
+        }
+    });
     return picture;
 }
 

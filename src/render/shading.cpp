@@ -203,37 +203,31 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
     const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
     const Shader shader(scene, surface, camera, shading);
     std::vector<Light> light(columns * rows, Light::Zero());
-    parallel_for(
-        rows,
-        [&](std::size_t row) {
-            for (std::size_t column = 0; column < columns; ++column)
-                light[row * columns + column] = shader.sample(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
-        },
-        4);
+    parallel_for(rows, 4, [&](std::size_t row) {
+        for (std::size_t column = 0; column < columns; ++column)
+            light[row * columns + column] = shader.sample(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+    });
 
     std::vector<Light> finer(columns * rows);
-    parallel_for(
-        rows,
-        [&](std::size_t row) {
-            for (std::size_t column = 0; column < columns; ++column) {
-                const std::size_t index = row * columns + column;
-                Light sum = light[index];
-                const bool refine = shading.samples > 1 && ((column > 0 && differs(sum, light[index - 1])) ||
-                                                            (column + 1 < columns && differs(sum, light[index + 1])) ||
-                                                            (row > 0 && differs(sum, light[index - columns])) ||
-                                                            (row + 1 < rows && differs(sum, light[index + columns])));
-                if (refine) {
-                    // The plastic-number sequence (Roberts 2018): any number of its points is distributed evenly over the
-                    // pixel.
-                    for (int i = 1; i < shading.samples; ++i)
-                        sum += shader.sample(static_cast<double>(column) + std::fmod(0.5 + i * 0.7548776662466927, 1.0),
-                                             static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
-                    sum /= static_cast<float>(shading.samples);
-                }
-                finer[index] = sum;
+    parallel_for(rows, 4, [&](std::size_t row) {
+        for (std::size_t column = 0; column < columns; ++column) {
+            const std::size_t index = row * columns + column;
+            Light sum = light[index];
+            const bool refine =
+                shading.samples > 1 &&
+                ((column > 0 && differs(sum, light[index - 1])) || (column + 1 < columns && differs(sum, light[index + 1])) ||
+                 (row > 0 && differs(sum, light[index - columns])) || (row + 1 < rows && differs(sum, light[index + columns])));
+            if (refine) {
+                // The plastic-number sequence (Roberts 2018): any number of its points is distributed evenly over the
+                // pixel.
+                for (int i = 1; i < shading.samples; ++i)
+                    sum += shader.sample(static_cast<double>(column) + std::fmod(0.5 + i * 0.7548776662466927, 1.0),
+                                         static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
+                sum /= static_cast<float>(shading.samples);
             }
-        },
-        4);
+            finer[index] = sum;
+        }
+    });
     return finer;
 }
 
@@ -254,8 +248,7 @@ std::vector<Light> averaged(const std::vector<Light>& light, int width, int heig
 
 std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light) {
     std::vector<std::uint32_t> pixels(light.size());
-    parallel_for(
-        light.size(), [&](std::size_t i) { pixels[i] = to_pixel(light[i]); }, 4096);
+    parallel_for(light.size(), 4096, [&](std::size_t i) { pixels[i] = to_pixel(light[i]); });
     return pixels;
 }
 

@@ -90,16 +90,13 @@ Surface::Surface(const Scene& scene, bool smooth)
     check(scene);
     measure_box(scene);
     points_.resize(scene.mesh.points.size() + 2, Eigen::Vector3f::Zero());
-    parallel_for(
-        scene.mesh.points.size(), [&](std::size_t i) { points_[i] = to_local(scene.mesh.points[i]).cast<float>(); }, 8192);
+    parallel_for(scene.mesh.points.size(), 8192,
+                 [&](std::size_t i) { points_[i] = to_local(scene.mesh.points[i]).cast<float>(); });
     areas_.resize(triangles_.size());
-    parallel_for(
-        triangles_.size(),
-        [&](std::size_t t) {
-            const auto& [a, b, c] = triangles_[t];
-            areas_[t] = (points_[b] - points_[a]).cross(points_[c] - points_[a]);
-        },
-        8192);
+    parallel_for(triangles_.size(), 8192, [&](std::size_t t) {
+        const auto& [a, b, c] = triangles_[t];
+        areas_[t] = (points_[b] - points_[a]).cross(points_[c] - points_[a]);
+    });
     if (smooth) gather_faces_around_points();
     build_tree();
 }

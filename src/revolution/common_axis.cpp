@@ -20,7 +20,6 @@
 namespace ostraka {
 
 using Eigen::Matrix4d;
-using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 namespace {
@@ -73,31 +72,28 @@ private:
     void observe_each() {
         witnesses_.resize(sherds_.size());
         const std::vector<std::size_t> indices = remaining();
-        parallel_for(
-            indices.size(),
-            [&](std::size_t i) {
-                const std::size_t k = indices[i];
-                SherdOnProfile& sherd = result_.sherds[k];
-                std::vector<bool> alone(sherds_.size(), false);
-                alone[k] = true;
-                const JoinedSherds single = joined(sherds_, alone);
-                const std::vector<Index> faces = single.faces();
-                double area = 0;
-                for (const Index f : faces) area += face_area(single.mesh, Face(f));
-                if (!(area > 0)) {
-                    leave_out(sherd, faces.empty() ? "has no wall: all its faces are fracture surface" : "has no area",
-                              "check its annotations and its mesh ('mesh info')");
-                    return;
-                }
-                witnesses_[k] = std::make_unique<AxisEvidenceEvaluator>(single.mesh, faces, options_.axis);
-                if (!witnesses_[k]->enough()) {
-                    leave_out(sherd, fmt::format("has {} faces, too few to determine an axis", faces.size()),
-                              "give a finer mesh ('mesh refine' adds faces, but no shape)");
-                    return;
-                }
-                sherd.axis = rotation_axis(single.mesh, faces, options_.axis);
-            },
-            1);
+        parallel_for(indices.size(), 1, [&](std::size_t i) {
+            const std::size_t k = indices[i];
+            SherdOnProfile& sherd = result_.sherds[k];
+            std::vector<bool> alone(sherds_.size(), false);
+            alone[k] = true;
+            const JoinedSherds single = joined(sherds_, alone);
+            const std::vector<Index> faces = single.faces();
+            double area = 0;
+            for (const Index f : faces) area += face_area(single.mesh, Face(f));
+            if (!(area > 0)) {
+                leave_out(sherd, faces.empty() ? "has no wall: all its faces are fracture surface" : "has no area",
+                          "check its annotations and its mesh ('mesh info')");
+                return;
+            }
+            witnesses_[k] = std::make_unique<AxisEvidenceEvaluator>(single.mesh, faces, options_.axis);
+            if (!witnesses_[k]->enough()) {
+                leave_out(sherd, fmt::format("has {} faces, too few to determine an axis", faces.size()),
+                          "give a finer mesh ('mesh refine' adds faces, but no shape)");
+                return;
+            }
+            sherd.axis = rotation_axis(single.mesh, faces, options_.axis);
+        });
     }
 
     Axis axis_of(const std::vector<std::size_t>& indices) {
@@ -146,8 +142,7 @@ private:
         for (const std::size_t k : indices) total_vote += vote(k);
         const auto consider = [&](const std::vector<Axis>& axes) {
             std::vector<double> scores(axes.size(), 0);
-            parallel_for(
-                axes.size(), [&](std::size_t i) { scores[i] = axes[i].found ? agreement(axes[i]) : 0; }, 1);
+            parallel_for(axes.size(), 1, [&](std::size_t i) { scores[i] = axes[i].found ? agreement(axes[i]) : 0; });
             for (std::size_t i = 0; i < axes.size(); ++i)
                 if (axes[i].found && (!best || scores[i] > best_score)) best = axes[i], best_score = scores[i];
         };
@@ -167,8 +162,7 @@ private:
         for (std::size_t a = 0; a < largest.size(); ++a)
             for (std::size_t b = 0; b < a; ++b) subsets.push_back({largest[b], largest[a]});
         candidates.assign(subsets.size(), {});
-        parallel_for(
-            subsets.size(), [&](std::size_t i) { candidates[i] = axis_of(subsets[i]); }, 1);
+        parallel_for(subsets.size(), 1, [&](std::size_t i) { candidates[i] = axis_of(subsets[i]); });
         consider(candidates);
         return best;
     }
@@ -223,8 +217,7 @@ private:
         std::vector<AxisObservation> observations(sherds_.size());
         for (int round = 0; round < 20; ++round) {
             check_cancelled();
-            parallel_for(
-                indices.size(), [&](std::size_t i) { observations[indices[i]] = observe(indices[i]); }, 1);
+            parallel_for(indices.size(), 1, [&](std::size_t i) { observations[indices[i]] = observe(indices[i]); });
             Matrix4d information = Matrix4d::Zero();
             Vector4d sum = Vector4d::Zero();
             for (const std::size_t k : indices) {

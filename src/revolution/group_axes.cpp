@@ -13,8 +13,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 JoinAxes compare_axes(const GroupAxis& group, const std::vector<Vector3d>& middles, std::size_t first, std::size_t second) {

@@ -11,8 +11,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector2d;
-
 void ProfileImage::add(std::vector<double>& cells, std::size_t row, double from, double to) const {
     const double a = from / step, b = to / step;
     for (auto c = static_cast<std::size_t>(std::max(0.0, a)); c < columns && static_cast<double>(c) < b; ++c) {

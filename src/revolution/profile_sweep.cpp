@@ -6,9 +6,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 AxisFrame frame_of(const Axis& axis) {
     AxisFrame frame;
     frame.foot = eigen(axis.point);

@@ -5,9 +5,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& profile_rings) {
     const std::vector<std::vector<Vertex>>& rings = profile_rings.vertices;
     const std::vector<std::size_t>& ring_of = profile_rings.of_vertex;

@@ -16,8 +16,6 @@
 namespace ostraka {
 
 using detail::ProfileImage;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 namespace {
 

@@ -8,8 +8,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 void WallSection::drop_rare(const RevolutionOptions& options) {
     const double minimum = options.presence / 360 * 2 * std::max(4, options.columns / 2);
     for (std::size_t row = 0; row < image.rows; ++row)
@@ -88,31 +86,28 @@ WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& b
     image.present.assign(image.rows, 0);
     const int half = std::max(4, options.columns / 2);
     std::vector<std::vector<bool>> has_hit(image.rows, std::vector<bool>(2 * static_cast<std::size_t>(half), false));
-    parallel_for(
-        image.rows,
-        [&](std::size_t row) {
-            const Vector3d origin = frame.foot + (low + (static_cast<double>(row) + 0.5) * image.step) * frame.up;
-            for (int k = 0; k < half; ++k) {
-                // Avoids symmetric directions, along which synthetic meshes often have edges.
-                const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
-                const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * max_radius);
-                const Vector3d around = frame.up.cross(direction);
-                for (const double side : {1.0, -1.0}) {
-                    std::vector<RayHit> ray_hits;
-                    for (const SurfaceHit& hit : hits) {
-                        const double radius = side * hit.distance;
-                        if (radius < 0) continue;
-                        const Vector3d normal = eigen(search.normal(hit.face));
-                        ray_hits.push_back({radius, side * normal.dot(direction) > 0,
-                                            broken[hit.face] || std::abs(normal.dot(around)) > max_around});
-                    }
-                    if (!follow(ray_hits, image, row, max_radius)) continue;
-                    has_hit[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
-                    ++image.present[row];
+    parallel_for(image.rows, 4, [&](std::size_t row) {
+        const Vector3d origin = frame.foot + (low + (static_cast<double>(row) + 0.5) * image.step) * frame.up;
+        for (int k = 0; k < half; ++k) {
+            // Avoids symmetric directions, along which synthetic meshes often have edges.
+            const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
+            const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * max_radius);
+            const Vector3d around = frame.up.cross(direction);
+            for (const double side : {1.0, -1.0}) {
+                std::vector<RayHit> ray_hits;
+                for (const SurfaceHit& hit : hits) {
+                    const double radius = side * hit.distance;
+                    if (radius < 0) continue;
+                    const Vector3d normal = eigen(search.normal(hit.face));
+                    ray_hits.push_back({radius, side * normal.dot(direction) > 0,
+                                        broken[hit.face] || std::abs(normal.dot(around)) > max_around});
                 }
+                if (!follow(ray_hits, image, row, max_radius)) continue;
+                has_hit[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
+                ++image.present[row];
             }
-        },
-        4);
+        }
+    });
     const double min_rays = std::max(1.0, options.presence / 360 * 2 * half);
     for (std::size_t cell = 0; cell < image.wall_share.size(); ++cell)
         image.wall_share[cell] /= std::max(min_rays, image.informative[cell]);

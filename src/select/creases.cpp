@@ -7,6 +7,7 @@
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -270,14 +271,10 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
         std::vector<bool> seen(strength.size(), false);
         for (const Vertex seed : mesh.vertices()) {
             if (seen[seed] || !(strength[seed] > weak)) continue;
-            std::vector<Index> patch{seed.idx()};
-            seen[seed] = true;
-            Index top = seed.idx();
-            for (std::size_t k = 0; k < patch.size(); ++k) {
-                if (strength[patch[k]] > strength[top]) top = patch[k];
-                for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(Vertex(patch[k]))))
-                    if (!seen[n] && strength[n] > weak) seen[n] = true, patch.push_back(n.idx());
-            }
+            const std::vector<Vertex> reached = flood_vertices(mesh, seed, seen, [&](Vertex v) { return strength[v] > weak; });
+            const Index top =
+                *std::max_element(reached.begin(), reached.end(), [&](Vertex a, Vertex b) { return strength[a] < strength[b]; });
+            std::vector<Index> patch(reached.begin(), reached.end());
             if (!(strength[top] > strong) ||
                 strength[top] < echo * rival(mesh, strength, top, options.wide * options.scale * diagonal))
                 continue;

@@ -13,7 +13,6 @@
 
 namespace ostraka::semantic {
 
-using Eigen::Vector3d;
 using kinds::Interval;
 
 /// Reads the parameters of one constraint. Errors (input) name the file and the constraint.

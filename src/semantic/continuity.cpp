@@ -11,8 +11,6 @@ namespace ostraka::semantic {
 
 namespace {
 
-using Eigen::Vector3d;
-
 /// Points at equal intervals along a polyline.
 std::vector<Vector3d> resampled(const std::vector<Point>& line, int steps) {
     std::vector<double> at{0};

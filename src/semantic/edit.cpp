@@ -17,8 +17,6 @@ namespace ostraka {
 
 namespace {
 
-using Eigen::Vector3d;
-
 class Follower {
 public:
     Follower(const HandleSpace& space, const std::string& where) : space_(space), where_(where) {

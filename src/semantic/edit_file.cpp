@@ -10,8 +10,6 @@ namespace ostraka {
 
 namespace {
 
-using Eigen::Vector3d;
-
 /// Reads one step; errors name its place.
 class StepReader {
 public:

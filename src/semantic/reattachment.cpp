@@ -16,9 +16,6 @@ namespace ostraka::semantic {
 
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 /// Values at free vertices that minimise the sum of the squared uniform Laplacians over those vertices and, with `to_others`,
 /// over their neighbours; columns of `values` are vertices, those of others are given.
 void smooth(const Mesh& mesh, const std::vector<Index>& free, bool to_others, Points& values) {

@@ -13,8 +13,6 @@ namespace ostraka::semantic {
 
 namespace {
 
-using Eigen::Vector3d;
-
 /// Whether the outline is one simple closed line.
 bool is_one_loop(const Mesh& mesh, const std::vector<Halfedge>& outline) {
     std::map<Index, Index> next;

@@ -1,7 +1,7 @@
 #include "ostraka/shape_classes/deviating_regions.h"
 
 #include "ostraka/execution/parallel.h"
-#include "ostraka/geom/submesh.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,12 +73,13 @@ std::vector<DeviatingRegion> regions_of(const Mesh& mesh, const SurfaceSamples& 
     for (const Face seed : mesh.faces()) {
         if (is_visited[seed] || !is_off(seed.idx())) continue;
         DeviatingRegion region;
-        std::vector<Index> front{seed.idx()};
-        is_visited[seed] = true;
         Vector sum(0, 0, 0);
         double region_area = 0;
-        for (std::size_t i = 0; i < front.size(); ++i) {
-            const Face face(front[i]);
+        const auto is_off_across = [&](Halfedge h) {
+            const Halfedge o = mesh.opposite(h);
+            return !mesh.is_border(o) && is_off(mesh.face(o).idx());
+        };
+        for (const Face face : flood_faces(mesh, seed, is_visited, is_off_across)) {
             const double a = face_area(mesh, face);
             region_area += a;
             sum += a * (centroid(mesh, face) - CGAL::ORIGIN);
@@ -88,12 +89,6 @@ std::vector<DeviatingRegion> regions_of(const Mesh& mesh, const SurfaceSamples& 
                 region.at = surface_samples.points[sample[face]];
                 region.face = surface_samples.faces[sample[face]];
                 region.nearest_face = sample_off.nearest;
-            }
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                const Halfedge o = mesh.opposite(h);
-                if (mesh.is_border(o)) continue;
-                const Index next = mesh.face(o).idx();
-                if (!is_visited[next] && is_off(next)) is_visited[next] = true, front.push_back(next);
             }
         }
         region.share = region_area / area;
@@ -123,8 +118,7 @@ std::vector<bool> inner_wall_faces(const Mesh& object, const SurfaceSearch& othe
     const std::vector<std::size_t> sample = samples_of_faces(object, surface_samples);
     std::vector<bool> flags(object.number_of_faces(), false);
     for (const Face f : object.faces()) flags[f] = sample[f] < inside.size() && inside[sample[f]] != 0;
-    const FacePieces pieces = face_pieces(
-        object, [&](Face f) { return flags[f]; }, [](Halfedge) { return true; });
+    const FacePieces pieces = face_pieces(object, [&](Face f) { return flags[f]; });
     std::vector<double> area(pieces.count, 0);
     for (const Face f : object.faces())
         if (flags[f]) area[pieces.of_face[f]] += face_area(object, f);

@@ -21,8 +21,6 @@
 namespace ostraka {
 
 using Eigen::Matrix2d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 std::string fit_off_message(const MemberFit& fit, double maximum) {
     if (!fit.residuals || !(fit.residuals->off() > maximum)) return {};

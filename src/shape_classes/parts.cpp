@@ -16,9 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 namespace {
 
 struct FaceMoments {

@@ -19,8 +19,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 using Pairs = std::vector<std::pair<Index, Index>>;

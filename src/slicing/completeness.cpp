@@ -10,8 +10,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector2d;
-
 namespace {
 
 void add_pieces(PlaneSegments& segments, const Contour& contour) {

@@ -5,6 +5,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/flood.h"
 
 #include <fmt/core.h>
 
@@ -75,31 +76,18 @@ std::vector<char> against_nesting(const std::vector<Contour>& contours, const Cr
 class WrongShells {
 public:
     WrongShells(const Mesh& mesh, const std::vector<Slice>& slices, const std::vector<std::vector<char>>& wrong)
-        : shell_(mesh.num_faces(), no_index) {
-        std::vector<Face> queue;
-        for (const Face seed : mesh.faces()) {
-            if (shell_[seed] != no_index) continue;
-            const auto number = static_cast<Index>(balance_.size());
-            balance_.push_back(0);
-            shell_[seed] = number;
-            queue.assign({seed});
-            while (!queue.empty()) {
-                const Face f = queue.back();
-                queue.pop_back();
-                for (const Face g : mesh.faces_around_face(mesh.halfedge(f)))
-                    if (g.is_valid() && shell_[g] == no_index) shell_[g] = number, queue.push_back(g);
-            }
-        }
+        : shells_(face_pieces(mesh)), balance_(shells_.count, 0) {
         for (std::size_t i = 0; i < slices.size(); ++i)
             for (std::size_t c = 0; c < slices[i].contours.size(); ++c) {
                 const Contour& contour = slices[i].contours[c];
-                if (wrong[i][c] < 2) balance_[shell_[contour.faces[0]]] += wrong[i][c] == 1 ? contour.length : -contour.length;
+                if (wrong[i][c] < 2)
+                    balance_[shells_.of_face[contour.faces[0]]] += wrong[i][c] == 1 ? contour.length : -contour.length;
             }
     }
-    [[nodiscard]] bool contains(const Contour& contour) const { return balance_[shell_[contour.faces[0]]] > 0; }
+    [[nodiscard]] bool contains(const Contour& contour) const { return balance_[shells_.of_face[contour.faces[0]]] > 0; }
 
 private:
-    std::vector<Index> shell_;  ///< shell of each face
+    FacePieces shells_;
     std::vector<double> balance_;
 };
 
@@ -118,40 +106,31 @@ bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_who
         return *cached_orientation;
     };
     const bool reversed = std::any_of(slices.begin(), slices.end(), has_negative_area) && orientation().inside_out;
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            auto& contours = slices[i].contours;
-            if (reversed) std::for_each(contours.begin(), contours.end(), turn_around);
-            sort_and_nest(contours);
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        auto& contours = slices[i].contours;
+        if (reversed) std::for_each(contours.begin(), contours.end(), turn_around);
+        sort_and_nest(contours);
+    });
     const bool closed = is_whole_mesh && std::any_of(slices.begin(), slices.end(), has_outermost_hole) && orientation().closed;
     const double tolerance = on_plane_share * box_diagonal(mesh);
     std::vector<std::vector<char>> wrong(slices.size());
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            const Crossings crossings = find_crossings(slices[i].contours, tolerance);
-            wrong[i] = against_nesting(slices[i].contours, crossings, closed);
-            slices[i].completeness.doubtful = crossings.doubtful;
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        const Crossings crossings = find_crossings(slices[i].contours, tolerance);
+        wrong[i] = against_nesting(slices[i].contours, crossings, closed);
+        slices[i].completeness.doubtful = crossings.doubtful;
+    });
     const auto has_wrong = [](const std::vector<char>& verdicts) {
         return std::find(verdicts.begin(), verdicts.end(), 1) != verdicts.end();
     };
     std::optional<WrongShells> shells;
     if (std::any_of(wrong.begin(), wrong.end(), has_wrong)) shells.emplace(mesh, slices, wrong);
-    parallel_for(
-        slices.size(),
-        [&](std::size_t i) {
-            for (Contour& contour : slices[i].contours)
-                if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
-            const double doubtful = slices[i].completeness.doubtful;
-            slices[i].completeness = completeness(slices[i].contours);
-            slices[i].completeness.doubtful = doubtful;
-        },
-        1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) {
+        for (Contour& contour : slices[i].contours)
+            if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
+        const double doubtful = slices[i].completeness.doubtful;
+        slices[i].completeness = completeness(slices[i].contours);
+        slices[i].completeness.doubtful = doubtful;
+    });
     return reversed;
 }
 

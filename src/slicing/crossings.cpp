@@ -13,7 +13,6 @@ namespace ostraka::detail {
 
 namespace {
 
-using Eigen::Vector2d;
 using Pair = std::pair<int, int>;  ///< two contours, the lower index first
 
 enum class Meeting { apart, touching, crossing };

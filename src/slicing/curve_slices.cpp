@@ -16,8 +16,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 /// Point at an arc length along the curve, clamped to its ends.
@@ -120,12 +118,10 @@ CurveSlices slice_along(const Mesh& mesh, const std::vector<Point>& curve, int c
     }
     const detail::PlaneSearch search(mesh, faces);
     const double tolerance = on_plane_share * box_diagonal(mesh);
-    parallel_for(
-        result.slices.size(), [&](std::size_t i) { result.slices[i].contours = cut(mesh, search, result.frames[i], tolerance); },
-        1);
+    parallel_for(result.slices.size(), 1,
+                 [&](std::size_t i) { result.slices[i].contours = cut(mesh, search, result.frames[i], tolerance); });
     result.reversed = detail::classify_contours(result.slices, mesh, faces.empty());
-    parallel_for(
-        result.slices.size(), [&](std::size_t i) { result.slices[i] = nearest_part(result.slices[i]); }, 1);
+    parallel_for(result.slices.size(), 1, [&](std::size_t i) { result.slices[i] = nearest_part(result.slices[i]); });
     return result;
 }
 

@@ -5,8 +5,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector2d;
-
 namespace {
 
 /// Removes segments without length and segments traversed back and forth. Returns false if nothing is left.

@@ -9,8 +9,6 @@ namespace ostraka::detail {
 
 namespace {
 
-using Eigen::Vector2d;
-
 struct Votes {
     int contour, inside, decided;
 };

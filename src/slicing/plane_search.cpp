@@ -7,8 +7,6 @@
 
 namespace ostraka::detail {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Spreads the bits of a 21-bit number to every third bit.

@@ -10,8 +10,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 SliceFrame section_frame(const SliceFrame& axis, double angle) {

@@ -13,8 +13,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 constexpr int fine = 4;  ///< samples per cell and direction

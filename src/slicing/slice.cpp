@@ -78,13 +78,10 @@ private:
 };
 
 void Sweep::set_heights(const std::vector<double>& heights) {
-    parallel_for(
-        height_.size(),
-        [&](std::size_t v) {
-            const Vertex vertex(static_cast<Index>(v));
-            height_[v] = mesh_.is_removed(vertex) ? 0 : frame_.height(mesh_.point(vertex));
-        },
-        4096);
+    parallel_for(height_.size(), 4096, [&](std::size_t v) {
+        const Vertex vertex(static_cast<Index>(v));
+        height_[v] = mesh_.is_removed(vertex) ? 0 : frame_.height(mesh_.point(vertex));
+    });
     tolerance_ = on_plane_share * box_diagonal(mesh_);
     double lowest = std::numeric_limits<double>::infinity();
     if (faces_.size() == mesh_.num_faces()) {
@@ -103,14 +100,11 @@ void Sweep::set_heights(const std::vector<double>& heights) {
         planes_.push_back({heights[i], threshold, i});
     }
     std::stable_sort(planes_.begin(), planes_.end(), [](const Plane& a, const Plane& b) { return a.threshold < b.threshold; });
-    parallel_for(
-        level_.size(),
-        [&](std::size_t v) {
-            const auto above = std::upper_bound(planes_.begin(), planes_.end(), height_[v],
-                                                [](double h, const Plane& plane) { return h < plane.threshold; });
-            level_[v] = static_cast<Index>(above - planes_.begin());
-        },
-        4096);
+    parallel_for(level_.size(), 4096, [&](std::size_t v) {
+        const auto above = std::upper_bound(planes_.begin(), planes_.end(), height_[v],
+                                            [](double h, const Plane& plane) { return h < plane.threshold; });
+        level_[v] = static_cast<Index>(above - planes_.begin());
+    });
 }
 
 void Sweep::sort_faces() {
@@ -122,31 +116,25 @@ void Sweep::sort_faces() {
     const std::size_t blocks = (faces_.size() + block - 1) / block, count = planes_.size();
     std::vector<std::vector<Crossing>> crossings(blocks);
     std::vector<std::vector<std::size_t>> next(blocks, std::vector<std::size_t>(count, 0));
-    parallel_for(
-        blocks,
-        [&](std::size_t b) {
-            for (std::size_t i = b * block; i < std::min(faces_.size(), (b + 1) * block); ++i) {
-                if (mesh_.is_removed(Face(faces_[i]))) continue;
-                const auto [low, high] = levels(faces_[i]);
-                if (low == high) continue;
-                crossings[b].push_back({faces_[i], low, high});
-                for (Index plane = low; plane < high; ++plane) ++next[b][plane];
-            }
-        },
-        1);
+    parallel_for(blocks, 1, [&](std::size_t b) {
+        for (std::size_t i = b * block; i < std::min(faces_.size(), (b + 1) * block); ++i) {
+            if (mesh_.is_removed(Face(faces_[i]))) continue;
+            const auto [low, high] = levels(faces_[i]);
+            if (low == high) continue;
+            crossings[b].push_back({faces_[i], low, high});
+            for (Index plane = low; plane < high; ++plane) ++next[b][plane];
+        }
+    });
     first_.assign(count + 1, 0);
     for (std::size_t plane = 0; plane < count; ++plane) {
         first_[plane + 1] = first_[plane];
         for (auto& counts : next) first_[plane + 1] += std::exchange(counts[plane], first_[plane + 1]);
     }
     crossed_.resize(first_.back());
-    parallel_for(
-        blocks,
-        [&](std::size_t b) {
-            for (const auto& [face, low, high] : crossings[b])
-                for (Index plane = low; plane < high; ++plane) crossed_[next[b][plane]++] = face;
-        },
-        1);
+    parallel_for(blocks, 1, [&](std::size_t b) {
+        for (const auto& [face, low, high] : crossings[b])
+            for (Index plane = low; plane < high; ++plane) crossed_[next[b][plane]++] = face;
+    });
 }
 
 std::vector<Contour> Sweep::contours(std::size_t plane) const {
@@ -167,14 +155,11 @@ SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vect
     check(mesh, frame, heights, faces);
     const Sweep sweep(mesh, frame, heights, faces);
     SliceStack stack{frame, std::vector<Slice>(heights.size()), false};
-    parallel_for(
-        heights.size(),
-        [&](std::size_t plane) {
-            Slice& slice = stack.slices[sweep.planes()[plane].place];
-            slice.height = sweep.planes()[plane].height;
-            slice.contours = sweep.contours(plane);
-        },
-        1);
+    parallel_for(heights.size(), 1, [&](std::size_t plane) {
+        Slice& slice = stack.slices[sweep.planes()[plane].place];
+        slice.height = sweep.planes()[plane].height;
+        slice.contours = sweep.contours(plane);
+    });
     stack.reversed = detail::classify_contours(stack.slices, mesh, faces.empty());
     return stack;
 }

@@ -127,8 +127,7 @@ Straightness straightness(const std::vector<Point>& barycentres, const std::vect
 
 ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices) {
     std::vector<Wall> walls(slices.size());
-    parallel_for(
-        slices.size(), [&](std::size_t i) { walls[i] = wall_of(slices[i]); }, 1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) { walls[i] = wall_of(slices[i]); });
     ThicknessHomogeneity result;
     std::vector<double> means, within;
     double first = 0, second = 0;

@@ -15,8 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector2d;
-
 namespace {
 
 void add_pieces(PlaneSegments& segments, const Contour& contour) {
@@ -254,8 +252,7 @@ std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
 
 std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices) {
     std::vector<SliceDescriptors> descriptors(slices.size());
-    parallel_for(
-        slices.size(), [&](std::size_t i) { descriptors[i] = describe_slice(slices[i]); }, 1);
+    parallel_for(slices.size(), 1, [&](std::size_t i) { descriptors[i] = describe_slice(slices[i]); });
     return descriptors;
 }
 

@@ -74,8 +74,7 @@ SlicedObject slice_across(const Mesh& mesh, const std::vector<Point>& curve, int
 void add_medial_axes(SlicedObject& cut, std::vector<double> residues) {
     std::sort(residues.begin(), residues.end());
     cut.medial.resize(cut.slices.size());
-    parallel_for(
-        cut.slices.size(), [&](std::size_t i) { cut.medial[i] = medial_axis(cut.slices[i], residues); }, 1);
+    parallel_for(cut.slices.size(), 1, [&](std::size_t i) { cut.medial[i] = medial_axis(cut.slices[i], residues); });
 }
 
 bool is_hollow(const Mesh& mesh, const Vector& up, const std::vector<Index>& faces) {

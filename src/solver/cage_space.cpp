@@ -175,16 +175,13 @@ std::vector<Piece> CageSpaceSolver::State::pieces_of(Constraints constraints) co
 
 void CageSpaceSolver::State::take_means(Constraints constraints) {
     mean_of.assign(constraints.size(), {});
-    parallel_for(
-        constraints.size(),
-        [&](std::size_t i) {
-            const Constraint& c = *constraints[i];
-            if (!c.map().centred) return;
-            Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(cage);
-            for (Eigen::Index r = 0; r < c.map().direct; ++r) sum += weights.row(index[c.ids()[r]]);
-            mean_of[i] = sum / static_cast<double>(c.map().direct);
-        },
-        16);
+    parallel_for(constraints.size(), 16, [&](std::size_t i) {
+        const Constraint& c = *constraints[i];
+        if (!c.map().centred) return;
+        Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(cage);
+        for (Eigen::Index r = 0; r < c.map().direct; ++r) sum += weights.row(index[c.ids()[r]]);
+        mean_of[i] = sum / static_cast<double>(c.map().direct);
+    });
 }
 
 void CageSpaceSolver::State::clear_sums() {
@@ -284,8 +281,7 @@ void CageSpaceSolver::State::form(Constraints constraints) {
     const std::vector<Piece> pieces = pieces_of(constraints);
     for (std::size_t wave = 0; wave < pieces.size(); wave += pieces_of_wave) {
         std::vector<Sum> sums(std::min(pieces_of_wave, pieces.size() - wave));
-        parallel_for(
-            sums.size(), [&](std::size_t k) { sums[k] = sum_of(constraints, pieces[wave + k], group_rows); }, 1);
+        parallel_for(sums.size(), 1, [&](std::size_t k) { sums[k] = sum_of(constraints, pieces[wave + k], group_rows); });
         for (std::size_t k = 0; k < sums.size(); ++k) add(sums[k], pieces[wave + k].front().constraint);
     }
     for (const Group& group : groups) normal += constraints[group.constraint]->weight() * group.m_m;
@@ -376,47 +372,41 @@ double CageSpaceSolver::project(const Points& cage) {
     Thin padded_d = Thin::Zero(s.stride, 3);
     padded_d.topRows(s.cage) = d;
     constexpr std::size_t groups_together = 8;  // a single group is too little work for a thread
-    parallel_for(
-        s.groups.size(),
-        [&](std::size_t k) {
-            Group& g = s.groups[k];
-            const Constraint& c = *constraints_[g.constraint];
-            const Thin e = g.m_m * d;
-            const Matrix3d cross = d.transpose() * g.m_r0;
-            const Constraint::Moments moments{d.transpose() * e + cross + cross.transpose() + g.r0_r0,
-                                              d.transpose() * g.m_q + g.r0_q};
-            const auto p = c.project_moments(moments);
-            g.right = c.weight() * ((e + g.m_r0) * p.of_rows.transpose() + g.m_q * p.of_reference.transpose() - g.m_r0);
-            const Matrix3d left = Matrix3d::Identity() - p.of_rows;  // r - p = left r - of_reference q
-            const double squared = (left * moments.rows * left.transpose()).trace() -
-                                   2 * (left * moments.reference * p.of_reference.transpose()).trace() +
-                                   (p.of_reference * g.q_q * p.of_reference.transpose()).trace();
-            g.objective = c.weight() * std::max(squared, 0.0);
-        },
-        groups_together);
-    parallel_for(
-        blocks,
-        [&](std::size_t k) {
-            // One pass over the block's part of M, which stays in the cache between rows and sums.
-            const Eigen::Index start = s.first_row[s.blocks[k]];
-            Points rows = s.r0.middleCols(start, s.first_row[s.blocks[k + 1]] - start), wanted(3, rows.cols());
-            const double* m = s.m.data() + start * s.stride;
-            solver::add_rows(m, rows.cols(), s.stride, padded_d.data(), rows.data());
-            double objective = 0;
-            for (std::size_t i = s.blocks[k]; i < s.blocks[k + 1]; ++i) {
-                const Constraint& c = *constraints_[s.moving[i]];
-                const Eigen::Index first = s.first_row[i] - start, count = c.map().rows, weighing = count - c.map().observed;
-                c.project(rows.middleCols(first, count), wanted.middleCols(first, count));
-                objective += c.weight() * (rows - wanted).middleCols(first, weighing).squaredNorm();
-                wanted.middleCols(first, weighing) =
-                    c.weight() * (wanted.middleCols(first, weighing) - s.r0.middleCols(start + first, weighing));
-                wanted.middleCols(first + weighing, count - weighing).setZero();
-            }
-            s.parts[k].setZero(s.stride, 3);
-            solver::add_sums(m, rows.cols(), s.stride, wanted.data(), s.parts[k].data());
-            s.part_objective[k] = objective;
-        },
-        1);
+    parallel_for(s.groups.size(), groups_together, [&](std::size_t k) {
+        Group& g = s.groups[k];
+        const Constraint& c = *constraints_[g.constraint];
+        const Thin e = g.m_m * d;
+        const Matrix3d cross = d.transpose() * g.m_r0;
+        const Constraint::Moments moments{d.transpose() * e + cross + cross.transpose() + g.r0_r0,
+                                          d.transpose() * g.m_q + g.r0_q};
+        const auto p = c.project_moments(moments);
+        g.right = c.weight() * ((e + g.m_r0) * p.of_rows.transpose() + g.m_q * p.of_reference.transpose() - g.m_r0);
+        const Matrix3d left = Matrix3d::Identity() - p.of_rows;  // r - p = left r - of_reference q
+        const double squared = (left * moments.rows * left.transpose()).trace() -
+                               2 * (left * moments.reference * p.of_reference.transpose()).trace() +
+                               (p.of_reference * g.q_q * p.of_reference.transpose()).trace();
+        g.objective = c.weight() * std::max(squared, 0.0);
+    });
+    parallel_for(blocks, 1, [&](std::size_t k) {
+        // One pass over the block's part of M, which stays in the cache between rows and sums.
+        const Eigen::Index start = s.first_row[s.blocks[k]];
+        Points rows = s.r0.middleCols(start, s.first_row[s.blocks[k + 1]] - start), wanted(3, rows.cols());
+        const double* m = s.m.data() + start * s.stride;
+        solver::add_rows(m, rows.cols(), s.stride, padded_d.data(), rows.data());
+        double objective = 0;
+        for (std::size_t i = s.blocks[k]; i < s.blocks[k + 1]; ++i) {
+            const Constraint& c = *constraints_[s.moving[i]];
+            const Eigen::Index first = s.first_row[i] - start, count = c.map().rows, weighing = count - c.map().observed;
+            c.project(rows.middleCols(first, count), wanted.middleCols(first, count));
+            objective += c.weight() * (rows - wanted).middleCols(first, weighing).squaredNorm();
+            wanted.middleCols(first, weighing) =
+                c.weight() * (wanted.middleCols(first, weighing) - s.r0.middleCols(start + first, weighing));
+            wanted.middleCols(first + weighing, count - weighing).setZero();
+        }
+        s.parts[k].setZero(s.stride, 3);
+        solver::add_sums(m, rows.cols(), s.stride, wanted.data(), s.parts[k].data());
+        s.part_objective[k] = objective;
+    });
     s.right = s.constant_right;
     double phi = std::max(s.constant_objective + (d.transpose() * (s.constant_normal * d - 2 * s.constant_right)).trace(), 0.0);
     for (std::size_t k = 0; k < blocks; ++k) {

@@ -267,23 +267,20 @@ void MeshSpaceSolver::initialize() {
 double MeshSpaceSolver::project(const Points& points) {
     State& s = *state_;
     std::vector<double> parts(s.blocks.size() - 1, 0.0);
-    parallel_for(
-        parts.size(),
-        [&](std::size_t b) {
-            Points rows;
-            for (std::size_t c = s.blocks[b]; c < s.blocks[b + 1]; ++c) {
-                const Constraint& constraint = *constraints_[c];
-                const auto first = static_cast<Eigen::Index>(s.unknowns.first_row[c]);
-                const Eigen::Index count = constraint.map().rows;
-                constraint.rows_of(points, rows);
-                if (!constraint.constant()) constraint.project(rows, s.projected.middleCols(first, count));
-                if (const double weight = s.weight_of(constraint, c); weight > 0)
-                    parts[b] +=
-                        weight *
-                        (rows - s.projected.middleCols(first, count)).leftCols(count - constraint.map().observed).squaredNorm();
-            }
-        },
-        1);
+    parallel_for(parts.size(), 1, [&](std::size_t b) {
+        Points rows;
+        for (std::size_t c = s.blocks[b]; c < s.blocks[b + 1]; ++c) {
+            const Constraint& constraint = *constraints_[c];
+            const auto first = static_cast<Eigen::Index>(s.unknowns.first_row[c]);
+            const Eigen::Index count = constraint.map().rows;
+            constraint.rows_of(points, rows);
+            if (!constraint.constant()) constraint.project(rows, s.projected.middleCols(first, count));
+            if (const double weight = s.weight_of(constraint, c); weight > 0)
+                parts[b] +=
+                    weight *
+                    (rows - s.projected.middleCols(first, count)).leftCols(count - constraint.map().observed).squaredNorm();
+        }
+    });
     double sum = 0;
     for (const double part : parts) sum += part;
     return sum;
@@ -301,12 +298,9 @@ void MeshSpaceSolver::global_step(Points& points) {
         shift /= static_cast<double>(part.size());
         for (const int i : part) s.right.row(i) += shift;
     }
-    parallel_for(
-        s.unknowns.point.size(),
-        [&](std::size_t i) {
-            if (!s.idle[i]) points.col(s.unknowns.point[i]) = s.right.row(static_cast<Eigen::Index>(i)).transpose();
-        },
-        4096);
+    parallel_for(s.unknowns.point.size(), 4096, [&](std::size_t i) {
+        if (!s.idle[i]) points.col(s.unknowns.point[i]) = s.right.row(static_cast<Eigen::Index>(i)).transpose();
+    });
 }
 
 /// True if constraints of positive weight involve all points of this one.

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numeric>
 
 namespace ostraka {
 
@@ -73,24 +72,20 @@ private:
     void compute_bins() {
         thresholds_.resize(table_.columns);
         binned_.resize(table_.columns);
-        parallel_for(
-            table_.columns,
-            [&](std::size_t c) {
-                std::vector<float> values(rows_);
-                for (std::size_t r = 0; r < rows_; ++r) values[r] = table_.row(r)[c];
-                std::vector<float> sorted = values;
-                std::sort(sorted.begin(), sorted.end());
-                auto& cuts = thresholds_[c];
-                for (std::size_t b = 1; b < bins; ++b) {
-                    const float at = rounded(static_cast<double>(sorted[b * (rows_ - 1) / bins]));
-                    if (cuts.empty() || at > cuts.back()) cuts.push_back(at);
-                }
-                binned_[c].resize(rows_);
-                for (std::size_t r = 0; r < rows_; ++r)
-                    binned_[c][r] =
-                        static_cast<std::uint8_t>(std::lower_bound(cuts.begin(), cuts.end(), values[r]) - cuts.begin());
-            },
-            1);
+        parallel_for(table_.columns, 1, [&](std::size_t c) {
+            std::vector<float> values(rows_);
+            for (std::size_t r = 0; r < rows_; ++r) values[r] = table_.row(r)[c];
+            std::vector<float> sorted = values;
+            std::sort(sorted.begin(), sorted.end());
+            auto& cuts = thresholds_[c];
+            for (std::size_t b = 1; b < bins; ++b) {
+                const float at = rounded(static_cast<double>(sorted[b * (rows_ - 1) / bins]));
+                if (cuts.empty() || at > cuts.back()) cuts.push_back(at);
+            }
+            binned_[c].resize(rows_);
+            for (std::size_t r = 0; r < rows_; ++r)
+                binned_[c][r] = static_cast<std::uint8_t>(std::lower_bound(cuts.begin(), cuts.end(), values[r]) - cuts.begin());
+        });
     }
 
     struct Split {
@@ -122,29 +117,26 @@ private:
         if (depth == 0 || weight < 2 * options_.leaf_weight) return;
         const auto gain_of = [&](const Slope& s) { return s.first * s.first / (s.second + options_.ridge); };
         std::vector<Split> best(columns.size());
-        parallel_for(
-            columns.size(),
-            [&](std::size_t k) {
-                const std::size_t c = columns[k];
-                std::array<Slope, bins> sums{};
-                std::array<double, bins> weights{};
-                for (const Index32 r : sample) {
-                    const std::size_t bin = binned_[c][r];
-                    sums[bin].add(slopes_[r]);
-                    weights[bin] += weights_[r];
-                }
-                Slope left;
-                double below = 0;
-                for (std::size_t b = 0; b < thresholds_[c].size(); ++b) {
-                    left.add(sums[b]);
-                    below += weights[b];
-                    if (below < options_.leaf_weight || weight - below < options_.leaf_weight) continue;
-                    const Slope right{total.first - left.first, total.second - left.second};
-                    const double gain = gain_of(left) + gain_of(right) - gain_of(total);
-                    if (gain > best[k].gain) best[k] = {gain, c, b};
-                }
-            },
-            1);
+        parallel_for(columns.size(), 1, [&](std::size_t k) {
+            const std::size_t c = columns[k];
+            std::array<Slope, bins> sums{};
+            std::array<double, bins> weights{};
+            for (const Index32 r : sample) {
+                const std::size_t bin = binned_[c][r];
+                sums[bin].add(slopes_[r]);
+                weights[bin] += weights_[r];
+            }
+            Slope left;
+            double below = 0;
+            for (std::size_t b = 0; b < thresholds_[c].size(); ++b) {
+                left.add(sums[b]);
+                below += weights[b];
+                if (below < options_.leaf_weight || weight - below < options_.leaf_weight) continue;
+                const Slope right{total.first - left.first, total.second - left.second};
+                const double gain = gain_of(left) + gain_of(right) - gain_of(total);
+                if (gain > best[k].gain) best[k] = {gain, c, b};
+            }
+        });
         Split chosen;
         for (const Split& split : best)
             if (split.gain > chosen.gain) chosen = split;

@@ -24,21 +24,18 @@ std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels
     for (const int label : labels)
         if (label >= 0) ++sizes[static_cast<std::size_t>(label)];
     std::vector<double> result(n, 0.0);
-    parallel_for(
-        n,
-        [&](std::size_t i) {
-            if (labels[i] < 0 || sizes[static_cast<std::size_t>(labels[i])] < 2) return;
-            std::vector<double> distance_sums(sizes.size());
-            for (std::size_t j = 0; j < n; ++j)
-                if (labels[j] >= 0 && j != i) distance_sums[static_cast<std::size_t>(labels[j])] += distance(i, j);
-            const auto own_cluster = static_cast<std::size_t>(labels[i]);
-            const double a = distance_sums[own_cluster] / static_cast<double>(sizes[own_cluster] - 1);
-            double b = std::numeric_limits<double>::infinity();
-            for (std::size_t k = 0; k < sizes.size(); ++k)
-                if (k != own_cluster && sizes[k] > 0) b = std::min(b, distance_sums[k] / static_cast<double>(sizes[k]));
-            if (std::isfinite(b) && std::max(a, b) > 0) result[i] = (b - a) / std::max(a, b);
-        },
-        16);
+    parallel_for(n, 16, [&](std::size_t i) {
+        if (labels[i] < 0 || sizes[static_cast<std::size_t>(labels[i])] < 2) return;
+        std::vector<double> distance_sums(sizes.size());
+        for (std::size_t j = 0; j < n; ++j)
+            if (labels[j] >= 0 && j != i) distance_sums[static_cast<std::size_t>(labels[j])] += distance(i, j);
+        const auto own_cluster = static_cast<std::size_t>(labels[i]);
+        const double a = distance_sums[own_cluster] / static_cast<double>(sizes[own_cluster] - 1);
+        double b = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < sizes.size(); ++k)
+            if (k != own_cluster && sizes[k] > 0) b = std::min(b, distance_sums[k] / static_cast<double>(sizes[k]));
+        if (std::isfinite(b) && std::max(a, b) > 0) result[i] = (b - a) / std::max(a, b);
+    });
     return result;
 }
 
@@ -102,13 +99,10 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
             if (row.silhouette > best) best = row.silhouette, result.by_silhouette = k;
         }
         std::vector<double> logs(static_cast<std::size_t>(options.references));
-        parallel_for(
-            logs.size(),
-            [&](std::size_t b) {
-                logs[b] = std::log(
-                    std::max(minimum, k_means(reference(rotated, Random(options.k_means.seed, b + 1)), options_for_k).cost));
-            },
-            1);
+        parallel_for(logs.size(), 1, [&](std::size_t b) {
+            logs[b] =
+                std::log(std::max(minimum, k_means(reference(rotated, Random(options.k_means.seed, b + 1)), options_for_k).cost));
+        });
         double mean = 0, square = 0;
         for (const double value : logs) mean += value / static_cast<double>(logs.size());
         for (const double value : logs) square += (value - mean) * (value - mean) / static_cast<double>(logs.size());

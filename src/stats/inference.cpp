@@ -100,30 +100,27 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
     const std::size_t n = labels.size();
     const auto part = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(options.share * static_cast<double>(n))));
     std::vector<std::map<int, double>> overlaps(static_cast<std::size_t>(n == 0 ? 0 : options.resamples));
-    parallel_for(
-        overlaps.size(),
-        [&](std::size_t r) {
-            std::vector<std::size_t> resample = Random(options.seed, r).permutation(n);
-            resample.resize(part);
-            std::sort(resample.begin(), resample.end());
-            const std::vector<int> new_labels = cluster(resample);
-            if (new_labels.size() != resample.size())
-                fail_usage(fmt::format("clustering gave {} labels for {} samples", new_labels.size(), resample.size()));
-            std::map<int, double> old_sizes, new_sizes;
-            std::map<std::pair<int, int>, double> shared;
-            for (std::size_t i = 0; i < new_labels.size(); ++i) {
-                const int old_label = labels[resample[i]];
-                if (old_label >= 0) old_sizes[old_label] += 1;
-                if (new_labels[i] >= 0) new_sizes[new_labels[i]] += 1;
-                if (old_label >= 0 && new_labels[i] >= 0) shared[{old_label, new_labels[i]}] += 1;
-            }
-            for (const auto& [name, size] : old_sizes) overlaps[r][name] = 0;
-            for (const auto& [names, common] : shared) {
-                double& best = overlaps[r][names.first];
-                best = std::max(best, common / (old_sizes[names.first] + new_sizes[names.second] - common));
-            }
-        },
-        1);
+    parallel_for(overlaps.size(), 1, [&](std::size_t r) {
+        std::vector<std::size_t> resample = Random(options.seed, r).permutation(n);
+        resample.resize(part);
+        std::sort(resample.begin(), resample.end());
+        const std::vector<int> new_labels = cluster(resample);
+        if (new_labels.size() != resample.size())
+            fail_usage(fmt::format("clustering gave {} labels for {} samples", new_labels.size(), resample.size()));
+        std::map<int, double> old_sizes, new_sizes;
+        std::map<std::pair<int, int>, double> shared;
+        for (std::size_t i = 0; i < new_labels.size(); ++i) {
+            const int old_label = labels[resample[i]];
+            if (old_label >= 0) old_sizes[old_label] += 1;
+            if (new_labels[i] >= 0) new_sizes[new_labels[i]] += 1;
+            if (old_label >= 0 && new_labels[i] >= 0) shared[{old_label, new_labels[i]}] += 1;
+        }
+        for (const auto& [name, size] : old_sizes) overlaps[r][name] = 0;
+        for (const auto& [names, common] : shared) {
+            double& best = overlaps[r][names.first];
+            best = std::max(best, common / (old_sizes[names.first] + new_sizes[names.second] - common));
+        }
+    });
     for (const auto& resample : overlaps)
         for (const auto& [name, overlap] : resample) {
             ClusterStability& stability = clusters[name];

@@ -137,8 +137,8 @@ struct Normalised {
 Restart best_of(const Rows& samples, int clusters, const KMeansOptions& options) {
     const auto count = static_cast<Eigen::Index>(std::min(static_cast<std::size_t>(clusters), distinct_rows(samples)));
     std::vector<Restart> runs(static_cast<std::size_t>(count == 1 ? 1 : options.restarts));
-    parallel_for(
-        runs.size(), [&](std::size_t r) { runs[r] = run_once(samples, count, options.iterations, Random(options.seed, r)); }, 1);
+    parallel_for(runs.size(), 1,
+                 [&](std::size_t r) { runs[r] = run_once(samples, count, options.iterations, Random(options.seed, r)); });
     return std::move(*std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }));
 }
 

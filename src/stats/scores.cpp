@@ -159,26 +159,23 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
     const std::size_t folds = std::min(static_cast<std::size_t>(options.folds), rarer);
     const auto repeats = static_cast<std::size_t>(options.repeats);
     std::vector<std::vector<bool>> answers(repeats, std::vector<bool>(truth.size()));
-    parallel_for(
-        repeats,
-        [&](std::size_t r) {
-            Random random(options.seed, r);
-            std::vector<std::size_t> fold(truth.size());
-            std::size_t assigned = 0;
-            for (const auto& samples_of_class : class_samples) {
-                std::vector<std::size_t> order = samples_of_class;
-                random.shuffle(order);
-                for (const std::size_t i : order) fold[i] = assigned++ % folds;
-            }
-            for (std::size_t f = 0; f < folds; ++f) {
-                std::vector<std::size_t> training, test;
-                for (std::size_t i = 0; i < truth.size(); ++i) (fold[i] == f ? test : training).push_back(i);
-                const std::vector<bool> predictions = learn(training, test);
-                require_same_length(predictions.size(), test.size());
-                for (std::size_t k = 0; k < test.size(); ++k) answers[r][test[k]] = predictions[k];
-            }
-        },
-        1);
+    parallel_for(repeats, 1, [&](std::size_t r) {
+        Random random(options.seed, r);
+        std::vector<std::size_t> fold(truth.size());
+        std::size_t assigned = 0;
+        for (const auto& samples_of_class : class_samples) {
+            std::vector<std::size_t> order = samples_of_class;
+            random.shuffle(order);
+            for (const std::size_t i : order) fold[i] = assigned++ % folds;
+        }
+        for (std::size_t f = 0; f < folds; ++f) {
+            std::vector<std::size_t> training, test;
+            for (std::size_t i = 0; i < truth.size(); ++i) (fold[i] == f ? test : training).push_back(i);
+            const std::vector<bool> predictions = learn(training, test);
+            require_same_length(predictions.size(), test.size());
+            for (std::size_t k = 0; k < test.size(); ++k) answers[r][test[k]] = predictions[k];
+        }
+    });
     CrossValidation result;
     result.positive.assign(truth.size(), 0.0);
     for (const auto& predictions : answers) {

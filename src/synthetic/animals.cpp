@@ -5,8 +5,6 @@ namespace ostraka::shapes {
 
 namespace {
 
-using Eigen::Matrix3d;
-
 /// The name of a part on the left (1) or the right (-1) side.
 std::string sided(double side, const std::string& part) { return (side > 0 ? "left " : "right ") + part; }
 

@@ -9,8 +9,6 @@
 
 namespace ostraka::shapes {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 using Colour3 = std::array<std::uint8_t, 3>;
 
 /// Rotation by `degrees` around an axis.

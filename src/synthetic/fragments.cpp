@@ -12,8 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, const FragmentOptions& options) {
     check_options(options, "fragment");
     const double area = surface_area(object), diagonal = box_diagonal(object);

@@ -12,8 +12,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 enum Stream : std::uint64_t {

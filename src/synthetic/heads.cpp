@@ -9,7 +9,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
 using shapes::add_member;
 using shapes::turned;
 

@@ -8,8 +8,6 @@
 
 namespace ostraka::shapes {
 
-using Eigen::Vector3d;
-
 namespace {
 
 constexpr int block_cubes = 4;                     // cubes along a block's edge
@@ -236,8 +234,7 @@ Triangles march(const SyntheticObject& object, const Lattice& lattice) {
     const auto& blocks = finder.blocks;
 
     std::vector<Piece> pieces(blocks.size());
-    parallel_for(
-        blocks.size(), [&](std::size_t i) { pieces[i] = BlockMarcher(object, lattice, blocks[i]).run(); }, 16);
+    parallel_for(blocks.size(), 16, [&](std::size_t i) { pieces[i] = BlockMarcher(object, lattice, blocks[i]).run(); });
 
     std::vector<EdgeKey> edges;
     std::vector<std::size_t> first_face(pieces.size() + 1, 0);
@@ -250,18 +247,15 @@ Triangles march(const SyntheticObject& object, const Lattice& lattice) {
 
     Triangles result;
     result.faces.resize(first_face.back());
-    parallel_for(
-        pieces.size(),
-        [&](std::size_t i) {
-            std::vector<Index> global;
-            for (const EdgeKey key : pieces[i].edges) {
-                global.push_back(static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), key) - edges.begin()));
-            }
-            std::size_t face = first_face[i];
-            for (const auto& [a, b, c] : pieces[i].triangles) result.faces[face++] = {global[a], global[b], global[c]};
-            pieces[i] = {};
-        },
-        64);
+    parallel_for(pieces.size(), 64, [&](std::size_t i) {
+        std::vector<Index> global;
+        for (const EdgeKey key : pieces[i].edges) {
+            global.push_back(static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), key) - edges.begin()));
+        }
+        std::size_t face = first_face[i];
+        for (const auto& [a, b, c] : pieces[i].triangles) result.faces[face++] = {global[a], global[b], global[c]};
+        pieces[i] = {};
+    });
     result.points.resize(edges.size());
     parallel_for(edges.size(), [&](std::size_t i) {
         const auto [a, b] = edge_ends(edges[i]);

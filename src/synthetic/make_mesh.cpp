@@ -6,6 +6,7 @@
 #include "ostraka/core/memory.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/mesh/disjoint_sets.h"
+#include "ostraka/mesh/flood.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>
@@ -14,8 +15,6 @@
 #include <map>
 
 namespace ostraka {
-
-using Eigen::Vector3d;
 
 namespace {
 
@@ -66,16 +65,8 @@ void merge_small_patches(const Mesh& mesh, std::vector<std::int32_t>& labels, st
     for (const Face start : mesh.faces()) {
         if (visited[start.idx()]) continue;
         const std::int32_t label = old_labels[start.idx()];
-        std::vector<Face> patch{start};
-        visited[start.idx()] = true;
-        for (std::size_t i = 0; i < patch.size(); ++i) {
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(patch[i]))) {
-                const Face next = mesh.face(mesh.opposite(h));
-                if (visited[next.idx()] || old_labels[next.idx()] != label) continue;
-                visited[next.idx()] = true;
-                patch.push_back(next);
-            }
-        }
+        std::vector<Face> patch =
+            flood_faces(mesh, start, visited, [&](Halfedge h) { return old_labels[mesh.face(mesh.opposite(h)).idx()] == label; });
         if (patch.size() < min_faces) small_patches.push_back(std::move(patch));
         else has_patch[static_cast<std::size_t>(label)] = true;
     }

@@ -5,8 +5,8 @@
 #include "synthetic/statuette_build.h"
 
 #include "ostraka/execution/parallel.h"
-#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/flood.h"
 #include "ostraka/stats/random.h"
 
 #include <fmt/core.h>
@@ -15,9 +15,6 @@
 #include <cmath>
 
 namespace ostraka {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 namespace {
 
@@ -91,8 +88,7 @@ void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
 /// Keeps the largest connected piece of the remaining faces, with its labels.
 void remove_missing_faces(Statuette& statuette, const std::vector<bool>& missing) {
     const Mesh& mesh = statuette.mesh;
-    const auto [piece, pieces] = face_pieces(
-        mesh, [&](Face f) { return !missing[f]; }, [](Halfedge) { return true; });
+    const auto [piece, pieces] = face_pieces(mesh, [&](Face f) { return !missing[f]; });
     std::vector<std::size_t> sizes(pieces, 0);
     for (const Index number : piece)
         if (number != no_index) ++sizes[number];

@@ -15,9 +15,6 @@
 
 namespace ostraka {
 
-using Eigen::Matrix3d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 using shapes::Wave;
 
 namespace shapes {

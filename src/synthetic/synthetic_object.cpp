@@ -4,8 +4,6 @@
 
 namespace ostraka {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Smooth minimum, cubic: equals min(a, b) where they differ by more than `width` (with a twice differentiable transition).

@@ -8,8 +8,6 @@
 
 namespace ostraka::shapes {
 
-using Eigen::Vector3d;
-
 namespace {
 
 /// Minimum cosine between a triangle's normal and the surface normal.

@@ -5,7 +5,6 @@
 #include "ostraka/transfer/project_curves.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ostraka {
 

@@ -66,8 +66,7 @@ std::vector<Correspondence> find_correspondences(const Mesh& source, const std::
     check_options(options, "correspondence");
     const SearchRadii radii = radii_of(target, options);
     std::vector<Correspondence> result(vertices.size());
-    parallel_for(
-        vertices.size(), [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, radii); }, 64);
+    parallel_for(vertices.size(), 64, [&](std::size_t i) { result[i] = find_one(source, vertices[i], target, options, radii); });
     return result;
 }
 

@@ -105,8 +105,7 @@ private:
 template <class Regions>
 double area_of_all(const Mesh& mesh, const Regions& regions) {
     std::vector<double> areas(regions.size());
-    parallel_for(
-        regions.size(), [&](std::size_t k) { areas[k] = area_of(mesh, *regions[k]); }, 1);
+    parallel_for(regions.size(), 1, [&](std::size_t k) { areas[k] = area_of(mesh, *regions[k]); });
     return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 

@@ -177,8 +177,7 @@ void EdgeTransfer::for_each_annotation(const Body& body) const {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
         return source_.annotations.annotations[i].faces.size() > source_.annotations.annotations[j].faces.size();
     });
-    parallel_for(
-        order.size(), [&](std::size_t k) { body(order[k]); }, 1);
+    parallel_for(order.size(), 1, [&](std::size_t k) { body(order[k]); });
 }
 
 void EdgeTransfer::fill() {

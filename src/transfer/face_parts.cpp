@@ -78,20 +78,15 @@ void FaceParts::number(const std::vector<Edge>& walls) {
     for (const Edge e : walls) is_wall[e] = true;
     FaceSets sets(part_.size());
     std::vector<std::vector<Halfedge>> border((is_wall.size() + block_size - 1) / block_size);
-    parallel_for(
-        is_wall.size(),
-        [&](std::size_t i) {
-            const Edge e(static_cast<Index>(i));
-            const Halfedge h = mesh_.halfedge(e, 0), g = mesh_.halfedge(e, 1);
-            const Face a = mesh_.face(h), b = mesh_.face(g);
-            if (a == Mesh::null_face() || b == Mesh::null_face())
-                border[i / block_size].push_back(a == Mesh::null_face() ? h : g);
-            else if (!is_wall[i]) sets.unite(a, b);
-        },
-        block_size);
+    parallel_for(is_wall.size(), block_size, [&](std::size_t i) {
+        const Edge e(static_cast<Index>(i));
+        const Halfedge h = mesh_.halfedge(e, 0), g = mesh_.halfedge(e, 1);
+        const Face a = mesh_.face(h), b = mesh_.face(g);
+        if (a == Mesh::null_face() || b == Mesh::null_face()) border[i / block_size].push_back(a == Mesh::null_face() ? h : g);
+        else if (!is_wall[i]) sets.unite(a, b);
+    });
     for (const auto& part : border) border_.insert(border_.end(), part.begin(), part.end());
-    parallel_for(
-        part_.size(), [&](std::size_t f) { part_[f] = sets.lowest(static_cast<Index>(f)); }, block_size);
+    parallel_for(part_.size(), block_size, [&](std::size_t f) { part_[f] = sets.lowest(static_cast<Index>(f)); });
     // The lowest face of a part precedes all its others.
     for (std::size_t f = 0; f < part_.size(); ++f) {
         if (part_[f] == f) {
@@ -118,8 +113,7 @@ void FaceParts::measure() {
     std::vector<double> area(std::min(part_.size(), at_once));
     for (std::size_t begin = 0; begin < part_.size(); begin += at_once) {
         const std::size_t count = std::min(at_once, part_.size() - begin);
-        parallel_for(
-            count, [&](std::size_t i) { area[i] = face_area(mesh_, Face(static_cast<Index>(begin + i))); }, block_size);
+        parallel_for(count, block_size, [&](std::size_t i) { area[i] = face_area(mesh_, Face(static_cast<Index>(begin + i))); });
         for (std::size_t i = 0; i < count; ++i) areas_[part_[begin + i]] += area[i];
     }
     for (const Halfedge h : border_) borders_[part_at(mesh_.opposite(h))] += edge_length(mesh_, h);

@@ -81,12 +81,9 @@ public:
 
 private:
     void find_nearest() {
-        parallel_for(
-            points_.size(),
-            [&](std::size_t i) {
-                hits_[i] = target_.closest({points_[i].x(), points_[i].y(), points_[i].z()});
-            },
-            16);
+        parallel_for(points_.size(), 16, [&](std::size_t i) {
+            hits_[i] = target_.closest({points_[i].x(), points_[i].y(), points_[i].z()});
+        });
         kept_.resize(points_.size());
         std::iota(kept_.begin(), kept_.end(), std::size_t{0});
         std::stable_sort(kept_.begin(), kept_.end(),

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 namespace ostraka {
 
@@ -70,8 +69,8 @@ public:
             }
         }
         thin_out(target_, 1e-4 * edge_, projected);
-        parallel_for(
-            projected.size(), [&](std::size_t i) { settling_.settle(*annotations[i], drawn[i].size(), projected[i]); }, 1);
+        parallel_for(projected.size(), 1,
+                     [&](std::size_t i) { settling_.settle(*annotations[i], drawn[i].size(), projected[i]); });
         keep_partition(source_, annotations, target_, projected);
         for (std::size_t i = 0; i < annotations.size(); ++i) note_change(*annotations[i], drawn[i].size(), projected[i]);
         return projected;
@@ -128,8 +127,7 @@ private:
         std::sort(all.begin(), all.end());
         all.erase(std::unique(all.begin(), all.end()), all.end());
         std::vector<MappedPlace> found(all.size());
-        parallel_for(
-            all.size(), [&](std::size_t i) { found[i] = mapping_(all[i]); }, 64);
+        parallel_for(all.size(), 64, [&](std::size_t i) { found[i] = mapping_(all[i]); });
         for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], found[i]);
     }
 

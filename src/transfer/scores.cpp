@@ -140,31 +140,25 @@ void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const st
         const std::size_t count = std::min(at_once, questions.size() - first);
         std::vector<std::optional<RegionSamples>> samples(2 * count);  // for each region: samples on the source,
                                                                        // then on the target
-        parallel_for(
-            samples.size(),
-            [&](std::size_t i) {
-                const OverlapQuestion& question = questions[first + i / 2];
-                if (i % 2 == 0) {
-                    samples[i].emplace(source.mesh, question.source, target.search, options, question.in_target);
-                    return;
-                }
-                std::function<bool(const SurfaceHit&)> in_source;
-                if (question.source.free)
-                    in_source = [&free = *question.source.free](const SurfaceHit& hit) {
-                        return free.contains(hit.face, hit.point);
-                    };
-                else
-                    in_source = [flags = face_flags(source.mesh, question.source.faces)](const SurfaceHit& hit) {
-                        return static_cast<bool>(flags[hit.face]);
-                    };
-                samples[i].emplace(target.mesh, question.target, source.search, options, std::move(in_source));
-            },
-            1);
+        parallel_for(samples.size(), 1, [&](std::size_t i) {
+            const OverlapQuestion& question = questions[first + i / 2];
+            if (i % 2 == 0) {
+                samples[i].emplace(source.mesh, question.source, target.search, options, question.in_target);
+                return;
+            }
+            std::function<bool(const SurfaceHit&)> in_source;
+            if (question.source.free)
+                in_source = [&free = *question.source.free](const SurfaceHit& hit) { return free.contains(hit.face, hit.point); };
+            else
+                in_source = [flags = face_flags(source.mesh, question.source.faces)](const SurfaceHit& hit) {
+                    return static_cast<bool>(flags[hit.face]);
+                };
+            samples[i].emplace(target.mesh, question.target, source.search, options, std::move(in_source));
+        });
         std::vector<std::pair<RegionSamples*, std::size_t>> pieces;
         for (auto& region : samples)
             for (std::size_t piece = 0; piece < region->pieces(); ++piece) pieces.emplace_back(&*region, piece);
-        parallel_for(
-            pieces.size(), [&](std::size_t i) { pieces[i].first->sample(pieces[i].second); }, 1);
+        parallel_for(pieces.size(), 1, [&](std::size_t i) { pieces[i].first->sample(pieces[i].second); });
         for (std::size_t i = 0; i < count; ++i) {
             TransferScore& score = *questions[first + i].score;
             const double arrived = samples[2 * i]->area_inside(), came = samples[2 * i + 1]->area_inside();
@@ -186,21 +180,18 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
     const double search_radius = options.max_distance * box_diagonal(target);
     const double min_cosine = options.min_cosine();
     std::vector<std::uint8_t> vote(target.number_of_faces(), 0);
-    parallel_for(
-        target.number_of_faces(),
-        [&](std::size_t i) {
-            const Face f(static_cast<Index>(i));
-            const Point p = centroid(target, f);
-            if (p.x() < box.xmin() - search_radius || p.x() > box.xmax() + search_radius || p.y() < box.ymin() - search_radius ||
-                p.y() > box.ymax() + search_radius || p.z() < box.zmin() - search_radius || p.z() > box.zmax() + search_radius)
-                return;
-            const Vector area = area_vector(target, f);
-            const double length = std::sqrt(area.squared_length());
-            const auto hit = source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1,
-                                                              search_radius);
-            vote[i] = hit && in_region[hit->face] ? 1 : 0;
-        },
-        1024);
+    parallel_for(target.number_of_faces(), 1024, [&](std::size_t i) {
+        const Face f(static_cast<Index>(i));
+        const Point p = centroid(target, f);
+        if (p.x() < box.xmin() - search_radius || p.x() > box.xmax() + search_radius || p.y() < box.ymin() - search_radius ||
+            p.y() > box.ymax() + search_radius || p.z() < box.zmin() - search_radius || p.z() > box.zmax() + search_radius)
+            return;
+        const Vector area = area_vector(target, f);
+        const double length = std::sqrt(area.squared_length());
+        const auto hit =
+            source_search.closest_compatible(p, length > 0 ? area / length : area, length > 0 ? min_cosine : -1, search_radius);
+        vote[i] = hit && in_region[hit->face] ? 1 : 0;
+    });
     return {vote.begin(), vote.end()};
 }
 

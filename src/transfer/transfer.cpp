@@ -178,13 +178,10 @@ std::vector<MovedAnnotation> Transfer::in_order(std::vector<ProjectedAnnotation>
 void Transfer::score_all(std::vector<MovedAnnotation>& moved) {
     Progress progress("scores", moved.size());
     std::vector<std::optional<OverlapQuestion>> questions(moved.size());
-    parallel_for(
-        moved.size(),
-        [&](std::size_t i) {
-            questions[i] = measure(moved[i]);
-            progress.advance();
-        },
-        1);
+    parallel_for(moved.size(), 1, [&](std::size_t i) {
+        questions[i] = measure(moved[i]);
+        progress.advance();
+    });
     std::vector<OverlapQuestion> given;
     for (auto& question : questions)
         if (question) given.push_back(std::move(*question));

@@ -16,7 +16,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <set>
 
 namespace ostraka {

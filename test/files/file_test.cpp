@@ -117,8 +117,7 @@ TEST(OutputTransaction, CreatedFoldersAreRemovedWithTheirFiles) {
 TEST(OutputTransaction, IncludesFilesWrittenByParallelLoops) {
     const Scratch scratch;
     const auto write_all = [&] {
-        parallel_for(
-            8, [&](std::size_t i) { write_file(scratch / (std::to_string(i) + ".txt"), "new"); }, 1);
+        parallel_for(8, 1, [&](std::size_t i) { write_file(scratch / (std::to_string(i) + ".txt"), "new"); });
     };
     {
         const OutputTransaction broken;

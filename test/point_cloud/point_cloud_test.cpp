@@ -11,6 +11,7 @@
 #include "sherds.h"
 
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <sstream>
 
@@ -70,6 +71,39 @@ TEST(PointCloud, GivenNormalsDetermineTheOutside) {
         Vector sum(0, 0, 0);
         for (const Face face : surface.mesh.faces()) sum += area_vector(surface.mesh, face);
         EXPECT_NEAR(sum.z() * side, 29 * 29, 60);
+    }
+}
+
+/// A box of unit squares: nearly all distances occur many times. Some points lie inside.
+PointCloud box_of_squares(int size) {
+    PointCloud cloud;
+    for (int i = 0; i <= size; ++i)
+        for (int j = 0; j <= size; ++j)
+            for (int k = 0; k <= size; ++k) {
+                const bool outside = std::min({i, j, k}) == 0 || std::max({i, j, k}) == size;
+                if (outside || (i + j + k) % 5 == 0) cloud.points.emplace_back(i, j, k);
+            }
+    return cloud;
+}
+
+/// Blocks of many sizes, freed in random order: the next allocations get scattered addresses.
+void scatter_free_memory(std::uint64_t seed) {
+    Random random(seed);
+    std::vector<std::unique_ptr<char[]>> blocks;
+    static std::vector<std::unique_ptr<char[]>> kept;
+    for (int i = 0; i < 60'000; ++i) blocks.push_back(std::make_unique<char[]>(16 + 8 * random.below(24)));
+    random.shuffle(blocks);
+    kept.insert(kept.end(), std::make_move_iterator(blocks.begin()), std::make_move_iterator(blocks.begin() + 20'000));
+}
+
+TEST(PointCloud, SurfaceDoesNotDependOnAddresses) {
+    const PointCloud cloud = box_of_squares(12);
+    const Mesh expected = reconstruct_surface(cloud).mesh;
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+        scatter_free_memory(seed);
+        const Mesh mesh = reconstruct_surface(cloud).mesh;
+        ASSERT_EQ(mesh.number_of_faces(), expected.number_of_faces());
+        for (const Face face : mesh.faces()) ASSERT_EQ(corners(mesh, face), corners(expected, face)) << face;
     }
 }
 

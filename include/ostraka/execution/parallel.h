@@ -17,10 +17,14 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
 
 /// Calls body(i) for each i in [0, count), in parallel blocks of `block` indices.
 template <class Body>
-void parallel_for(std::size_t count, Body&& body, std::size_t block = 256) {
+void parallel_for(std::size_t count, std::size_t block, Body&& body) {
     parallel_blocks(count, block, [&body](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) body(i);
     });
+}
+template <class Body>
+void parallel_for(std::size_t count, Body&& body) {
+    parallel_for(count, 256, body);
 }
 
 }  // namespace ostraka

@@ -64,7 +64,6 @@ struct FacetModel {
 
 /// The built-in model (data/facets.model.json).
 const FacetModel& facet_model();
-std::string facet_model_version();  ///< SHA-256 of the built-in model
 
 /// Log odds predicted for each row of a feature table.
 std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& rows);

@@ -14,36 +14,6 @@ struct SubMesh {
     std::vector<Index> faces;     ///< for each face of `mesh`: its index in the whole mesh; ascending
 };
 
-/// Connected pieces of a set of faces, numbered in the order of their smallest face indices.
-struct FacePieces {
-    std::vector<Index> of_face;  ///< for each face of the mesh: index of its piece; no_index: in no piece
-    Index count = 0;             ///< number of pieces
-};
-/// Finds the connected pieces of the faces for which `counts(face)` is true. Two adjacent faces are connected if `joins(h)` is
-/// true for the halfedge h of the first face on their common edge.
-template <class Counts, class Joins>
-FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
-    FacePieces pieces{std::vector<Index>(mesh.number_of_faces(), no_index)};
-    std::vector<Face> stack;
-    for (const Face first : mesh.faces()) {
-        if (!counts(first) || pieces.of_face[first] != no_index) continue;
-        stack.assign(1, first);
-        pieces.of_face[first] = pieces.count;
-        while (!stack.empty()) {
-            const Face face = stack.back();
-            stack.pop_back();
-            for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                const Face other = mesh.face(mesh.opposite(h));
-                if (other == Mesh::null_face() || !counts(other) || pieces.of_face[other] != no_index || !joins(h)) continue;
-                pieces.of_face[other] = pieces.count;
-                stack.push_back(other);
-            }
-        }
-        ++pieces.count;
-    }
-    return pieces;
-}
-
 /// The faces marked in `keep` (one flag per face) as a separate mesh. With `largest_only`: only the edge-connected piece of the
 /// largest area (of pieces of equal area, the piece with the smallest face index). A vertex at which the kept faces form several
 /// fans is duplicated for each fan. The mesh is empty if no face is marked. Throws Error (usage) unless there is one flag per

@@ -5,6 +5,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -20,6 +22,9 @@ using Vertex = Mesh::Vertex_index;
 using Halfedge = Mesh::Halfedge_index;
 using Edge = Mesh::Edge_index;
 using Face = Mesh::Face_index;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 /// Index of a vertex or of a face in a file or a plain array.
 using Index = std::uint32_t;

@@ -55,16 +55,13 @@ void Conformance::run_cases(const ConformanceKit& loaded_kit, Backend& backend, 
     const ScratchFolder scratch("conformance");
     std::vector<CaseResult> results(loaded_kit.cases.size());
     Progress progress("cases", loaded_kit.cases.size());
-    parallel_for(
-        loaded_kit.cases.size(),
-        [&](std::size_t i) {
-            // Files written by a case are not committed with the outputs of this operation.
-            const TransactionScope no_transaction(nullptr);
-            if (record) record_case(loaded_kit, loaded_kit.cases[i], backend, scratch.path(), find_operation);
-            results[i] = run_case(loaded_kit, loaded_kit.cases[i], backend, scratch.path(), find_operation);
-            progress.advance();
-        },
-        1);
+    parallel_for(loaded_kit.cases.size(), 1, [&](std::size_t i) {
+        // Files written by a case are not committed with the outputs of this operation.
+        const TransactionScope no_transaction(nullptr);
+        if (record) record_case(loaded_kit, loaded_kit.cases[i], backend, scratch.path(), find_operation);
+        results[i] = run_case(loaded_kit, loaded_kit.cases[i], backend, scratch.path(), find_operation);
+        progress.advance();
+    });
     std::size_t counts[3]{};
     report("kit", loaded_kit.version)("cases", results.size());
     std::vector<std::string> operation_names;

@@ -20,13 +20,10 @@ struct StudyMake : Operation {
         check_new_collection(folder.path());
         folder.open(0, false);
         Progress progress(phase, count);
-        parallel_for(
-            count,
-            [&](std::size_t i) {
-                make_one(i);
-                progress.advance();
-            },
-            1);
+        parallel_for(count, 1, [&](std::size_t i) {
+            make_one(i);
+            progress.advance();
+        });
     }
 
     void write(const std::string& name, const Mesh& mesh, const MeshExtras& extras, const Provenance& provenance) const {
