@@ -14,10 +14,10 @@ struct AssemblyOptions : BoxOptions {
     AssemblyOptions() { output = "experiments-output/assemblies", pieces = 10; }
     int strangers = 10;
     bool found = false;
-    void describe(OptionList& visit) {
-        BoxOptions::describe(visit);
-        visit("strangers", strangers, "number of unrelated fragments per box, one from each of the other boxes", Range{0, 100});
-        visit("found", found, "facets that the library finds, instead of known ones");
+    void list_options(OptionList& list) {
+        BoxOptions::list_options(list);
+        list("strangers", strangers, "number of unrelated fragments per box, one from each of the other boxes", Range{0, 100});
+        list("found", found, "facets that the library finds, instead of known ones");
     }
 };
 

@@ -31,14 +31,13 @@ struct BoxOptions {
     std::string output;
     int pieces = 8;
     std::uint64_t seed = 0;
-    void describe(OptionList& visit) {
-        visit(
-            "boxes", boxes,
-            "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled "
-            "layout");
-        visit("output", output, "output folder");
-        visit("pieces", pieces, "number of pieces that an object is broken into", Range{2, 100});
-        visit("seed", seed, "random seed of fractures, noise and wear");
+    void list_options(OptionList& list) {
+        list("boxes", boxes,
+             "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled "
+             "layout");
+        list("output", output, "output folder");
+        list("pieces", pieces, "number of pieces that an object is broken into", Range{2, 100});
+        list("seed", seed, "random seed of fractures, noise and wear");
     }
 };
 

@@ -17,14 +17,14 @@ struct CageReachOptions {
     std::string mesh, annotations, graph, output = "experiments-output/figures-6-1-6-2";
     std::vector<std::string> edits, cages;
     int iterations = 100;
-    void describe(OptionList& visit) {
-        visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
-        visit("graph", graph, "relationships, some of them constraints").positional().required();
-        visit("edit", edits, "files of edits, NAME.edit.json").required();
-        visit("cage", cages, "files of cages, NAME.ply").required();
-        visit("iterations", iterations, "maximum number of iterations", Range{1, 100000});
-        visit("output", output, "output folder");
+    void list_options(OptionList& list) {
+        list("mesh", mesh, "mesh file").positional().required();
+        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        list("graph", graph, "relationships, some of them constraints").positional().required();
+        list("edit", edits, "files of edits, NAME.edit.json").required();
+        list("cage", cages, "files of cages, NAME.ply").required();
+        list("iterations", iterations, "maximum number of iterations", Range{1, 100000});
+        list("output", output, "output folder");
     }
 };
 

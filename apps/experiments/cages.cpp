@@ -15,10 +15,10 @@ struct CageTableOptions {
     std::vector<std::string> meshes;
     std::vector<int> vertices{100, 200, 500};
     std::string csv;
-    void describe(OptionList& visit) {
-        visit("meshes", meshes, "closed meshes; open ones are left out").positional().required();
-        visit("vertices", vertices, "wanted numbers of vertices", Range{4, 1e6});
-        visit("csv", csv, "file for the raw rows");
+    void list_options(OptionList& list) {
+        list("meshes", meshes, "closed meshes; open ones are left out").positional().required();
+        list("vertices", vertices, "wanted numbers of vertices", Range{4, 1e6});
+        list("csv", csv, "file for the raw rows");
     }
 };
 

@@ -20,12 +20,12 @@ struct ClassCorrespondenceOptions {
     std::vector<std::string> faces, targets;
     std::string landmarks, body;
     int made = 30;
-    void describe(OptionList& visit) {
-        visit("face", faces, "mesh files of faces in correspondence, the neutral one first").required();
-        visit("landmarks", landmarks, "file of vertex indices of a face, one per line").required();
-        visit("body", body, "mesh file of a body");
-        visit("target", targets, "files that move the body's vertices, with lines 'vertex dx dy dz'");
-        visit("made", made, "number of faces made for the modes", Range{2, 10000});
+    void list_options(OptionList& list) {
+        list("face", faces, "mesh files of faces in correspondence, the neutral one first").required();
+        list("landmarks", landmarks, "file of vertex indices of a face, one per line").required();
+        list("body", body, "mesh file of a body");
+        list("target", targets, "files that move the body's vertices, with lines 'vertex dx dy dz'");
+        list("made", made, "number of faces made for the modes", Range{2, 10000});
     }
 };
 constexpr std::size_t face_skin = 11248, body_skin = 13380;  // number of leading vertices that are skin

@@ -20,7 +20,7 @@ struct FitSettings {
     std::uint64_t template_vertices = 1000, object_vertices = 3000;
     int tries = 1;
     double search_radius = 0.1;
-    void describe(OptionList& visit) { visit("output", output, "output folder"); }
+    void list_options(OptionList& list) { list("output", output, "output folder"); }
 };
 
 inline constexpr std::size_t every = 1000;  ///< number of members: all available

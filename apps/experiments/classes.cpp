@@ -8,15 +8,15 @@ namespace {
 struct ClassMembershipOptions : FitSettings {
     std::string models, labels;
     std::uint64_t members = 1000;
-    void describe(OptionList& visit) {
-        visit("models", models, "folder with <class>/<number>.off").positional().required();
-        FitSettings::describe(visit);
-        visit("labels", labels, "folder with <class>/<number>/*.seg");
-        visit("members", members, "max number of members of each class");
-        visit("vertices", template_vertices, "number of vertices of the templates");
-        visit("object-vertices", object_vertices, "max number of vertices of the objects");
-        visit("tries", tries, "number of placements that are fitted", Range{1, 5});
-        visit("search-radius", search_radius, "search radius of the first level, as a share of the diagonal");
+    void list_options(OptionList& list) {
+        list("models", models, "folder with <class>/<number>.off").positional().required();
+        FitSettings::list_options(list);
+        list("labels", labels, "folder with <class>/<number>/*.seg");
+        list("members", members, "max number of members of each class");
+        list("vertices", template_vertices, "number of vertices of the templates");
+        list("object-vertices", object_vertices, "max number of vertices of the objects");
+        list("tries", tries, "number of placements that are fitted", Range{1, 5});
+        list("search-radius", search_radius, "search radius of the first level, as a share of the diagonal");
     }
 };
 
@@ -46,10 +46,10 @@ void class_membership(const ClassMembershipOptions& options) {
 struct ClassSizeOptions {
     std::string output = "experiments-output/class-size";
     std::uint64_t vertices = 4000, seed = 1;
-    void describe(OptionList& visit) {
-        visit("output", output, "output folder");
-        visit("vertices", vertices, "number of vertices of each object; thin handles need about 4000");
-        visit("seed", seed, "random seed of the variation between members");
+    void list_options(OptionList& list) {
+        list("output", output, "output folder");
+        list("vertices", vertices, "number of vertices of each object; thin handles need about 4000");
+        list("seed", seed, "random seed of the variation between members");
     }
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 struct ClusterPictureOptions {
     std::string output;
-    void describe(OptionList& visit) { visit("output", output, "folder for the plot and its table").positional().required(); }
+    void list_options(OptionList& list) { list("output", output, "folder for the plot and its table").positional().required(); }
 };
 
 struct Form {

@@ -18,13 +18,13 @@ namespace {
 struct ControlPointOptions {
     std::string mesh, annotations, cage, weights, output = "experiments-output/figures-5-11-5-12";
     double threshold = 0.4;
-    void describe(OptionList& visit) {
-        visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
-        visit("cage", cage, "cage of the mesh").positional().required();
-        visit("weights", weights, "file of 'ostraka cage weights'").positional().required();
-        visit("threshold", threshold, "min influence of a control point", Range{0, 1});
-        visit("output", output, "output folder");
+    void list_options(OptionList& list) {
+        list("mesh", mesh, "mesh file").positional().required();
+        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        list("cage", cage, "cage of the mesh").positional().required();
+        list("weights", weights, "file of 'ostraka cage weights'").positional().required();
+        list("threshold", threshold, "min influence of a control point", Range{0, 1});
+        list("output", output, "output folder");
     }
 };
 

@@ -29,15 +29,15 @@ struct CounterpartOptions {
     std::vector<std::string> ways{"nearest", "surface", "one-to-one", "sliding"};
     std::uint64_t vertices = 3000, seed = 1;
     double strength = 0.2;
-    void describe(OptionList& visit) {
-        visit("objects", objects, "names of synthetic objects");
-        visit("pairs", pairs, "TEMPLATE=MEMBER: mesh files in correspondence");
-        visit("cases", cases, "cases by name or number, from 1; empty: all");
-        visit("ways", ways, "nearest, or values of 'ostraka fit --counterparts'");
-        visit("vertices", vertices, "number of vertices of the template; more if the object needs them");
-        visit("seed", seed, "random seed of the other member and its fragments");
-        visit("strength", strength, "standard deviation of the logarithm of the size of parts");
-        visit("output", output, "output folder");
+    void list_options(OptionList& list) {
+        list("objects", objects, "names of synthetic objects");
+        list("pairs", pairs, "TEMPLATE=MEMBER: mesh files in correspondence");
+        list("cases", cases, "cases by name or number, from 1; empty: all");
+        list("ways", ways, "nearest, or values of 'ostraka fit --counterparts'");
+        list("vertices", vertices, "number of vertices of the template; more if the object needs them");
+        list("seed", seed, "random seed of the other member and its fragments");
+        list("strength", strength, "standard deviation of the logarithm of the size of parts");
+        list("output", output, "output folder");
     }
 };
 

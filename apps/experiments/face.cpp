@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 
 struct FaceOptions : SemanticOptions {
     std::string mesh, recipe;
-    void describe(OptionList& visit) {
-        SemanticOptions::describe(visit);
-        visit("mesh", mesh, "mesh file of a face; without it a synthetic head");
-        visit("recipe", recipe, "recipe of its eyes and nose").required();
+    void list_options(OptionList& list) {
+        SemanticOptions::list_options(list);
+        list("mesh", mesh, "mesh file of a face; without it a synthetic head");
+        list("recipe", recipe, "recipe of its eyes and nose").required();
     }
 };
 

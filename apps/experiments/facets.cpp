@@ -23,20 +23,19 @@ struct FacetOptions {
     std::string model, pictures;
     std::vector<std::string> meshes, scanned, judged;
     bool each = false;
-    void describe(OptionList& visit) {
-        visit("objects", objects, "number of training objects of each kind", Range{4, 1000});
-        visit("seed", seed, "random seed of objects and fractures");
-        visit("trees", boosting.trees, "number of trees of the model", Range{1, 10000});
-        visit("depth", boosting.depth, "depth of its trees", Range{1, 16});
-        visit("model", model, "model file to train and write (data/facets.model.json); else the built-in model is evaluated");
-        visit("meshes", meshes, "folders of meshes of whole objects that are broken for training too");
-        visit("scanned", scanned, "folders of fragments in assembled layout for training too");
-        visit(
-            "judge", judged,
-            "sources for evaluation: pot:SEED, stone:SEED, made:NAME:SEED, mesh:FILE:SEED or a folder of fragments in assembled "
-            "layout");
-        visit("pictures", pictures, "folder for coloured meshes of the evaluated fragments");
-        visit("each", each, "one row per fragment");
+    void list_options(OptionList& list) {
+        list("objects", objects, "number of training objects of each kind", Range{4, 1000});
+        list("seed", seed, "random seed of objects and fractures");
+        list("trees", boosting.trees, "number of trees of the model", Range{1, 10000});
+        list("depth", boosting.depth, "depth of its trees", Range{1, 16});
+        list("model", model, "model file to train and write (data/facets.model.json); else the built-in model is evaluated");
+        list("meshes", meshes, "folders of meshes of whole objects that are broken for training too");
+        list("scanned", scanned, "folders of fragments in assembled layout for training too");
+        list("judge", judged,
+             "sources for evaluation: pot:SEED, stone:SEED, made:NAME:SEED, mesh:FILE:SEED or a folder of fragments in assembled "
+             "layout");
+        list("pictures", pictures, "folder for coloured meshes of the evaluated fragments");
+        list("each", each, "one row per fragment");
     }
 };
 

@@ -19,14 +19,14 @@ struct Figure46Options {
     std::string mesh, annotations, cage, region, output = "experiments-output/figure-4-6";
     std::vector<std::string> kinds{"mean-value"};
     int nodes = 20000;
-    void describe(OptionList& visit) {
-        visit("mesh", mesh, "mesh file").positional().required();
-        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
-        visit("cage", cage, "cage of the mesh").positional().required();
-        visit("region", region, "tag of the region to be flattened").positional().required();
-        visit("kind", kinds, "kinds of cage coordinates");
-        visit("nodes", nodes, "number of nodes of the tetrahedra inside the cage", Range{1, 1e9});
-        visit("output", output, "output folder");
+    void list_options(OptionList& list) {
+        list("mesh", mesh, "mesh file").positional().required();
+        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        list("cage", cage, "cage of the mesh").positional().required();
+        list("region", region, "tag of the region to be flattened").positional().required();
+        list("kind", kinds, "kinds of cage coordinates");
+        list("nodes", nodes, "number of nodes of the tetrahedra inside the cage", Range{1, 1e9});
+        list("output", output, "output folder");
     }
 };
 

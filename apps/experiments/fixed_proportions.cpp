@@ -18,9 +18,9 @@ namespace {
 struct FixedProportionsOptions {
     std::string output = "experiments-output/proportions";
     int seeds = 100;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for table and plot").positional();
-        visit("seeds", seeds, "number of populations of each kind", Range{1, 100000});
+    void list_options(OptionList& list) {
+        list("output", output, "folder for table and plot").positional();
+        list("seeds", seeds, "number of populations of each kind", Range{1, 100000});
     }
 };
 

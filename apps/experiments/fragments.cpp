@@ -28,12 +28,12 @@ struct ExperimentOptions {
     std::vector<double> shares{0.1, 0.25, 0.5};
     int seeds = 4;
     std::uint64_t vertices = 12000;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for the table").positional();
-        visit("seeds", seeds, "number of fragments of each kind", Range{1, 1000});
-        visit("shares", shares, "sizes of fragments, as shares of the surface");
-        visit("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
-        visit("space", space, "space of the fit; with another than mesh no class is learnt", Choices{"mesh", "cage", "both"});
+    void list_options(OptionList& list) {
+        list("output", output, "folder for the table").positional();
+        list("seeds", seeds, "number of fragments of each kind", Range{1, 1000});
+        list("shares", shares, "sizes of fragments, as shares of the surface");
+        list("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
+        list("space", space, "space of the fit; with another than mesh no class is learnt", Choices{"mesh", "cage", "both"});
     }
 };
 
@@ -41,11 +41,11 @@ struct VerdictOptions {
     std::string output = "experiments-output/fragments";
     std::uint64_t vertices = 12000, seed = 1;
     int pairs = 200;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for the table").positional();
-        visit("pairs", pairs, "number of pairs, half of them of one object", Range{4, 100000});
-        visit("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
-        visit("seed", seed, "random seed of members and fractures");
+    void list_options(OptionList& list) {
+        list("output", output, "folder for the table").positional();
+        list("pairs", pairs, "number of pairs, half of them of one object", Range{4, 100000});
+        list("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});
+        list("seed", seed, "random seed of members and fractures");
     }
 };
 

@@ -27,12 +27,12 @@ struct FreeOutlineOptions {
     std::vector<double> shares{0.005, 0.025, 0.1};
     int discs = 3;
     std::string csv;
-    void describe(OptionList& visit) {
-        visit("objects", objects, "made:NAME or mesh files");
-        visit("sizes", sizes, "numbers of vertices, in ascending order", Range{100, 1e8});
-        visit("shares", shares, "sizes of the regions, as shares of the surface");
-        visit("discs", discs, "number of regions of each size", Range{1, 1000});
-        visit("csv", csv, "file for the raw rows");
+    void list_options(OptionList& list) {
+        list("objects", objects, "made:NAME or mesh files");
+        list("sizes", sizes, "numbers of vertices, in ascending order", Range{100, 1e8});
+        list("shares", shares, "sizes of the regions, as shares of the surface");
+        list("discs", discs, "number of regions of each size", Range{1, 1000});
+        list("csv", csv, "file for the raw rows");
     }
 };
 

@@ -34,7 +34,7 @@ struct Registration {
     Registration(std::string name, std::string help, void (*run)(const Options&)) {
         const auto options = std::make_shared<Options>();
         OptionList list;
-        options->describe(list);
+        options->list_options(list);
         experiments().push_back({std::move(name), std::move(help), std::move(list), [=] { run(*options); }});
     }
 };

@@ -24,14 +24,14 @@ struct JoinOptions : BoxOptions {
     std::vector<std::string> rows;
     std::string model, recipe, facets = "known";
     bool adjacent_only = false;
-    void describe(OptionList& visit) {
-        BoxOptions::describe(visit);
-        visit("rows", rows, "joins.csv of earlier runs, as additional training data");
-        visit("model", model, "model file to train and write (data/joins.model.json)");
-        visit("recipe", recipe, "description of the training, stored in the model");
-        visit("facets", facets, "known facets, those that the library finds, or found ones in every second box",
-              Choices{"known", "found", "both"});
-        visit("adjacent-only", adjacent_only, "only pairs that touch");
+    void list_options(OptionList& list) {
+        BoxOptions::list_options(list);
+        list("rows", rows, "joins.csv of earlier runs, as additional training data");
+        list("model", model, "model file to train and write (data/joins.model.json)");
+        list("recipe", recipe, "description of the training, stored in the model");
+        list("facets", facets, "known facets, those that the library finds, or found ones in every second box",
+             Choices{"known", "found", "both"});
+        list("adjacent-only", adjacent_only, "only pairs that touch");
     }
 };
 

@@ -19,11 +19,11 @@ namespace {
 struct LabelOptions {
     std::string models, labels, csv;
     std::uint64_t limit = 0;
-    void describe(OptionList& visit) {
-        visit("models", models, "folder with <class>/<number>.off").positional().required();
-        visit("labels", labels, "folder with <class>/<number>/<number>_0.seg").positional().required();
-        visit("csv", csv, "file for the raw rows");
-        visit("limit", limit, "number of models; 0: all");
+    void list_options(OptionList& list) {
+        list("models", models, "folder with <class>/<number>.off").positional().required();
+        list("labels", labels, "folder with <class>/<number>/<number>_0.seg").positional().required();
+        list("csv", csv, "file for the raw rows");
+        list("limit", limit, "number of models; 0: all");
     }
 };
 

@@ -19,14 +19,14 @@ struct MouldExperiment {
     std::vector<std::string> parts, faces;
     int objects = 40, casts = 43, seeds = 3;
     std::uint64_t vertices = 10000;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for tables and plots").positional();
-        visit("part", parts, "parts of the experiment; empty: all", Choices{"choices", "wear", "runs", "scans"});
-        visit("face", faces, "mesh files of faces in correspondence, for the part scans");
-        visit("objects", objects, "number of casts of four moulds", Range{8, 10000});
-        visit("casts", casts, "number of casts in the thesis's runs, with 60 hand-made heads for 43 casts", Range{8, 10000});
-        visit("seeds", seeds, "number of populations", Range{1, 1000});
-        visit("vertices", vertices, "number of vertices of a whole head", Range{1500, 1000000});
+    void list_options(OptionList& list) {
+        list("output", output, "folder for tables and plots").positional();
+        list("part", parts, "parts of the experiment; empty: all", Choices{"choices", "wear", "runs", "scans"});
+        list("face", faces, "mesh files of faces in correspondence, for the part scans");
+        list("objects", objects, "number of casts of four moulds", Range{8, 10000});
+        list("casts", casts, "number of casts in the thesis's runs, with 60 hand-made heads for 43 casts", Range{8, 10000});
+        list("seeds", seeds, "number of populations", Range{1, 1000});
+        list("vertices", vertices, "number of vertices of a whole head", Range{1500, 1000000});
     }
 };
 

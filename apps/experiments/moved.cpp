@@ -18,17 +18,17 @@ namespace {
 struct MovedOptions {
     std::string mesh, annotations, output, fit, pose, fragment;
     std::vector<std::string> shapes;
-    void describe(OptionList& visit) {
-        visit("mesh", mesh, "the shape at rest").positional().required();
-        visit("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
-        visit("shapes", shapes, "mesh files with the same vertices").positional();
-        visit("fit", fit,
-              "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "
-              "and "
-              "the shape at rest is moved to the frame in which the fragment was placed");
-        visit("pose", pose, "file of 'ostraka mesh break --pose-out', if the fragment was moved");
-        visit("fragment", fragment, "mesh file of the fragment: laid.ply shows where it was placed");
-        visit("output", output, "output folder").required();
+    void list_options(OptionList& list) {
+        list("mesh", mesh, "the shape at rest").positional().required();
+        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        list("shapes", shapes, "mesh files with the same vertices").positional();
+        list("fit", fit,
+             "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "
+             "and "
+             "the shape at rest is moved to the frame in which the fragment was placed");
+        list("pose", pose, "file of 'ostraka mesh break --pose-out', if the fragment was moved");
+        list("fragment", fragment, "mesh file of the fragment: laid.ply shows where it was placed");
+        list("output", output, "output folder").required();
     }
 };
 

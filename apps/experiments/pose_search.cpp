@@ -25,18 +25,18 @@ struct PoseSearchExperiment {
     std::uint64_t vertices = 25000;
     PoseSearchOptions search;
     std::string csv;
-    void describe(OptionList& visit) {
-        visit("whole", wholes, "mesh files, or made:NAME: pieces of the same object");
-        visit("member", members, "TEMPLATE=MEMBER: pieces of another member of the class, in the same frame");
-        visit("stranger", strangers, "TEMPLATE=OTHER: pieces of unrelated objects");
-        visit("shares", shares, "sizes of pieces, as shares of the surface");
-        visit("noises", noises, "standard deviations of noise, as shares of the diagonal");
-        visit("erosion", erosion, "width of the worn rim, as a share of the diagonal");
-        visit("pieces", pieces, "number of pieces of each kind", Range{1, 1e6});
-        visit("vertices", vertices, "number of vertices of synthetic objects");
-        visit("min-scale", search.min_scale, "min scale of the template");
-        visit("max-scale", search.max_scale, "max scale of the template");
-        visit("csv", csv, "file for the raw rows");
+    void list_options(OptionList& list) {
+        list("whole", wholes, "mesh files, or made:NAME: pieces of the same object");
+        list("member", members, "TEMPLATE=MEMBER: pieces of another member of the class, in the same frame");
+        list("stranger", strangers, "TEMPLATE=OTHER: pieces of unrelated objects");
+        list("shares", shares, "sizes of pieces, as shares of the surface");
+        list("noises", noises, "standard deviations of noise, as shares of the diagonal");
+        list("erosion", erosion, "width of the worn rim, as a share of the diagonal");
+        list("pieces", pieces, "number of pieces of each kind", Range{1, 1e6});
+        list("vertices", vertices, "number of vertices of synthetic objects");
+        list("min-scale", search.min_scale, "min scale of the template");
+        list("max-scale", search.max_scale, "max scale of the template");
+        list("csv", csv, "file for the raw rows");
     }
 };
 

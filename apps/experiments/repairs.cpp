@@ -18,11 +18,11 @@ struct DefectOptions {
     int combinations = 20;
     std::uint64_t seed = 1;
     std::string csv;
-    void describe(OptionList& visit) {
-        visit("meshes", meshes, "closed meshes; others are left out").positional().required();
-        visit("combinations", combinations, "number of combinations of defects per mesh", Range{1, 100000});
-        visit("seed", seed, "random seed of the defects");
-        visit("csv", csv, "file for the raw rows");
+    void list_options(OptionList& list) {
+        list("meshes", meshes, "closed meshes; others are left out").positional().required();
+        list("combinations", combinations, "number of combinations of defects per mesh", Range{1, 100000});
+        list("seed", seed, "random seed of the defects");
+        list("csv", csv, "file for the raw rows");
     }
 };
 

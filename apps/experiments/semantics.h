@@ -17,12 +17,12 @@ struct SemanticOptions {
     std::string output, data;
     std::uint64_t vertices = 0;
     int convergence = 0;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for tables, plots and meshes").positional().required();
-        visit("vertices", vertices, "number of vertices of synthetic objects; 0: as in the thesis");
-        visit("convergence", convergence, "number of iterations, plain and accelerated, that are compared; 0: none",
-              Range{0, 100000});
-        visit("data", data, "folder of the project's recipes, such as teapot.recipe.json");
+    void list_options(OptionList& list) {
+        list("output", output, "folder for tables, plots and meshes").positional().required();
+        list("vertices", vertices, "number of vertices of synthetic objects; 0: as in the thesis");
+        list("convergence", convergence, "number of iterations, plain and accelerated, that are compared; 0: none",
+             Range{0, 100000});
+        list("data", data, "folder of the project's recipes, such as teapot.recipe.json");
     }
 };
 

@@ -389,28 +389,28 @@ Sherd simplified(const Sherd& sherd, std::uint64_t vertices) {
     return result;
 }
 
-void PotOptions::describe(OptionList& visit) {
-    visit("height", height, "of the vessel", Range{1e-9, 1e9});
-    visit("radius", radius, "of the body", Range{1e-9, 1e9});
-    visit("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
-    visit("edge", edge, "length of the triangles' edges", Range{1e-9, 1e9});
-    visit("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
+void PotOptions::list_options(OptionList& list) {
+    list("height", height, "of the vessel", Range{1e-9, 1e9});
+    list("radius", radius, "of the body", Range{1e-9, 1e9});
+    list("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
+    list("edge", edge, "length of the triangles' edges", Range{1e-9, 1e9});
+    list("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
 }
 
-void ShatterOptions::describe(OptionList& visit) {
-    visit("pieces", pieces, "at least so many pieces", Range{1, 1000});
-    visit("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
-    visit("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});
-    visit("finest", finest, "shortest wave of a break", Range{0.002, 0.5}, "share of the piece's extent");
-    visit("streak", streak, "how far breaks' waves run one way", Range{0, 1});
-    visit("bow", bow, "height by which breaks arch", Range{0, 1}, "share of the piece's extent");
-    visit("sheet", sheet, "edge of the breaks' facets; 0: as fine as the mesh", Range{0, 1}, "share of the piece's extent");
-    visit("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
-    visit("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
-    visit("patchiness", patchiness, "how far erosion differs over the surface", Range{0, 1});
-    visit("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.1},
-          "share of the diagonal");
-    visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
+void ShatterOptions::list_options(OptionList& list) {
+    list("pieces", pieces, "at least so many pieces", Range{1, 1000});
+    list("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
+    list("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});
+    list("finest", finest, "shortest wave of a break", Range{0.002, 0.5}, "share of the piece's extent");
+    list("streak", streak, "how far breaks' waves run one way", Range{0, 1});
+    list("bow", bow, "height by which breaks arch", Range{0, 1}, "share of the piece's extent");
+    list("sheet", sheet, "edge of the breaks' facets; 0: as fine as the mesh", Range{0, 1}, "share of the piece's extent");
+    list("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
+    list("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
+    list("patchiness", patchiness, "how far erosion differs over the surface", Range{0, 1});
+    list("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.1},
+         "share of the diagonal");
+    list("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -14,13 +14,13 @@ struct SherdOptions {
     std::string data = "../shared/data";
     int motions = 3, pots = 4, first = 0;
     bool write = false;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for tables and meshes").positional();
-        visit("data", data, "folder with fragments-bottle-pair and fragments-vessel-sherds");
-        visit("motions", motions, "number of random motions of all sherds", Range{1, 1000});
-        visit("pots", pots, "number of synthetic vessels of each kind", Range{1, 1000});
-        visit("first", first, "number of vessels to skip", Range{0, 100000});
-        visit("write", write, "write the sherds too");
+    void list_options(OptionList& list) {
+        list("output", output, "folder for tables and meshes").positional();
+        list("data", data, "folder with fragments-bottle-pair and fragments-vessel-sherds");
+        list("motions", motions, "number of random motions of all sherds", Range{1, 1000});
+        list("pots", pots, "number of synthetic vessels of each kind", Range{1, 1000});
+        list("first", first, "number of vessels to skip", Range{0, 100000});
+        list("write", write, "write the sherds too");
     }
 };
 

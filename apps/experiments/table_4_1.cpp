@@ -23,18 +23,17 @@ struct Table41Options {
     double share = 0.025;
     std::uint64_t cage_vertices = 200;
     int iterations = 50, convergence = 0;
-    void describe(OptionList& visit) {
-        visit("made", made, "name of a synthetic object");
-        visit("scan", scan, "mesh file instead; refined and simplified to each number of vertices");
-        visit("sizes", sizes, "numbers of vertices", Range{100, 1e8});
-        visit("direction", direction, "the region surrounds the vertex that is farthest in this direction");
-        visit("share", share, "area of the region, as a share of the surface", Range{0, 1});
-        visit("cage-vertices", cage_vertices, "number of vertices of the cage", Range{4, 1e6});
-        visit("iterations", iterations, "number of plain iterations that are timed", Range{1, 100000});
-        visit("convergence", convergence,
-              "number of iterations, plain and accelerated, that are compared at the first resolution; 0: none",
-              Range{0, 100000});
-        visit("output", output, "output folder");
+    void list_options(OptionList& list) {
+        list("made", made, "name of a synthetic object");
+        list("scan", scan, "mesh file instead; refined and simplified to each number of vertices");
+        list("sizes", sizes, "numbers of vertices", Range{100, 1e8});
+        list("direction", direction, "the region surrounds the vertex that is farthest in this direction");
+        list("share", share, "area of the region, as a share of the surface", Range{0, 1});
+        list("cage-vertices", cage_vertices, "number of vertices of the cage", Range{4, 1e6});
+        list("iterations", iterations, "number of plain iterations that are timed", Range{1, 100000});
+        list("convergence", convergence,
+             "number of iterations, plain and accelerated, that are compared at the first resolution; 0: none", Range{0, 100000});
+        list("output", output, "output folder");
     }
 };
 

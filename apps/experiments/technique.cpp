@@ -20,12 +20,12 @@ struct TechniqueExperiment {
     int objects = 100, seeds = 2;
     std::uint64_t vertices = 5000;
     bool variants = false;
-    void describe(OptionList& visit) {
-        visit("output", output, "folder for tables and plots").positional().required();
-        visit("objects", objects, "number of statuettes of a population", Range{10, 100000});
-        visit("seeds", seeds, "number of populations of each level", Range{1, 1000});
-        visit("vertices", vertices, "number of vertices of each mesh");
-        visit("variants", variants, "also scan noise, missing interior and holes, at level 3");
+    void list_options(OptionList& list) {
+        list("output", output, "folder for tables and plots").positional().required();
+        list("objects", objects, "number of statuettes of a population", Range{10, 100000});
+        list("seeds", seeds, "number of populations of each level", Range{1, 1000});
+        list("vertices", vertices, "number of vertices of each mesh");
+        list("variants", variants, "also scan noise, missing interior and holes, at level 3");
     }
 };
 

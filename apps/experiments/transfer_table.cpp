@@ -26,15 +26,15 @@ struct TableOptions {
     std::vector<int> rungs{50000, 5000, 100000, 1000000};
     std::string metric, csv;
     bool no_independent = false, truth_only = false;
-    void describe(OptionList& visit) {
-        visit("made", made, "names of synthetic objects, or none");
-        visit("scan", scans, "mesh files of scans; they are subdivided smoothly to the full resolution");
-        visit("full", full, "number of vertices of the full resolution");
-        visit("rungs", rungs, "other numbers of vertices; the first is the one annotated", Range{100, 1e8});
-        visit("metric", metric, "only metrics whose names contain this");
-        visit("csv", csv, "file for the raw rows");
-        visit("truth-only", truth_only, "only the overlap with the parts of synthetic objects");
-        visit("no-independent", no_independent, "without independently meshed resolutions");
+    void list_options(OptionList& list) {
+        list("made", made, "names of synthetic objects, or none");
+        list("scan", scans, "mesh files of scans; they are subdivided smoothly to the full resolution");
+        list("full", full, "number of vertices of the full resolution");
+        list("rungs", rungs, "other numbers of vertices; the first is the one annotated", Range{100, 1e8});
+        list("metric", metric, "only metrics whose names contain this");
+        list("csv", csv, "file for the raw rows");
+        list("truth-only", truth_only, "only the overlap with the parts of synthetic objects");
+        list("no-independent", no_independent, "without independently meshed resolutions");
     }
 };
 

@@ -404,11 +404,11 @@ std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set
     return Fairing(mesh, options).run(std::move(annotations));
 }
 
-void FairOptions::describe(OptionList& visit) {
-    visit("distance", distance,
-          "maximum distance of a smoothed curve from the original; 0: the mean edge length of the mesh or along the curve",
-          Range{0, 1e60}, "unit of the mesh");
-    visit("let-area-change", let_area_change, "leave the areas of regions as smoothing makes them, instead of restoring them");
+void FairOptions::list_options(OptionList& list) {
+    list("distance", distance,
+         "maximum distance of a smoothed curve from the original; 0: the mean edge length of the mesh or along the curve",
+         Range{0, 1e60}, "unit of the mesh");
+    list("let-area-change", let_area_change, "leave the areas of regions as smoothing makes them, instead of restoring them");
 }
 
 }  // namespace ostraka

@@ -170,17 +170,16 @@ std::string to_obj(const Axis& axis) {
     return text;
 }
 
-void AxisOptions::describe(OptionList& visit) {
-    visit("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
-    visit("tolerance", tolerance, "rotation: maximum distance at which a point counts as lying on the surface of revolution",
-          Range{0, 1}, "share of its largest diameter");
-    visit("min-quality", min_quality, "rotation: minimum share of the area that lies on the surface of revolution", Range{0, 1});
-    visit("slices", slices, "slices: number of planes that slice the part", Range{4, 10000});
-    visit("trials", trials, "rotation: number of random sets of normals from which an axis is computed (RANSAC)",
-          Range{0, 1000000});
-    visit("smoothing", smoothing, "rotation: number of rounds in which normals are averaged over their neighbours",
-          Range{0, 100});
-    visit("seed", seed, "rotation: random seed");
+void AxisOptions::list_options(OptionList& list) {
+    list("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
+    list("tolerance", tolerance, "rotation: maximum distance at which a point counts as lying on the surface of revolution",
+         Range{0, 1}, "share of its largest diameter");
+    list("min-quality", min_quality, "rotation: minimum share of the area that lies on the surface of revolution", Range{0, 1});
+    list("slices", slices, "slices: number of planes that slice the part", Range{4, 10000});
+    list("trials", trials, "rotation: number of random sets of normals from which an axis is computed (RANSAC)",
+         Range{0, 1000000});
+    list("smoothing", smoothing, "rotation: number of rounds in which normals are averaged over their neighbours", Range{0, 100});
+    list("seed", seed, "rotation: random seed");
 }
 
 }  // namespace ostraka

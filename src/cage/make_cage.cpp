@@ -134,17 +134,17 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
     return results;
 }
 
-void CageOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices of the mesh", Range{4, 1e6});
-    visit("alpha", alpha,
-          "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
-          "requires it",
-          Range{0, 1}, "share of the diagonal");
-    visit("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
-          "share of the diagonal");
-    visit("genus", genus,
-          "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
-          Choices{"follow", "fill"});
+void CageOptions::list_options(OptionList& list) {
+    list("vertices", vertices, "target number of vertices of the mesh", Range{4, 1e6});
+    list("alpha", alpha,
+         "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
+         "requires it",
+         Range{0, 1}, "share of the diagonal");
+    list("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
+         "share of the diagonal");
+    list("genus", genus,
+         "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
+         Choices{"follow", "fill"});
 }
 
 }  // namespace ostraka

@@ -151,22 +151,22 @@ SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
     return synthetic;
 }
 
-void SyntheticMeasuresOptions::describe(OptionList& visit) {
-    visit("objects", objects, "number of objects", Range{1, 100000});
-    visit("measures", measures, "number of measures", Range{1, 60});
-    visit("groups", groups, "number of groups of measures with fixed ratios among each other", Range{0, 30});
-    visit("group-size", group_size, "number of measures in each group with fixed ratios", Range{2, 60});
-    visit("ratio-deviation", ratio_deviation,
-          "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 2});
-    visit("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
-          Range{0, 2});
-    visit("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});
-    visit("spread", spread,
-          "spread of the individual deviations of measures: they are multiplied by evenly spaced factors "
-          "from 1 - spread to 1 + spread",
-          Range{0, 0.95});
-    visit("missing", missing, "fraction of missing values", Range{0, 0.95});
-    visit("seed", seed, "random seed", Range{0, 1e18});
+void SyntheticMeasuresOptions::list_options(OptionList& list) {
+    list("objects", objects, "number of objects", Range{1, 100000});
+    list("measures", measures, "number of measures", Range{1, 60});
+    list("groups", groups, "number of groups of measures with fixed ratios among each other", Range{0, 30});
+    list("group-size", group_size, "number of measures in each group with fixed ratios", Range{2, 60});
+    list("ratio-deviation", ratio_deviation,
+         "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 2});
+    list("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
+         Range{0, 2});
+    list("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});
+    list("spread", spread,
+         "spread of the individual deviations of measures: they are multiplied by evenly spaced factors "
+         "from 1 - spread to 1 + spread",
+         Range{0, 0.95});
+    list("missing", missing, "fraction of missing values", Range{0, 0.95});
+    list("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

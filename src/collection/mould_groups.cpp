@@ -166,23 +166,23 @@ EpsilonRule epsilon_rule(const std::string& word, double& value) {
 
 }  // namespace
 
-void GroupOptions::describe(OptionList& visit) {
-    visit("method", method,
-          "clustering method: average linkage cut at epsilon (linkage), DBSCAN with radius epsilon (dbscan), or DBSCAN in the "
-          "spectral embedding of the thesis, section 3.3.2 (embedding)",
-          Choices{"linkage", "dbscan", "embedding"});
-    visit("epsilon", epsilon,
-          "maximum distance within groups (for embedding a share of the largest distance), or a rule that chooses it: knn (mean "
-          "distance to the nearest neighbours), volume (spacing of evenly distributed points), knee (bend of the sorted nearest "
-          "distances), silhouette (largest mean silhouette) or nested (groups of largest silhouette, divided further while their "
-          "parts are distinct)",
-          Words{{"knn", "volume", "knee", "silhouette", "nested"}, "a number from 0 up", [](const std::string& word) {
-                    double number = 0;
-                    static_cast<void>(epsilon_rule(word, number));
-                }});
-    visit("expected-size", expected_size,
-          "expected number of heads per mould, for knn; 0: the square root of the number of heads", Range{0, 1e9});
-    visit("dimensions", dimensions, "number of eigenvectors of the spectral embedding", Range{1, 20});
+void GroupOptions::list_options(OptionList& list) {
+    list("method", method,
+         "clustering method: average linkage cut at epsilon (linkage), DBSCAN with radius epsilon (dbscan), or DBSCAN in the "
+         "spectral embedding of the thesis, section 3.3.2 (embedding)",
+         Choices{"linkage", "dbscan", "embedding"});
+    list("epsilon", epsilon,
+         "maximum distance within groups (for embedding a share of the largest distance), or a rule that chooses it: knn (mean "
+         "distance to the nearest neighbours), volume (spacing of evenly distributed points), knee (bend of the sorted nearest "
+         "distances), silhouette (largest mean silhouette) or nested (groups of largest silhouette, divided further while their "
+         "parts are distinct)",
+         Words{{"knn", "volume", "knee", "silhouette", "nested"}, "a number from 0 up", [](const std::string& word) {
+                   double number = 0;
+                   static_cast<void>(epsilon_rule(word, number));
+               }});
+    list("expected-size", expected_size, "expected number of heads per mould, for knn; 0: the square root of the number of heads",
+         Range{0, 1e9});
+    list("dimensions", dimensions, "number of eigenvectors of the spectral embedding", Range{1, 20});
 }
 
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {

@@ -168,15 +168,15 @@ Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string
     fail_usage(fmt::format("there is no similarity '{}'", similarity), "use one of: matches, consistent, registration, combined");
 }
 
-void CompareOptions::describe(OptionList& visit) {
-    features.describe(visit);
-    matches.describe(visit);
-    visit("loose-ratio", loose_ratio, "as --ratio, but for the matches among which geometrically consistent matches are searched",
-          Range{0, 1});
-    consistent.describe(visit);  // shrinkage holds for the registration as well
-    visit("trim", align.trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
-          Range{0.1, 1});
-    visit("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
+void CompareOptions::list_options(OptionList& list) {
+    features.list_options(list);
+    matches.list_options(list);
+    list("loose-ratio", loose_ratio, "as --ratio, but for the matches among which geometrically consistent matches are searched",
+         Range{0, 1});
+    consistent.list_options(list);  // shrinkage holds for the registration as well
+    list("trim", align.trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
+         Range{0.1, 1});
+    list("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
 }
 
 }  // namespace ostraka

@@ -100,17 +100,17 @@ CutPart largest_segment(const Mesh& mesh) {
 
 }  // namespace
 
-void PartOptions::describe(OptionList& visit) {
-    visit("annotation", annotations,
-          "ids or tags of the regions that are analysed (with a vocabulary also narrower concepts); whole objects if left out")
+void PartOptions::list_options(OptionList& list) {
+    list("annotation", annotations,
+         "ids or tags of the regions that are analysed (with a vocabulary also narrower concepts); whole objects if left out")
         .words();
-    visit("without", without,
-          "ids or tags of regions that are left out of the analysis, such as beard; not every object needs to have them")
+    list("without", without,
+         "ids or tags of regions that are left out of the analysis, such as beard; not every object needs to have them")
         .words();
-    visit("proposed", proposed,
-          "analyse a detected part instead of annotated regions: the tubular part (tube) or the part above the neck (top), from "
-          "slices perpendicular to the upward direction, or the largest segment by thickness (segment)",
-          Choices{"none", "tube", "top", "segment"});
+    list("proposed", proposed,
+         "analyse a detected part instead of annotated regions: the tubular part (tube) or the part above the neck (top), from "
+         "slices perpendicular to the upward direction, or the largest segment by thickness (segment)",
+         Choices{"none", "tube", "top", "segment"});
 }
 
 ObjectParts::ObjectParts(PartOptions options, TagMatcher words, std::string words_checksum)

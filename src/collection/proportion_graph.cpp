@@ -133,10 +133,10 @@ Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph e
     return result;
 }
 
-void ProposalOptions::describe(OptionList& visit) {
-    visit("stable", stable, "propose constraints for stable ratios as well as for fixed ratios");
-    visit("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
-    visit("hard", hard, "make the proposed constraints hard (satisfied exactly)");
+void ProposalOptions::list_options(OptionList& list) {
+    list("stable", stable, "propose constraints for stable ratios as well as for fixed ratios");
+    list("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
+    list("hard", hard, "make the proposed constraints hard (satisfied exactly)");
 }
 
 }  // namespace ostraka

@@ -282,22 +282,22 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
     return study;
 }
 
-void TechniqueStudyOptions::describe(OptionList& visit) {
-    visit("positive", positive, "label of the positive class of F1; by default the label with the rounder bodies");
+void TechniqueStudyOptions::list_options(OptionList& list) {
+    list("positive", positive, "label of the positive class of F1; by default the label with the rounder bodies");
     std::vector<std::string> classifiers;
     for (const TechniqueClassifier& classifier : technique_classifiers()) classifiers.push_back(classifier.name);
-    visit("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
-    visit("folds", folds, "number of folds of the cross-validation of classifiers", Range{2, 1000});
-    visit("repeats", repeats, "number of times the division into folds is repeated", Range{1, 1000});
-    visit("resamples", resamples, "number of resampled collections from which classifiers are learnt to classify each object",
-          Range{10, 100000});
-    visit("simulations", simulations,
-          "number of simulated collections with one group, with which a division into two groups is compared", Range{19, 100000});
-    visit("unlike-from", unlike_from,
-          "minimum distance of any descriptor of an object from the collection, in robust standard deviations, at which the "
-          "object gets no answer",
-          Range{1, 1e6});
-    visit("seed", seed, "random seed", Range{0, 1e18});
+    list("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
+    list("folds", folds, "number of folds of the cross-validation of classifiers", Range{2, 1000});
+    list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 1000});
+    list("resamples", resamples, "number of resampled collections from which classifiers are learnt to classify each object",
+         Range{10, 100000});
+    list("simulations", simulations,
+         "number of simulated collections with one group, with which a division into two groups is compared", Range{19, 100000});
+    list("unlike-from", unlike_from,
+         "minimum distance of any descriptor of an object from the collection, in robust standard deviations, at which the "
+         "object gets no answer",
+         Range{1, 1e6});
+    list("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -181,18 +181,16 @@ double Coordinates::stored_share() const {
     return static_cast<double>(sparse.nonZeros()) / static_cast<double>(vertex.size());
 }
 
-void CoordinateOptions::describe(OptionList& visit) {
-    visit("snap", snap, "maximum distance at which a point counts as lying on the cage", Range{0, 1e-6},
-          "share of the cage's diagonal");
-    visit("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage",
-          Range{100, 5e6});
-    visit("drop", drop, "weights below this value are set to zero (not with mean-value or green)", Range{0, 0.01});
-    visit("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
-    visit("tolerance", tolerance, "local: stop when ten iterations reduce the total variation by less than this fraction",
-          Range{0, 0.1});
-    visit("fade", fade,
-          "nested cages: distance from the border of an inner cage over which its influence grows from none to full", Range{0, 1},
-          "share of its diagonal");
+void CoordinateOptions::list_options(OptionList& list) {
+    list("snap", snap, "maximum distance at which a point counts as lying on the cage", Range{0, 1e-6},
+         "share of the cage's diagonal");
+    list("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage", Range{100, 5e6});
+    list("drop", drop, "weights below this value are set to zero (not with mean-value or green)", Range{0, 0.01});
+    list("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
+    list("tolerance", tolerance, "local: stop when ten iterations reduce the total variation by less than this fraction",
+         Range{0, 0.1});
+    list("fade", fade, "nested cages: distance from the border of an inner cage over which its influence grows from none to full",
+         Range{0, 1}, "share of its diagonal");
 }
 
 }  // namespace ostraka

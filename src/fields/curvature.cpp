@@ -165,10 +165,10 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
     return result;
 }
 
-void CurvatureOptions::describe(OptionList& visit) {
-    visit("scale", scale,
-          "radius over which curvature is averaged; a larger radius tolerates more noise; 0: only the faces around each vertex",
-          Range{0, 1}, "share of the box diagonal");
+void CurvatureOptions::list_options(OptionList& list) {
+    list("scale", scale,
+         "radius over which curvature is averaged; a larger radius tolerates more noise; 0: only the faces around each vertex",
+         Range{0, 1}, "share of the box diagonal");
 }
 
 }  // namespace ostraka

@@ -151,12 +151,12 @@ std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<doub
     return result;
 }
 
-void ThicknessOptions::describe(OptionList& visit) {
-    visit("rays", rays, "number of rays sent inward from each face", Range{1, 1000});
-    visit("cone", cone, "opening angle of the cone in which the rays of a face lie", Range{0, 175}, "degrees");
-    visit("thickness-scale", scale,
-          "radius over which normals are averaged for the axis of the cone; a larger radius tolerates more noise", Range{0, 1},
-          "share of the box diagonal");
+void ThicknessOptions::list_options(OptionList& list) {
+    list("rays", rays, "number of rays sent inward from each face", Range{1, 1000});
+    list("cone", cone, "opening angle of the cone in which the rays of a face lie", Range{0, 175}, "degrees");
+    list("thickness-scale", scale,
+         "radius over which normals are averaged for the axis of the cone; a larger radius tolerates more noise", Range{0, 1},
+         "share of the box diagonal");
 }
 
 }  // namespace ostraka

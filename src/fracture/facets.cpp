@@ -197,12 +197,12 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
     return find_facets(mesh, evidence, facet_model().log_odds(evidence), options);
 }
 
-void FacetOptions::describe(OptionList& visit) {
-    visit("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
-    visit("facet-wall", wall, "maximum wall thickness of a fragment with two sides, as a share of the square root of its area",
-          Range{0.01, 1});
-    visit("facet-coherence", coherence, "weight of the labels of neighbouring faces relative to the features of the face itself",
-          Range{0, 100});
+void FacetOptions::list_options(OptionList& list) {
+    list("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
+    list("facet-wall", wall, "maximum wall thickness of a fragment with two sides, as a share of the square root of its area",
+         Range{0.01, 1});
+    list("facet-coherence", coherence, "weight of the labels of neighbouring faces relative to the features of the face itself",
+         Range{0, 100});
 }
 
 }  // namespace ostraka

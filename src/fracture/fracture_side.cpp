@@ -260,9 +260,9 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin, int c
         // The nearest sample of the previous cell bounds the distance for this cell.
         double bound = max_distance;
         const std::size_t y = row % count_[1], z = row / count_[1];
-            for (std::size_t x = 0; x < count_[0]; ++x) {
+        for (std::size_t x = 0; x < count_[0]; ++x) {
             const Vector3d middle = low_ + width_ * Vector3d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5,
-                                                                 static_cast<double>(z) + 0.5);
+                                                             static_cast<double>(z) + 0.5);
             if (x > 0) bound = (1 + 1e-9) * (places[nearest_[row * count_[0] + x - 1]] - middle).norm();
             nearest_[row * count_[0] + x] = tree.nearest(point_of(middle), bound).index;
         }

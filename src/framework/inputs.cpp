@@ -167,7 +167,7 @@ void Slot::take_shared() const {
             operation_option.place, slot_option.place);
 }
 
-void AnnotationsInput::describe(OptionList& options) { describe_shared(options, options_of(reading)); }
+void AnnotationsInput::list_options(OptionList& options) { describe_shared(options, options_of(reading)); }
 
 std::string checksum_of(AnnotatedMeshView object) { return sha256(to_text(annotations_to_json(object, "", {}))); }
 
@@ -211,7 +211,7 @@ const Json& JsonInput::operator*() const {
     return loaded<Json>(*this, 0, "", read_json, [](const Json& document) { return sha256(to_text(document)); });
 }
 
-void TemplateInput::describe(OptionList& operation_options) { describe_shared(operation_options, options_of(options)); }
+void TemplateInput::list_options(OptionList& operation_options) { describe_shared(operation_options, options_of(options)); }
 
 const Template& TemplateInput::operator*() const {
     take_shared();

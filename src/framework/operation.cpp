@@ -19,7 +19,7 @@ Slot& Parameters::input(std::string name, Kind kind, Slot& slot, std::string hel
     slot.role = Role::input;
     slot.help = std::move(help);
     slots_.push_back(&slot);
-    slot.describe(options);
+    slot.list_options(options);
     return slot;
 }
 
@@ -47,7 +47,7 @@ bool Parameters::updated_in_place(const Slot& input) const {
 Operation::~Operation() = default;
 
 Call::Call(const OperationEntry& entry) : entry_(&entry), operation_(entry.make()) {
-    operation_->describe(parameters_);
+    operation_->declare(parameters_);
     for (const Slot* slot : parameters_.slots())
         if (parameters_.options.find(slot->name) != nullptr)
             throw std::logic_error(fmt::format("{} declares '{}' twice", entry.name, slot->name));

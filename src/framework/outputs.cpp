@@ -55,7 +55,7 @@ void check_can_be_created(const Path& folder) {
 
 }  // namespace
 
-void MeshOutput::describe(OptionList& options) {
+void MeshOutput::list_options(OptionList& options) {
     if (encoded_) options("ascii", ascii_, "write PLY and STL as text");
 }
 

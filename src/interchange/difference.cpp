@@ -111,15 +111,15 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
     return std::move(comparison.differences);
 }
 
-void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer,
-          "which set's value to keep where both sets changed the same field differently; none: report a conflict",
-          Choices{"none", "ours", "theirs"});
-    visit("merge-faces", merge_faces,
-          "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
-    visit("renumber", renumber,
-          "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
-          Anything{});
+void MergeOptions::list_options(OptionList& list) {
+    list("prefer", prefer,
+         "which set's value to keep where both sets changed the same field differently; none: report a conflict",
+         Choices{"none", "ours", "theirs"});
+    list("merge-faces", merge_faces,
+         "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
+    list("renumber", renumber,
+         "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
+         Anything{});
 }
 
 }  // namespace ostraka

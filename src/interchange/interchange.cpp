@@ -157,11 +157,11 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
     return result;
 }
 
-void ExportOptions::describe(OptionList& visit) { landmarks.describe(visit); }
+void ExportOptions::list_options(OptionList& list) { landmarks.list_options(list); }
 
-void ImportOptions::describe(OptionList& visit) {
-    landmarks.describe(visit);
-    place.describe(visit);
+void ImportOptions::list_options(OptionList& list) {
+    landmarks.list_options(list);
+    place.list_options(list);
 }
 
 }  // namespace ostraka

@@ -239,19 +239,19 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
     return Assembler(mesh, where).assemble(landmarks, options);
 }
 
-void LandmarkFileOptions::describe(OptionList& visit) {
-    visit("mesh-space", mesh_space,
-          "space of the mesh's coordinates, for file formats that state their space: LPS (x to the left, y to the back; 3D "
-          "Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
-          Choices{"LPS", "RAS"});
-    visit("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
+void LandmarkFileOptions::list_options(OptionList& list) {
+    list("mesh-space", mesh_space,
+         "space of the mesh's coordinates, for file formats that state their space: LPS (x to the left, y to the back; 3D "
+         "Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
+         Choices{"LPS", "RAS"});
+    list("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
 }
 
-void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "maximum distance between a point of the file and the surface of the mesh", Range{0, 1},
-          "share of the box diagonal");
-    visit("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",
-          Anything{});
+void PlaceOptions::list_options(OptionList& list) {
+    list("tolerance", tolerance, "maximum distance between a point of the file and the surface of the mesh", Range{0, 1},
+         "share of the box diagonal");
+    list("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",
+         Anything{});
 }
 
 }  // namespace ostraka

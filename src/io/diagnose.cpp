@@ -365,8 +365,8 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
 
 double crack_width(const TriangleSoup& soup) { return detail::crack_width(soup); }
 
-void DiagnoseOptions::describe(OptionList& visit) {
-    visit("skip-self-intersections", skip_self_intersections, "skip the search for self-intersections", Anything{});
+void DiagnoseOptions::list_options(OptionList& list) {
+    list("skip-self-intersections", skip_self_intersections, "skip the search for self-intersections", Anything{});
 }
 
 }  // namespace ostraka

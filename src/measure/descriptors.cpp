@@ -245,11 +245,11 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
     }
 }
 
-void DescriptorOptions::describe(OptionList& visit) {
-    visit("curvature", curvature, "compute statistics of the mean and Gaussian curvature at the vertices");
-    visit("thickness", thickness, "compute statistics of the thickness of the object under the faces (shape diameter)");
-    curvature_options.describe(visit);
-    thickness_options.describe(visit);
+void DescriptorOptions::list_options(OptionList& list) {
+    list("curvature", curvature, "compute statistics of the mean and Gaussian curvature at the vertices");
+    list("thickness", thickness, "compute statistics of the thickness of the object under the faces (shape diameter)");
+    curvature_options.list_options(list);
+    thickness_options.list_options(list);
 }
 
 }  // namespace ostraka

@@ -57,7 +57,7 @@ Words direction_words(const std::string& option, std::vector<std::string> more) 
     return rule;
 }
 
-void DirectionOption::describe(Parameters& p, const std::string& help) { p.options("up", text_, help, direction_words("--up")); }
+void DirectionOption::declare(Parameters& p, const std::string& help) { p.options("up", text_, help, direction_words("--up")); }
 
 std::optional<std::array<double, 3>> DirectionOption::value() const {
     return text_.empty() ? std::nullopt : std::optional(direction_of(text_, "--up"));

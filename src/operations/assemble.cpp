@@ -25,7 +25,7 @@ namespace ostraka {
 namespace {
 
 struct Assemble final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("fragments", Kind::collection, files,
                 "mesh files, point clouds, and folders of such files; regions \"outer\", \"inner\" and \"fracture\" in "
                 "NAME.ant.json beside NAME.ply override the computed classification of its surface")
@@ -41,8 +41,8 @@ struct Assemble final : Operation {
         p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "write no pictures of the groups");
         p.options("fresh", fresh, "register all pairs again, without the results of an earlier run").unrecorded();
-        options.describe(p.options);
-        reading.describe(p.options);
+        options.list_options(p.options);
+        reading.list_options(p.options);
         p.report.schema = "reassembly";
         p.report.people_table("fragments", {"fragment", "facets by", "fracture %", "group", "why alone"});
         p.report.people_table("joins", {"joined", "confidence", "of the pair alone", "contact %", "confirmed by"});

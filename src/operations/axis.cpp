@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 struct FindAxis final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional();
         p.output_option("output", Kind::report, output, "file to write: the axis as poly-lines (.json, .obj)");
@@ -21,8 +21,8 @@ struct FindAxis final : Operation {
                   "id or tag of the part; several for the union of the parts; a line, or points, give the axis of the circle "
                   "fitted to it")
             .words();
-        attribute.describe(p, "axis");
-        options.describe(p.options);
+        attribute.declare(p, "axis");
+        options.list_options(p.options);
 
         p.report.values(boolean("found", "axis"), text("reason"), numbers("point", "through"), numbers("direction", "direction"),
                         any("polylines"), number("quality", "quality"), any("figures"));

@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct Deform final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("template", Kind::template_package, package,
                 "template (.template.json) with its graph, cage and coordinates; replaces mesh and annotations")
             .optional();
@@ -39,9 +39,9 @@ struct Deform final : Operation {
         p.output_option("cage-out", Kind::cage, cage_out, "cage after the deformation, to write");
         p.options("states", states,
                   "also write the shape after each step of the edit, before the constraints are solved, as output-step1, ...");
-        words.describe(p.options);
-        options.describe(p.options);
-        tolerances.describe(p.options);
+        words.list_options(p.options);
+        options.list_options(p.options);
+        tolerances.list_options(p.options);
         p.report.values(boolean("acceptable"), texts("objections"), number("followed.share"), integer("followed.vertices"),
                         number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
                         integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"), integer("kinks"),

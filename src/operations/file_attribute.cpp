@@ -15,7 +15,7 @@ Path folder_of(const std::string& file) { return resolved(std::filesystem::absol
 
 }  // namespace
 
-void FileAttribute::describe(Parameters& p, const std::string& name) {
+void FileAttribute::declare(Parameters& p, const std::string& name) {
     p.output_option(
         "annotations-out", Kind::annotations, output_,
         "annotations to write (.ant.json), with a new attribute that refers to the output file and stores the file's checksum");

@@ -9,7 +9,7 @@ namespace ostraka {
 class FileAttribute {
 public:
     /// Declares the two options. `name`: default name of the attribute, for the help text.
-    void describe(Parameters& p, const std::string& name);
+    void declare(Parameters& p, const std::string& name);
     /// True if `--annotations-out` is given.
     explicit operator bool() const { return static_cast<bool>(output_); }
     /// Name of the annotation file to write.

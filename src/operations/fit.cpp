@@ -20,7 +20,7 @@ namespace ostraka {
 namespace {
 
 struct Fit final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("template", Kind::template_package, object_template, "template of the object's class (.template.json)");
         p.input("fragments", Kind::mesh, files,
                 "mesh file or point cloud of each fragment; in NAME.ant.json beside NAME.ply, points with tags of the template "
@@ -40,9 +40,9 @@ struct Fit final : Operation {
                   "search the poses of fragments again, instead of using the results of an earlier fit in the output folder")
             .unrecorded();
         p.options("placed", placed, "also write each fragment in the pose that was found, as NAME.placed.ply");
-        vocabulary.describe(p, as_template_words);
-        options.describe(p.options);
-        reading.describe(p.options);
+        vocabulary.declare(p, as_template_words);
+        options.list_options(p.options);
+        reading.list_options(p.options);
         for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
         p.report.schema = "assembly";
         p.report.people_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});

@@ -8,7 +8,7 @@ namespace ostraka {
 namespace {
 
 struct Operations final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.options("name", name, "list only operations whose names begin with this text").positional();
         p.output_option("pages", Kind::folder, pages,
                         "folder to write: a page of Markdown for each first word of the operations' names");

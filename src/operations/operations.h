@@ -53,7 +53,7 @@ Words direction_words(const std::string& option, std::vector<std::string> more =
 /// The option --up: a direction in the form that `direction_of` accepts, checked before any work starts.
 class DirectionOption {
 public:
-    void describe(Parameters& p, const std::string& help);
+    void declare(Parameters& p, const std::string& help);
     explicit operator bool() const { return !text_.empty(); }
     /// Direction given by the user; empty if none was given.
     [[nodiscard]] std::optional<std::array<double, 3>> value() const;
@@ -65,7 +65,7 @@ private:
 /// The option --vocabulary: the vocabulary by whose concepts tags are compared.
 class VocabularyOption {
 public:
-    void describe(Parameters& p, const std::string& help) {
+    void declare(Parameters& p, const std::string& help) {
         p.input_option("vocabulary", Kind::vocabulary, file_, "vocabulary (.vocabulary.json, .ttl, .rdf) " + help);
     }
     explicit operator bool() const { return static_cast<bool>(file_); }

@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 struct PairFragments final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("first", Kind::mesh, first,
                 "mesh file or point cloud of the fragment that stays in place; regions \"outer\", \"inner\" and \"fracture\" in "
                 "NAME.ant.json beside NAME.ply override the computed classification of its surface")
@@ -25,8 +25,8 @@ struct PairFragments final : Operation {
                  "folder, created if missing, for second.ply (the second fragment in the pose that was found; face labels 0 "
                  "outer, 1 inner, 2 fracture) and pair.json")
             .flag();
-        options.describe(p.options);
-        reading.describe(p.options);
+        options.list_options(p.options);
+        reading.list_options(p.options);
         p.report.schema = "pair";
         p.report.people_table("", {"pose", "score", "contact %", "rim %", "residual", "penetration %"});
     }

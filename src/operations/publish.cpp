@@ -63,7 +63,7 @@ std::optional<Point> label_position(const Mesh& mesh, const Annotation& annotati
 }
 
 struct Publish final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.output("folder", Kind::folder, folder, "folder to write; created if missing");
         p.options("address", address, "web address at which the folder will be served, such as https://museum.example/pot");

@@ -18,7 +18,7 @@ namespace ostraka {
 namespace {
 
 struct Render final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("meshes", Kind::mesh, meshes, "mesh to draw; several are drawn in one picture").many();
         p.output("picture", Kind::picture, picture, "picture to write (.png, .svg or .pdf)");
         p.order({"meshes", "picture"});
@@ -48,7 +48,7 @@ struct Render final : Operation {
                   "whether the mesh is coloured by the labels or by the colours in its file; auto: by those that are present",
                   Choices{"auto", "labels", "colours", "none"});
         p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("picture"));
         for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
         p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"), number("pixelsPerUnit"),

@@ -22,7 +22,7 @@ std::string reproducible_report(const Path& folder) {
 }
 
 struct Replay final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("crate", Kind::folder, crate, "folder of the earlier run, as written by 'run'");
         p.output_option("output", Kind::folder, output, "folder in which the run is repeated; a temporary folder if left out");
         p.options("inputs", inputs, "folder that replaces the folder of the study when the names of inputs are resolved")

@@ -52,7 +52,7 @@ std::string address_of(const Path& path) {
 }
 
 struct MakeReport final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("results", Kind::text, results,
                 "results to show: meshes, each followed by files that belong to it (.ant.json, .graph.json, .cage.ply, maps "
                 ".npy, slices and reports of deformations or of 'relation check' .json); templates (.template.json); tables "

@@ -44,7 +44,7 @@ void report_steps(Report& report, const StudyPlan& plan, const std::vector<Insta
 }
 
 struct Run final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("study", Kind::study, study, "study file (.study.json), with steps, parameters, tables and plots");
         p.output_option("output", Kind::folder, output,
                         "folder of the run, for results, reports, tables, page and provenance; NAME-run if left out");

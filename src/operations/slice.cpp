@@ -65,7 +65,7 @@ private:
 };
 
 struct SliceObject final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations,
                 "annotations of the mesh (.ant.json): unit, upward direction, parts")
@@ -81,7 +81,7 @@ struct SliceObject final : Operation {
         p.options.group("Planes");
         p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
-        up.describe(p, "upward direction; by default the upward direction of the annotations, or 0,0,1");
+        up.declare(p, "upward direction; by default the upward direction of the annotations, or 0,0,1");
         p.options("count", count, "number of layers of equal height, with a slice in the middle of each (default 50)",
                   Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, counted upwards from the lowest point", Anything{},
@@ -105,7 +105,7 @@ struct SliceObject final : Operation {
                   "quantity that colours the .ply output: height, or a descriptor by its name in the .csv output",
                   Choices(slice_quantities()));
         p.options.group("The tubular part");
-        tube_options.describe(p.options);
+        tube_options.list_options(p.options);
         declare_slices(p.report);
     }
 

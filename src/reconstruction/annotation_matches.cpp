@@ -159,8 +159,8 @@ std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, Annotat
     return result;
 }
 
-void AnnotationMatchOptions::describe(OptionList& visit) {
-    visit("min-score", min_score, "minimum score, from 0 to 1, of the agreement of two matched annotations", Range{0, 1});
+void AnnotationMatchOptions::list_options(OptionList& list) {
+    list("min-score", min_score, "minimum score, from 0 to 1, of the agreement of two matched annotations", Range{0, 1});
 }
 
 }  // namespace ostraka

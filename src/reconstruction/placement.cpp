@@ -328,18 +328,18 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
     return placement;
 }
 
-void PlacementOptions::describe(OptionList& visit) {
-    visit("outlier", outlier,
-          "residual of a landmark, as a share of the spread of all landmarks of the template, above which the landmark may be an "
-          "outlier",
-          Range{0, 1});
-    visit("unit-ratio", unit_ratio,
-          "ratio of the template's scales from one fragment and from the others, above which the fragments are assumed to have "
-          "different units",
-          Range{1, 1e6});
-    visit("collinear", collinear,
-          "ratio of the second to the first principal extent of a set of landmarks, below which the set counts as collinear",
-          Range{0, 1});
+void PlacementOptions::list_options(OptionList& list) {
+    list("outlier", outlier,
+         "residual of a landmark, as a share of the spread of all landmarks of the template, above which the landmark may be an "
+         "outlier",
+         Range{0, 1});
+    list("unit-ratio", unit_ratio,
+         "ratio of the template's scales from one fragment and from the others, above which the fragments are assumed to have "
+         "different units",
+         Range{1, 1e6});
+    list("collinear", collinear,
+         "ratio of the second to the first principal extent of a set of landmarks, below which the set counts as collinear",
+         Range{0, 1});
 }
 
 }  // namespace ostraka

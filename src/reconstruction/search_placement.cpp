@@ -110,11 +110,11 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
     return place_by_search(searches, fragments, options, scale, placed);
 }
 
-void SearchOptions::describe(OptionList& visit) {
-    visit("search", search,
-          "whether poses of fragments are searched without landmarks; auto: only for fragments with fewer than three landmarks",
-          Choices{"auto", "always", "never"});
-    poses.describe(visit);
+void SearchOptions::list_options(OptionList& list) {
+    list("search", search,
+         "whether poses of fragments are searched without landmarks; auto: only for fragments with fewer than three landmarks",
+         Choices{"auto", "always", "never"});
+    poses.list_options(list);
 }
 
 }  // namespace ostraka

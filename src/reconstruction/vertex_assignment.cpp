@@ -252,20 +252,20 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
     return Assigner(part_of(mesh, part, ours, "template"), part_of(fragment, of_fragment, theirs, "fragment"), options).run();
 }
 
-void VertexAssignmentOptions::describe(OptionList& visit) {
-    visit("counterpart", counterpart,
-          "counterpart of a template vertex: the best vertex of the fragment, or an assignment that uses each vertex once",
-          Choices{"best", "one-to-one"});
-    visit("boundary-weight", boundary, "weight of vertices on an outline relative to vertices inside the annotation",
-          Range{0, 1e6});
-    visit("distance-weight", distance, "weight of the distance of counterparts", Range{0, 1e6});
-    visit("outline-weight", outline, "weight of the positions along the outline, from landmark to landmark", Range{0, 1e6});
-    visit("assignment-reach", search_radius, "maximum distance of a counterpart, in the unit of the meshes; 0: unlimited",
-          Range{0, 1e60});
-    visit("assignment-angle", angle, "maximum angle between the normals of counterparts", Range{0, 180}, "degrees");
-    visit("candidates", candidates, "one-to-one: number of counterparts tried per vertex", Range{1, 1000});
-    visit("unassigned", unassigned, "one-to-one: cost of a template vertex without a counterpart", Range{0, 1e6},
-          "share of the weights' sum");
+void VertexAssignmentOptions::list_options(OptionList& list) {
+    list("counterpart", counterpart,
+         "counterpart of a template vertex: the best vertex of the fragment, or an assignment that uses each vertex once",
+         Choices{"best", "one-to-one"});
+    list("boundary-weight", boundary, "weight of vertices on an outline relative to vertices inside the annotation",
+         Range{0, 1e6});
+    list("distance-weight", distance, "weight of the distance of counterparts", Range{0, 1e6});
+    list("outline-weight", outline, "weight of the positions along the outline, from landmark to landmark", Range{0, 1e6});
+    list("assignment-reach", search_radius, "maximum distance of a counterpart, in the unit of the meshes; 0: unlimited",
+         Range{0, 1e60});
+    list("assignment-angle", angle, "maximum angle between the normals of counterparts", Range{0, 180}, "degrees");
+    list("candidates", candidates, "one-to-one: number of counterparts tried per vertex", Range{1, 1000});
+    list("unassigned", unassigned, "one-to-one: cost of a template vertex without a counterpart", Range{0, 1e6},
+         "share of the weights' sum");
 }
 
 }  // namespace ostraka

@@ -159,15 +159,15 @@ Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<
     return best;
 }
 
-void AlignOptions::describe(OptionList& visit) {
-    visit("shrinkage", shrinkage, "maximum relative difference in size between template and object; 0: rigid registration",
-          Range{0, 0.5});
-    visit("trim", trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
-          Range{0.1, 1});
-    visit("pair-angle", angle, "maximum angle between the normals of two points that are paired in the registration",
-          Range{1, 180}, "degrees");
-    visit("samples", samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
-    visit("iterations", iterations, "maximum number of iterations of a registration", Range{1, 10000});
+void AlignOptions::list_options(OptionList& list) {
+    list("shrinkage", shrinkage, "maximum relative difference in size between template and object; 0: rigid registration",
+         Range{0, 0.5});
+    list("trim", trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
+         Range{0.1, 1});
+    list("pair-angle", angle, "maximum angle between the normals of two points that are paired in the registration",
+         Range{1, 180}, "degrees");
+    list("samples", samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
+    list("iterations", iterations, "maximum number of iterations of a registration", Range{1, 10000});
 }
 
 }  // namespace ostraka

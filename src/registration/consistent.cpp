@@ -94,12 +94,11 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
     return result;
 }
 
-void ConsistentOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "maximum distance between matched features after registration", Range{0, 1},
-          "share of the size");
-    visit("normal-angle", angle, "maximum angle between the normals of matched features", Range{0, 180}, "degrees");
-    visit("shrinkage", shrinkage, "maximum relative difference in size between two objects; 0: rigid registration",
-          Range{0, 0.5});
+void ConsistentOptions::list_options(OptionList& list) {
+    list("tolerance", tolerance, "maximum distance between matched features after registration", Range{0, 1},
+         "share of the size");
+    list("normal-angle", angle, "maximum angle between the normals of matched features", Range{0, 180}, "degrees");
+    list("shrinkage", shrinkage, "maximum relative difference in size between two objects; 0: rigid registration", Range{0, 0.5});
 }
 
 }  // namespace ostraka

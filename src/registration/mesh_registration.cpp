@@ -507,13 +507,13 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
     return remarks;
 }
 
-void MeshRegistrationOptions::describe(OptionList& visit) {
-    visit("scale", scale, "also find the scale, because the two meshes may be in different units", Anything{});
-    visit("tolerance", tolerance,
-          "maximum distance at which points of the two registered meshes count as the same surface; 0: estimated from the "
-          "resolutions",
-          Range{0, 1}, "share of the target's diagonal");
-    visit("samples", samples, "number of surface points with which the meshes are registered and compared", Range{100, 1e6});
+void MeshRegistrationOptions::list_options(OptionList& list) {
+    list("scale", scale, "also find the scale, because the two meshes may be in different units", Anything{});
+    list("tolerance", tolerance,
+         "maximum distance at which points of the two registered meshes count as the same surface; 0: estimated from the "
+         "resolutions",
+         Range{0, 1}, "share of the target's diagonal");
+    list("samples", samples, "number of surface points with which the meshes are registered and compared", Range{100, 1e6});
 }
 
 }  // namespace ostraka

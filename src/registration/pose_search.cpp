@@ -390,20 +390,20 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     return result;
 }
 
-void PoseSearchOptions::describe(OptionList& visit) {
-    visit("search-min-scale", min_scale, "minimum scale of the template in the search for poses", Range{1e-6, 1e6});
-    visit("search-max-scale", max_scale, "maximum scale of the template in the search for poses", Range{1e-6, 1e6});
-    visit("search-tolerance", tolerance,
-          "maximum distance at which a point of a fragment counts as lying on the template in the search for poses",
-          Range{1e-6, 1}, "share of the fragment's size");
-    visit("min-confidence", min_confidence,
-          "minimum confidence of a searched pose; with a lower confidence the fragment is not placed", Range{0, 1});
-    visit("search-points", points, "number of points sampled on the template in the search for poses", Range{50, 4000});
-    visit("search-references", references, "number of reference points of a fragment in the search for poses", Range{1, 4000});
-    visit("search-partners", partners, "number of further points of the fragment that vote for each reference point",
-          Range{1, 100000});
-    visit("search-candidates", candidates, "number of candidate poses of a fragment that are refined", Range{1, 1000});
-    visit("search-seed", seed, "random seed of the search for poses", Range{0, 9007199254740992.0});
+void PoseSearchOptions::list_options(OptionList& list) {
+    list("search-min-scale", min_scale, "minimum scale of the template in the search for poses", Range{1e-6, 1e6});
+    list("search-max-scale", max_scale, "maximum scale of the template in the search for poses", Range{1e-6, 1e6});
+    list("search-tolerance", tolerance,
+         "maximum distance at which a point of a fragment counts as lying on the template in the search for poses",
+         Range{1e-6, 1}, "share of the fragment's size");
+    list("min-confidence", min_confidence,
+         "minimum confidence of a searched pose; with a lower confidence the fragment is not placed", Range{0, 1});
+    list("search-points", points, "number of points sampled on the template in the search for poses", Range{50, 4000});
+    list("search-references", references, "number of reference points of a fragment in the search for poses", Range{1, 4000});
+    list("search-partners", partners, "number of further points of the fragment that vote for each reference point",
+         Range{1, 100000});
+    list("search-candidates", candidates, "number of candidate poses of a fragment that are refined", Range{1, 1000});
+    list("search-seed", seed, "random seed of the search for poses", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

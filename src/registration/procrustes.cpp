@@ -140,9 +140,9 @@ Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {
     return rows;
 }
 
-void ProcrustesOptions::describe(OptionList& visit) {
-    visit("scaling", scaling, "scale all objects to the same size", Anything{});
-    visit("reflection", reflection, "treat mirror images as the same shape", Anything{});
+void ProcrustesOptions::list_options(OptionList& list) {
+    list("scaling", scaling, "scale all objects to the same size", Anything{});
+    list("reflection", reflection, "treat mirror images as the same shape", Anything{});
 }
 
 }  // namespace ostraka

@@ -126,17 +126,17 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
     return checks;
 }
 
-void RelationOptions::describe(OptionList& visit) {
-    visit("distance", distance,
-          "maximum distance or difference of height at which a relationship holds; 0.01 is one per cent of the diagonal",
-          Range{0, 1}, "share of the mesh's diagonal");
-    visit("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
-    visit("tilt", tilt,
-          "maximum tilt of the common outline at which a contact holds: from horizontal for a support, from vertical for a side "
-          "contact",
-          Range{0, 90}, "degrees");
-    visit("ratio", ratio, "maximum relative difference of areas, shapes or attribute values at which a relationship holds",
-          Range{0, 100}, "per cent");
+void RelationOptions::list_options(OptionList& list) {
+    list("distance", distance,
+         "maximum distance or difference of height at which a relationship holds; 0.01 is one per cent of the diagonal",
+         Range{0, 1}, "share of the mesh's diagonal");
+    list("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
+    list("tilt", tilt,
+         "maximum tilt of the common outline at which a contact holds: from horizontal for a support, from vertical for a side "
+         "contact",
+         Range{0, 90}, "degrees");
+    list("ratio", ratio, "maximum relative difference of areas, shapes or attribute values at which a relationship holds",
+         Range{0, 100}, "per cent");
 }
 
 }  // namespace ostraka

@@ -77,14 +77,14 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
     return result;
 }
 
-void RefineOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices (reached exactly); 0: determined by --levels", Range{0, 5e8});
-    visit("levels", levels, "number of times each triangle is split into four", Range{0, 12});
-    visit("scheme", scheme,
-          "midpoint (each triangle is split into four without a change of shape; halving the longest edges gives the rest of the "
-          "target number), loop (the same with Loop's smoothing) or longest-edge (edges are halved in the order of their length "
-          "without a change of shape)",
-          Choices{"midpoint", "loop", "longest-edge"});
+void RefineOptions::list_options(OptionList& list) {
+    list("vertices", vertices, "target number of vertices (reached exactly); 0: determined by --levels", Range{0, 5e8});
+    list("levels", levels, "number of times each triangle is split into four", Range{0, 12});
+    list("scheme", scheme,
+         "midpoint (each triangle is split into four without a change of shape; halving the longest edges gives the rest of the "
+         "target number), loop (the same with Loop's smoothing) or longest-edge (edges are halved in the order of their length "
+         "without a change of shape)",
+         Choices{"midpoint", "loop", "longest-edge"});
 }
 
 }  // namespace ostraka

@@ -440,49 +440,49 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     return rendering;
 }
 
-void RenderOptions::describe(OptionList& visit) {
-    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
-    visit("view", view, "view direction", view_words());
-    visit("views", views, "several views on one sheet",
-          Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
-                    RenderOptions candidate;
-                    candidate.views = text;
-                    static_cast<void>(views_of(candidate));
-                }});
-    visit("up", up, "upward axis of the object; auto: the upward direction of the annotations, or z",
-          Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
-                    static_cast<void>(parse_up(text));
-                }});
-    visit("projection", projection, "projection of the camera: orthographic or perspective",
-          Choices{"orthographic", "perspective"});
-    visit("zoom", zoom, "magnification about the centre; 1 shows the whole object", Range{0.01, 1000});
-    visit("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
-          Choices{"all", "each"});
-    visit("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
-    visit("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
-    visit("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
-          Range{0, 1024});
-    visit("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: no antialiasing", Range{1, 64});
-    visit("edges", edges, "draw the edges of the mesh");
-    visit("drawing", drawing,
-          "how the object is drawn: surface; lines (visible contours, creases and borders); wire (edges of the mesh); points",
-          Choices{"surface", "lines", "wire", "points"});
-    visit("contours", contours, "draw contours, creases and borders over the surface");
-    visit("labels", labels, "write the tags of annotations beside the object with leader lines, instead of a legend");
-    visit("axes", axes, "draw the directions of the coordinate axes of the mesh");
-    visit("supersample", supersample,
-          "number of samples per pixel in each direction, which are averaged in PNG and kept in SVG and PDF; 0: 1 for PNG, 2 for "
-          "SVG and PDF",
-          Range{0, 4});
-    visit("deep", deep, "write a PNG with 16 bits per channel");
-    visit("theme", theme, "colours of text and background: light or dark", Choices{"light", "dark"});
-    visit("background", background, "colour of the background; auto: the background of --theme",
-          Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
-                    if (text != "auto") static_cast<void>(parse_colour(text));
-                }});
-    visit("transparent", transparent, "leave the background transparent");
-    visit("no-scale-bar", no_scale_bar, "leave out the scale bar");
-    visit("no-legend", no_legend, "leave out the legend and the colour bar");
+void RenderOptions::list_options(OptionList& list) {
+    list("size", size, "width and height of the picture in pixels, such as 1200x900");
+    list("view", view, "view direction", view_words());
+    list("views", views, "several views on one sheet",
+         Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
+                   RenderOptions candidate;
+                   candidate.views = text;
+                   static_cast<void>(views_of(candidate));
+               }});
+    list("up", up, "upward axis of the object; auto: the upward direction of the annotations, or z",
+         Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
+                   static_cast<void>(parse_up(text));
+               }});
+    list("projection", projection, "projection of the camera: orthographic or perspective",
+         Choices{"orthographic", "perspective"});
+    list("zoom", zoom, "magnification about the centre; 1 shows the whole object", Range{0.01, 1000});
+    list("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
+         Choices{"all", "each"});
+    list("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
+    list("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
+    list("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
+         Range{0, 1024});
+    list("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: no antialiasing", Range{1, 64});
+    list("edges", edges, "draw the edges of the mesh");
+    list("drawing", drawing,
+         "how the object is drawn: surface; lines (visible contours, creases and borders); wire (edges of the mesh); points",
+         Choices{"surface", "lines", "wire", "points"});
+    list("contours", contours, "draw contours, creases and borders over the surface");
+    list("labels", labels, "write the tags of annotations beside the object with leader lines, instead of a legend");
+    list("axes", axes, "draw the directions of the coordinate axes of the mesh");
+    list("supersample", supersample,
+         "number of samples per pixel in each direction, which are averaged in PNG and kept in SVG and PDF; 0: 1 for PNG, 2 for "
+         "SVG and PDF",
+         Range{0, 4});
+    list("deep", deep, "write a PNG with 16 bits per channel");
+    list("theme", theme, "colours of text and background: light or dark", Choices{"light", "dark"});
+    list("background", background, "colour of the background; auto: the background of --theme",
+         Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
+                   if (text != "auto") static_cast<void>(parse_colour(text));
+               }});
+    list("transparent", transparent, "leave the background transparent");
+    list("no-scale-bar", no_scale_bar, "leave out the scale bar");
+    list("no-legend", no_legend, "leave out the legend and the colour bar");
 }
 
 }  // namespace ostraka

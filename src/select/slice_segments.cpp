@@ -143,15 +143,15 @@ std::optional<double> segment_agreement(const SliceSegments& segments, const std
     return found.empty() ? std::nullopt : std::optional(adjusted_rand_index(found, truth));
 }
 
-void SliceSegmentOptions::describe(OptionList& visit) {
-    visit("slices", slices, "number of evenly spaced slices across the object", Range{4, 10000});
-    visit("clusters", clusters, "number of clusters of slices; 0: the number that --criterion proposes", Range{0, 1000});
-    visit("min-run", min_run,
-          "minimum number of consecutive slices of one cluster that form a segment; a shorter run joins the longer neighbouring "
-          "run",
-          Range{1, 1000});
-    visit("size", size, "also cluster by the size of slices: the radius of the circle with the same area", Anything{});
-    count.describe(visit);
+void SliceSegmentOptions::list_options(OptionList& list) {
+    list("slices", slices, "number of evenly spaced slices across the object", Range{4, 10000});
+    list("clusters", clusters, "number of clusters of slices; 0: the number that --criterion proposes", Range{0, 1000});
+    list("min-run", min_run,
+         "minimum number of consecutive slices of one cluster that form a segment; a shorter run joins the longer neighbouring "
+         "run",
+         Range{1, 1000});
+    list("size", size, "also cluster by the size of slices: the radius of the circle with the same area", Anything{});
+    count.list_options(list);
 }
 
 }  // namespace ostraka

@@ -335,23 +335,23 @@ MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const 
     return best;
 }
 
-void MemberFitOptions::describe(OptionList& visit) {
-    placement.describe(visit);
-    alignment.describe(visit);
-    annotations.describe(visit);
-    fit.describe(visit);
-    visit("ignore-landmarks", ignore_landmarks, "ignore landmarks, and register the template onto objects by the surfaces alone",
-          Anything{});
-    visit("tries", tries,
-          "without landmarks: number of initial poses from which the template is fitted, nearest first; the best fit is kept "
-          "(initial poses: principal axes, and the pose in the files)",
-          Range{1, 5});
-    visit("observed", observed, "maximum distance at which a point of one surface counts as lying on the other surface",
-          Range{0, 1}, "share of the diagonal");
-    visit("max-off", max_off,
-          "maximum share of the two surfaces (mean of unmatched and unexplained) off each other after the fit; above it the "
-          "template does not fit the object",
-          Range{0, 1});
+void MemberFitOptions::list_options(OptionList& list) {
+    placement.list_options(list);
+    alignment.list_options(list);
+    annotations.list_options(list);
+    fit.list_options(list);
+    list("ignore-landmarks", ignore_landmarks, "ignore landmarks, and register the template onto objects by the surfaces alone",
+         Anything{});
+    list("tries", tries,
+         "without landmarks: number of initial poses from which the template is fitted, nearest first; the best fit is kept "
+         "(initial poses: principal axes, and the pose in the files)",
+         Range{1, 5});
+    list("observed", observed, "maximum distance at which a point of one surface counts as lying on the other surface",
+         Range{0, 1}, "share of the diagonal");
+    list("max-off", max_off,
+         "maximum share of the two surfaces (mean of unmatched and unexplained) off each other after the fit; above it the "
+         "template does not fit the object",
+         Range{0, 1});
 }
 
 }  // namespace ostraka

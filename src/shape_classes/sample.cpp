@@ -194,16 +194,16 @@ Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_templ
     return Sampler(learnt, class_template, options).run();
 }
 
-void SampleOptions::describe(OptionList& visit) {
-    visit("count", count, "number of new members to sample", Range{1, 1e6});
-    visit("seed", seed, "random seed", Range{0, 1e18});
-    visit("by", by,
-          "sampling method: modes (normally distributed mode coefficients, within the range of the members) or edits (mean shape "
-          "with one to three random parts stretched or scaled)",
-          Choices{"modes", "edits"});
-    visit("spread", spread, "modes: factor on the range of the mode coefficients of the members", Range{0, 10});
-    visit("edit", edit, "edits: standard deviation of the logarithm of a part's stretch", Range{0, 2});
-    visit("attempts", attempts, "maximum number of random draws for each new member", Range{1, 1e6});
+void SampleOptions::list_options(OptionList& list) {
+    list("count", count, "number of new members to sample", Range{1, 1e6});
+    list("seed", seed, "random seed", Range{0, 1e18});
+    list("by", by,
+         "sampling method: modes (normally distributed mode coefficients, within the range of the members) or edits (mean shape "
+         "with one to three random parts stretched or scaled)",
+         Choices{"modes", "edits"});
+    list("spread", spread, "modes: factor on the range of the mode coefficients of the members", Range{0, 10});
+    list("edit", edit, "edits: standard deviation of the logarithm of a part's stretch", Range{0, 2});
+    list("attempts", attempts, "maximum number of random draws for each new member", Range{1, 1e6});
 }
 
 }  // namespace ostraka

@@ -192,16 +192,16 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
     return tube;
 }
 
-void TubeOptions::describe(OptionList& visit) {
-    visit("min-eccentricity", min_eccentricity,
-          "tube: minimum ratio of the short to the long side of the smallest rectangle around a slice", Range{0, 1});
-    visit("max-roundness", max_roundness, "tube: maximum mean distance of the outline of a slice from the circle fitted to it",
-          Range{0, 10}, "share of the radius");
-    visit(
+void TubeOptions::list_options(OptionList& list) {
+    list("min-eccentricity", min_eccentricity,
+         "tube: minimum ratio of the short to the long side of the smallest rectangle around a slice", Range{0, 1});
+    list("max-roundness", max_roundness, "tube: maximum mean distance of the outline of a slice from the circle fitted to it",
+         Range{0, 10}, "share of the radius");
+    list(
         "similarity", similarity,
         "tube: maximum root mean square distance of the slices of a group from the group's centre, in dimensionless shape values",
         Range{1e-6, 1e6});
-    visit("tube-seed", seed, "tube: random seed of the grouping of slices", Range{0, 1e18});
+    list("tube-seed", seed, "tube: random seed of the grouping of slices", Range{0, 1e18});
 }
 
 }  // namespace ostraka

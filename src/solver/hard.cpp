@@ -147,11 +147,11 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     return summary;
 }
 
-void HardOptions::describe(OptionList& visit) {
-    inner.describe(visit);
-    visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
-    visit("hard-tolerance", tolerance, "maximum distance by which a hard constraint may be violated", Range{1e-15, 1},
-          "share of the diagonal");
+void HardOptions::list_options(OptionList& list) {
+    inner.list_options(list);
+    list("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
+    list("hard-tolerance", tolerance, "maximum distance by which a hard constraint may be violated", Range{1e-15, 1},
+         "share of the diagonal");
 }
 
 }  // namespace ostraka

@@ -249,15 +249,15 @@ BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, co
     return Booster(table, truth, weights, options).run();
 }
 
-void BoostOptions::describe(OptionList& visit) {
-    visit("trees", trees, "number of trees", Range{1, 10000});
-    visit("depth", depth, "maximum number of decisions from root to leaf", Range{1, 16});
-    visit("rate", rate, "learning rate: factor on the value of each tree", Range{1e-4, 1});
-    visit("leaf-weight", leaf_weight, "minimum total weight of the samples of a leaf", Range{0, 1e9});
-    visit("ridge", ridge, "regularisation that shrinks the leaf values towards 0", Range{0, 1e9});
-    visit("row-share", row_share, "fraction of the samples used for each tree", Range{0.01, 1});
-    visit("column-share", column_share, "fraction of the features used for each tree", Range{0.01, 1});
-    visit("seed", seed, "random seed of the choice of samples and features", Range{0, 9007199254740992.0});
+void BoostOptions::list_options(OptionList& list) {
+    list("trees", trees, "number of trees", Range{1, 10000});
+    list("depth", depth, "maximum number of decisions from root to leaf", Range{1, 16});
+    list("rate", rate, "learning rate: factor on the value of each tree", Range{1e-4, 1});
+    list("leaf-weight", leaf_weight, "minimum total weight of the samples of a leaf", Range{0, 1e9});
+    list("ridge", ridge, "regularisation that shrinks the leaf values towards 0", Range{0, 1e9});
+    list("row-share", row_share, "fraction of the samples used for each tree", Range{0.01, 1});
+    list("column-share", column_share, "fraction of the features used for each tree", Range{0.01, 1});
+    list("seed", seed, "random seed of the choice of samples and features", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -141,11 +141,11 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
     return result;
 }
 
-void StabilityOptions::describe(OptionList& visit) {
-    visit("stability-resamples", resamples, "number of resamples from which the stability of the groups is estimated",
-          Range{1, 100000});
-    visit("stability-share", share, "share of the objects that each resample contains", Range{0.05, 1});
-    visit("seed", seed, "random seed", Range{0, 1e18});
+void StabilityOptions::list_options(OptionList& list) {
+    list("stability-resamples", resamples, "number of resamples from which the stability of the groups is estimated",
+         Range{1, 100000});
+    list("stability-share", share, "share of the objects that each resample contains", Range{0.05, 1});
+    list("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

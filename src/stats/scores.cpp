@@ -195,10 +195,10 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
     return result;
 }
 
-void CrossValidationOptions::describe(OptionList& visit) {
-    visit("folds", folds, "number of folds that are held out in turn", Range{2, 100000});
-    visit("repeats", repeats, "number of times the division into folds is repeated", Range{1, 100000});
-    visit("seed", seed, "random seed", Range{0, 1e18});
+void CrossValidationOptions::list_options(OptionList& list) {
+    list("folds", folds, "number of folds that are held out in turn", Range{2, 100000});
+    list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 100000});
+    list("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

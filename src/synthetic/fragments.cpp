@@ -83,15 +83,15 @@ SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, con
     return result;
 }
 
-void FragmentOptions::describe(OptionList& visit) {
-    visit("share", share, "share of the surface area of the object that the fragment keeps", Range{0.001, 1});
-    visit("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
-    visit("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.1},
-          "share of the whole's diagonal");
-    visit("erosion", erosion, "width of the zone at the rim of the fracture that is worn", Range{0, 0.5},
-          "share of the whole's diagonal");
-    visit("moved", moved, "rotate and translate the fragment at random", Anything{});
-    visit("seed", seed, "random seed of the fracture, the noise and the motion", Range{0, 9007199254740992.0});
+void FragmentOptions::list_options(OptionList& list) {
+    list("share", share, "share of the surface area of the object that the fragment keeps", Range{0.001, 1});
+    list("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
+    list("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.1},
+         "share of the whole's diagonal");
+    list("erosion", erosion, "width of the zone at the rim of the fracture that is worn", Range{0, 0.5},
+         "share of the whole's diagonal");
+    list("moved", moved, "rotate and translate the fragment at random", Anything{});
+    list("seed", seed, "random seed of the fracture, the noise and the motion", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -209,32 +209,32 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
     return heads;
 }
 
-void CastOptions::describe(OptionList& visit) {
-    visit("wear", wear,
-          "maximum wear of a cast: standard deviation of the Gaussian that smooths the surface; the wear of a cast is 50 to 100 "
-          "% of this value, and half as large at some places",
-          Range{0, 0.1}, "share of the head's height");
-    visit("pressure", pressure,
-          "deformation of soft clay: standard deviation of the relative stretch along each axis and of a bend", Range{0, 0.1});
-    visit("shrinkage", shrinkage, "maximum linear shrinkage of a cast, as a fraction of its size", Range{0, 0.3});
-    visit("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.01},
-          "share of the head's height");
-    visit("beard", beard, "share of the casts with a beard added by hand", Range{0, 1});
-    visit("chunk", chunk, "share of the casts that lack a piece of the face", Range{0, 1});
-    visit("dents", dents, "maximum number of small dents in the front of a cast", Range{0, 20});
-    visit("body", body, "make whole statuettes: each head on a body of its own that does not depend on the mould");
-    visit("keep-pose", keep_pose, "keep heads upright, facing x, instead of rotating and translating them at random", Anything{});
-    visit("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
-    visit("cast-seed", seed, "random seed of the wear, deformation and mesh of the casts", Range{0, 9007199254740992.0});
+void CastOptions::list_options(OptionList& list) {
+    list("wear", wear,
+         "maximum wear of a cast: standard deviation of the Gaussian that smooths the surface; the wear of a cast is 50 to 100 "
+         "% of this value, and half as large at some places",
+         Range{0, 0.1}, "share of the head's height");
+    list("pressure", pressure,
+         "deformation of soft clay: standard deviation of the relative stretch along each axis and of a bend", Range{0, 0.1});
+    list("shrinkage", shrinkage, "maximum linear shrinkage of a cast, as a fraction of its size", Range{0, 0.3});
+    list("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.01},
+         "share of the head's height");
+    list("beard", beard, "share of the casts with a beard added by hand", Range{0, 1});
+    list("chunk", chunk, "share of the casts that lack a piece of the face", Range{0, 1});
+    list("dents", dents, "maximum number of small dents in the front of a cast", Range{0, 20});
+    list("body", body, "make whole statuettes: each head on a body of its own that does not depend on the mould");
+    list("keep-pose", keep_pose, "keep heads upright, facing x, instead of rotating and translating them at random", Anything{});
+    list("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
+    list("cast-seed", seed, "random seed of the wear, deformation and mesh of the casts", Range{0, 9007199254740992.0});
 }
 
-void MouldPopulationOptions::describe(OptionList& visit) {
-    visit("objects", objects, "number of moulded heads", Range{1, 100000});
-    visit("moulds", moulds, "number of moulds; every second mould has long hair", Range{1, 1000});
-    visit("hand-made", hand_made, "number of hand-made heads", Range{0, 100000});
-    visit("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",
-          Range{0, 3});
-    visit("seed", seed, "random seed from which all objects are made", Range{0, 9007199254740992.0});
+void MouldPopulationOptions::list_options(OptionList& list) {
+    list("objects", objects, "number of moulded heads", Range{1, 100000});
+    list("moulds", moulds, "number of moulds; every second mould has long hair", Range{1, 1000});
+    list("hand-made", hand_made, "number of hand-made heads", Range{0, 100000});
+    list("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",
+         Range{0, 3});
+    list("seed", seed, "random seed from which all objects are made", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -361,12 +361,12 @@ std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const
     return HeadBuilder(shape, work).build();
 }
 
-void ArchetypeOptions::describe(OptionList& visit) {
-    visit("long-hair", long_hair, "long locks behind the ears, instead of a cap of short hair", Anything{});
-    visit("hand-made", hand_made, "a head formed by hand: freely varied, with a hat", Anything{});
-    visit("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",
-          Range{0, 3});
-    visit("archetype-seed", seed, "random seed of the proportions of the archetype", Range{0, 9007199254740992.0});
+void ArchetypeOptions::list_options(OptionList& list) {
+    list("long-hair", long_hair, "long locks behind the ears, instead of a cap of short hair", Anything{});
+    list("hand-made", hand_made, "a head formed by hand: freely varied, with a hat", Anything{});
+    list("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",
+         Range{0, 3});
+    list("archetype-seed", seed, "random seed of the proportions of the archetype", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

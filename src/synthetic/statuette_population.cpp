@@ -89,22 +89,22 @@ bool ProportionedOptions::is_fixed(const std::string& size) const {
     return !none && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
 }
 
-void ProportionedOptions::describe(OptionList& visit) {
-    visit("fixed", fixed, "names of the sizes that have fixed ratios to each other, separated by commas",
-          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
+void ProportionedOptions::list_options(OptionList& list) {
+    list("fixed", fixed, "names of the sizes that have fixed ratios to each other, separated by commas",
+         Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
         .words();
-    visit("none", none, "fix no ratio of sizes, except the equal lengths of the two arms");
-    visit("objects", objects, "number of statuettes", Range{1, 100000});
-    visit("size-deviation", size_deviation, "standard deviation, over the statuettes, of the logarithm of the overall size",
-          Range{0, 0.2});
-    visit("ratio-deviation", ratio_deviation,
-          "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 0.2});
-    visit("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
-          Range{0, 0.2});
-    visit("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-          Range{0, 0.5}, "mm");
-    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
-    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
+    list("none", none, "fix no ratio of sizes, except the equal lengths of the two arms");
+    list("objects", objects, "number of statuettes", Range{1, 100000});
+    list("size-deviation", size_deviation, "standard deviation, over the statuettes, of the logarithm of the overall size",
+         Range{0, 0.2});
+    list("ratio-deviation", ratio_deviation,
+         "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 0.2});
+    list("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
+         Range{0, 0.2});
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
+         Range{0, 0.5}, "mm");
+    list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
+    list("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
 }
 
 std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {

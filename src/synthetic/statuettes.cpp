@@ -301,53 +301,53 @@ std::unique_ptr<const SyntheticObject> statuette_object(const StatuetteParameter
     return shapes::build_statuette(parameters, shapes::StatuetteBody(parameters));
 }
 
-void StatuetteParameters::describe(OptionList& visit) {
-    visit("technique", technique, "technique of the body: wheel-made or hand-made", Choices{"wheel", "hand"});
-    visit("height", height, "height from the base to the topmost point", Range{100, 500}, "mm");
-    visit("base-diameter", base_diameter, "diameter of the base", Range{20, 200}, "mm");
-    visit("arm-length", arm_length, "length of an arm, from the joint along the outside to the end of the hand", Range{30, 250},
-          "mm");
-    visit("head-height", head_height, "height of the head, from the joint at the back of the neck to the topmost point",
-          Range{20, 150}, "mm");
-    visit("ovality", ovality, "ovality of the cross-sections of the body", Range{0, 0.15}, "share of its radius");
-    visit("ovality-drift", ovality_drift, "rotation of the direction of ovality over the height of the body", Range{0, 360},
-          "degrees");
-    visit("finger-marks", finger_marks, "root mean square depth of finger marks", Range{0, 0.05}, "share of the radius");
-    visit("sway", sway, "root mean square offset of the centres of cross-sections from the axis", Range{0, 0.2},
-          "share of the tube's radius");
-    visit("grooves", grooves, "height of throwing grooves", Range{0, 1}, "mm");
-    visit("wall", wall, "mean thickness of the wall; 0: the body is solid", Range{0, 12}, "mm");
-    visit("wall-noise", wall_noise, "root mean square variation of the wall thickness", Range{0, 0.25}, "share of the wall");
-    visit("off-centre", off_centre, "offset of the cavity from the axis of the body", Range{0, 0.4}, "share of the wall");
-    visit("cavity-seen", cavity_seen, "share of the depth of the cavity that is scanned", Range{0.1, 1});
-    visit("interior", interior, "how the mesh of the cavity ends where the scan ends: closed by a flat wall, or open",
-          Choices{"closed", "open"});
-    visit("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-          Range{0, 0.5}, "mm");
-    visit("holes", holes, "number of patches that are missing in the scan", Range{0, 20});
-    visit("hole-radius", hole_radius, "radius of the patches that are missing in the scan", Range{1, 20}, "mm");
-    visit("pose", pose, "pose of the arms", Choices{"forward", "offering", "raised", "down"});
-    visit("hat", hat, "hat of the statuette", Choices{"cone", "cap", "none"});
-    visit("beard", beard, "add a beard: a piece of clay under the chin", Anything{});
-    visit("seed", seed, "random seed of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
-    visit("vertices", vertices, "number of vertices of the mesh, before patches are removed", Range{4000, 5e6});
+void StatuetteParameters::list_options(OptionList& list) {
+    list("technique", technique, "technique of the body: wheel-made or hand-made", Choices{"wheel", "hand"});
+    list("height", height, "height from the base to the topmost point", Range{100, 500}, "mm");
+    list("base-diameter", base_diameter, "diameter of the base", Range{20, 200}, "mm");
+    list("arm-length", arm_length, "length of an arm, from the joint along the outside to the end of the hand", Range{30, 250},
+         "mm");
+    list("head-height", head_height, "height of the head, from the joint at the back of the neck to the topmost point",
+         Range{20, 150}, "mm");
+    list("ovality", ovality, "ovality of the cross-sections of the body", Range{0, 0.15}, "share of its radius");
+    list("ovality-drift", ovality_drift, "rotation of the direction of ovality over the height of the body", Range{0, 360},
+         "degrees");
+    list("finger-marks", finger_marks, "root mean square depth of finger marks", Range{0, 0.05}, "share of the radius");
+    list("sway", sway, "root mean square offset of the centres of cross-sections from the axis", Range{0, 0.2},
+         "share of the tube's radius");
+    list("grooves", grooves, "height of throwing grooves", Range{0, 1}, "mm");
+    list("wall", wall, "mean thickness of the wall; 0: the body is solid", Range{0, 12}, "mm");
+    list("wall-noise", wall_noise, "root mean square variation of the wall thickness", Range{0, 0.25}, "share of the wall");
+    list("off-centre", off_centre, "offset of the cavity from the axis of the body", Range{0, 0.4}, "share of the wall");
+    list("cavity-seen", cavity_seen, "share of the depth of the cavity that is scanned", Range{0.1, 1});
+    list("interior", interior, "how the mesh of the cavity ends where the scan ends: closed by a flat wall, or open",
+         Choices{"closed", "open"});
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
+         Range{0, 0.5}, "mm");
+    list("holes", holes, "number of patches that are missing in the scan", Range{0, 20});
+    list("hole-radius", hole_radius, "radius of the patches that are missing in the scan", Range{1, 20}, "mm");
+    list("pose", pose, "pose of the arms", Choices{"forward", "offering", "raised", "down"});
+    list("hat", hat, "hat of the statuette", Choices{"cone", "cap", "none"});
+    list("beard", beard, "add a beard: a piece of clay under the chin", Anything{});
+    list("seed", seed, "random seed of phases, noise, holes and lattice", Range{0, 9007199254740992.0});
+    list("vertices", vertices, "number of vertices of the mesh, before patches are removed", Range{4000, 5e6});
 }
 
-void PopulationOptions::describe(OptionList& visit) {
-    visit("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
-    visit("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
-    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
-    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
-    visit("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-          Range{0, 0.5}, "mm");
-    visit("interior", interior,
-          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
-          "bodies each)",
-          Choices{"mixed", "closed", "open"});
-    visit("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
-    visit("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
-    visit("size-spread", size_spread,
-          "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
+void PopulationOptions::list_options(OptionList& list) {
+    list("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
+    list("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
+    list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
+    list("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
+         Range{0, 0.5}, "mm");
+    list("interior", interior,
+         "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
+         "bodies each)",
+         Choices{"mixed", "closed", "open"});
+    list("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
+    list("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
+    list("size-spread", size_spread,
+         "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
 }
 
 }  // namespace ostraka

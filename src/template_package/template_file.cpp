@@ -100,11 +100,11 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     return document;
 }
 
-void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
-    visit("force-mesh", force_mesh,
-          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
-          Anything{});
+void TemplateOptions::list_options(OptionList& list) {
+    list("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
+    list("force-mesh", force_mesh,
+         "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+         Anything{});
 }
 
 std::string part_name(const Path& folder, const Path& part) {

@@ -383,8 +383,8 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text) 
     return nullptr;
 }
 
-void CheckVocabularyOptions::describe(OptionList& visit) {
-    visit("strict", strict, "report measures and descriptors that the vocabulary does not define as defects", Anything{});
+void CheckVocabularyOptions::list_options(OptionList& list) {
+    list("strict", strict, "report measures and descriptors that the vocabulary does not define as defects", Anything{});
 }
 
 }  // namespace ostraka

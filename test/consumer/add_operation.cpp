@@ -20,7 +20,7 @@ using namespace ostraka::fields;
 
 struct MeshEdges final : Operation {
     /// Declares everything that others must know; each name refers to a member that holds the value.
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output_option("lengths-out", Kind::values, lengths_out, "length of each edge");
         p.options("longer-than", longer_than, "count the edges longer than this", Range{0, 1e300}, "length");

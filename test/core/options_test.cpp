@@ -22,27 +22,27 @@ struct Sample {
     Colour colour = Colour::red;
     std::string where;
 
-    void describe(OptionList& visit) {
-        visit("on", on, "a switch");
-        visit("count", count, "how many", Range{1, 10});
-        visit("seed", seed, "of chance", Range{0, 1e15});
-        visit("share", share, "of the whole", Range{0, 1}, "share of the diagonal");
-        visit("name", name, "any text");
-        visit("kind", kind, "which", Choices{"a", "b"});
-        visit("tags", tags, "several");
-        visit("heights", heights, "numbers", Range{0, 100});
-        visit("limit", limit, "if there is one", Range{-1, 1});
-        visit("colour", colour, "an enumeration", Choices{"red", "green"});
-        visit("where", where, "a place", Words{{"top", "left"}, "a letter", [](const std::string& text) {
-                                                   if (text.size() != 1 && text != "top" && text != "left")
-                                                       throw Error(ErrorKind::usage, "", "option where is '" + text + "'");
-                                               }});
+    void list_options(OptionList& list) {
+        list("on", on, "a switch");
+        list("count", count, "how many", Range{1, 10});
+        list("seed", seed, "of chance", Range{0, 1e15});
+        list("share", share, "of the whole", Range{0, 1}, "share of the diagonal");
+        list("name", name, "any text");
+        list("kind", kind, "which", Choices{"a", "b"});
+        list("tags", tags, "several");
+        list("heights", heights, "numbers", Range{0, 100});
+        list("limit", limit, "if there is one", Range{-1, 1});
+        list("colour", colour, "an enumeration", Choices{"red", "green"});
+        list("where", where, "a place", Words{{"top", "left"}, "a letter", [](const std::string& text) {
+                                                  if (text.size() != 1 && text != "top" && text != "left")
+                                                      throw Error(ErrorKind::usage, "", "option where is '" + text + "'");
+                                              }});
     }
 };
 
 std::string refused(Sample& sample, const std::string& name, const std::vector<std::string>& words) {
     OptionList list;
-    sample.describe(list);
+    sample.list_options(list);
     try {
         list.find(name)->set(words);
     } catch (const Error& error) {

@@ -453,7 +453,7 @@ namespace {
 /// Writes a file of this name into a folder.
 class Fill final : public Operation {
 public:
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input_option("input", Kind::text, input_, "a file that is read");
         p.output("output", Kind::folder, output_, "folder to write to").flag();
         p.options("name", name_, "of the file");
@@ -473,7 +473,7 @@ private:
 /// Annotations, and then a template, which have an option in common.
 class TakesBoth final : public Operation {
 public:
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input_option("annotations", Kind::annotations, annotations_, "annotations");
         p.input("template", Kind::template_package, template_, "template");
         p.report.values(fields::boolean("forced"));

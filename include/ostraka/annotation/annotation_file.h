@@ -12,7 +12,7 @@ namespace ostraka {
 struct ReadAnnotationsOptions {
     bool force_mesh = false;  ///< true: accept a file made for another mesh; indices and edges are still checked
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Reads the annotations of `mesh` from a file of ours, of the thesis (no format and no mesh member) or of the prototype (.ant;

@@ -23,7 +23,7 @@ struct CageOptions {
     /// follow: the cage keeps the handles of the mesh; fill: the cage has no handles
     enum class Genus { follow, fill } genus = Genus::follow;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Plane of symmetry of a cage.

@@ -56,7 +56,7 @@ struct SyntheticMeasuresOptions {
     double missing = 0;      ///< fraction of missing values
     std::uint64_t seed = 1;  ///< random seed
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// A synthetic table of measures with its true groups.

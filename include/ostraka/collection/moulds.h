@@ -26,7 +26,7 @@ struct CompareOptions {
     ConsistentOptions consistent;  ///< selection of geometrically consistent matches
     AlignOptions align;            ///< registration of two heads
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Features and surface samples of a head, computed once for all comparisons.
@@ -93,7 +93,7 @@ struct GroupOptions {
     int expected_size = 0;           ///< expected number of heads per mould, for knn; 0: square root of the number of heads
     int dimensions = 3;              ///< number of dimensions of the spectral embedding
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Groups of heads.

@@ -17,7 +17,7 @@ struct PartOptions {
     /// Part that is detected instead of annotated.
     enum class Proposal { none, tube, top, segment } proposed = Proposal::none;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// The part of an object that a study examines.

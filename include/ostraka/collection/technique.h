@@ -20,7 +20,7 @@ struct TechniqueOptions {
     double min_turn = 0.8;         ///< min fraction of the full turn that an open outline covers
     int min_slices = 20;           ///< min number of usable slices per object
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// One slice of the body. Lengths are relative to the radius of the circle fitted to its outline. Unknown values are NaN.

@@ -42,7 +42,7 @@ struct TechniqueStudyOptions {
     double unlike_from = 6;
     std::uint64_t seed = 1;  ///< random seed
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Validation of one classifier on the labelled objects.

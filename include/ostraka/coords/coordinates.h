@@ -55,7 +55,7 @@ struct CoordinateOptions {
     /// to 1; relative to the inner cage's diagonal.
     double fade = 0.15;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// A kind of cage coordinates that can be computed by name.

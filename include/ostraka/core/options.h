@@ -2,10 +2,10 @@
 // it.
 //
 // An options struct has a member
-//     void describe(OptionList& visit);
+//     void list_options(OptionList& list);
 // which lists its fields:
-//     visit("max-distance", max_distance, "maximum distance of a correspondence", Range{0, 1}, "share of the box diagonal");
-//     visit("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
+//     list("max-distance", max_distance, "maximum distance of a correspondence", Range{0, 1}, "share of the box diagonal");
+//     list("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -168,11 +168,11 @@ private:
     std::string group_;
 };
 
-/// The option list of an options struct, filled by its member `describe`.
+/// The option list of an options struct, filled by its member `list_options`.
 template <class Options>
 OptionList options_of(const Options& options) {
     OptionList result;
-    const_cast<Options&>(options).describe(result);
+    const_cast<Options&>(options).list_options(result);
     return result;
 }
 

@@ -14,7 +14,7 @@ struct CurvatureOptions {
     /// vertex.
     double scale = 0;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Curvature of a mesh, one value per vertex; 0 where undefined (isolated vertices, faces without area).

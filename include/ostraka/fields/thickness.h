@@ -15,7 +15,7 @@ struct ThicknessOptions {
     /// Radius over which normals are averaged for the cone's axis, as a fraction of the diagonal of the mesh's bounding box.
     double scale = 0.01;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// The shape diameter (Shapira, Shamir and Cohen-Or 2008) of each face in the mesh's unit: rays in a cone around the inward

@@ -18,7 +18,7 @@ struct FacetOptions {
     /// Weight of the agreement of neighbouring faces, relative to the features of the face itself.
     double coherence = 0.3;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// A connected component of faces of the same facet class.

@@ -27,7 +27,7 @@ struct PairOptions {
     double min_confidence = 0.5;  ///< min confidence of an answer; with a lower confidence the pair is undecided
     int candidates = 5;           ///< max number of candidates reported
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Data for matching a fragment's fracture, precomputed once: samples of the fracture and of the intact surface, frames along the

@@ -20,7 +20,7 @@ struct RotationMatchOptions {
     double hold = 0.5;       ///< weight of the sherd's position on the template relative to the fractures
     double min_joint = 0.5;  ///< min confidence of a joint; a joint of lower confidence is not decided
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// A sherd registered to the template vessel up to a rotation about its axis.

@@ -161,7 +161,7 @@ public:
     Context* context = nullptr;
 
     /// Adds the slot's own options to the options of the operation, such as --force-mesh for annotations.
-    virtual void describe(OptionList& /*options*/) {}
+    virtual void list_options(OptionList& options) {}
     /// Throws Error (usage) if a file name is invalid for this kind of slot. Called before any work starts.
     virtual void check() const {}
     /// True if the i-th source is a folder that receives several files.

@@ -69,7 +69,7 @@ class Operation {
 public:
     virtual ~Operation();
     /// Declares slots, options and report.
-    virtual void describe(Parameters& parameters) = 0;
+    virtual void declare(Parameters& parameters) = 0;
     /// Checks options before any input is read: throws Error (usage) if options contradict each other. Ranges and file names have
     /// been checked already.
     virtual void check() const {}

@@ -29,7 +29,7 @@ public:
     /// File name of the mesh written with this ending; empty if the output stays in memory.
     [[nodiscard]] std::string part_file(const std::string& ending) const;
     void check() const override;
-    void describe(OptionList& options) override;
+    void list_options(OptionList& options) override;
 
     /// Declares the option --ascii, which selects text or binary encoding.
     MeshOutput& with_encoding() { return encoded_ = true, *this; }

@@ -40,7 +40,7 @@ struct MergeOptions {
     /// True: if both sides added an annotation under one id, theirs gets a new id, without a conflict.
     bool renumber = false;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Result of `merge_annotations`.

@@ -20,7 +20,7 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes 
 struct ExportOptions {
     LandmarkFileOptions landmarks;  ///< for landmark formats
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Result of `export_annotations`.
@@ -40,7 +40,7 @@ struct ImportOptions {
     LandmarkFileOptions landmarks;  ///< for landmark formats
     PlaceOptions place;             ///< how points are placed on the mesh
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Reads annotations from the `bytes` of a file and places them on the mesh. `onto`: existing set to which a table of attributes

@@ -50,7 +50,7 @@ struct LandmarkFileOptions {
     AnatomicalSpace mesh_space = AnatomicalSpace::lps;  ///< space of the mesh's coordinates
     std::string specimen;                               ///< specimen of a TPS file: its ID, or its number from 1
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Reads landmarks into the space of the mesh: x and y are negated if the file declares LPS or RAS and the mesh uses the other
@@ -80,7 +80,7 @@ struct PlaceOptions {
     /// True: points beyond the tolerance are skipped with a note; false: points beyond the tolerance are an error.
     bool skip_far = false;
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Position of an imported annotation on the mesh.

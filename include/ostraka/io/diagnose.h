@@ -15,7 +15,7 @@ namespace ostraka {
 struct DiagnoseOptions {
     /// True: skip the most expensive check; the verdict then ignores self-intersections.
     bool skip_self_intersections = false;
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// A closed path of border edges.

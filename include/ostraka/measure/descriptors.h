@@ -38,7 +38,7 @@ struct DescriptorOptions {
     CurvatureOptions curvature_options;  ///< used if `curvature`
     ThicknessOptions thickness_options;  ///< used if `thickness`
 
-    void describe(OptionList& visit);  ///< adds every member to a list of options
+    void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Computes quantities of annotations on one mesh. The mesh must outlive this object. Fields on the whole mesh (curvature,

@@ -39,7 +39,7 @@ struct NonRigidOptions {
     double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;              ///< match lines and outlines by the position along the curve
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A fragment registered to the template, with matches of its annotations.

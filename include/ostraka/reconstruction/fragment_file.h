@@ -15,7 +15,7 @@ struct FragmentFileOptions {
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A fragment as read, and how it was obtained.

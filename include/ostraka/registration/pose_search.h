@@ -22,7 +22,7 @@ struct PoseSearchOptions {
     int candidates = 10;          ///< number of poses that are refined on the whole's own faces
     std::uint64_t seed = 1;       ///< random seed
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A pose of the part on the whole.

@@ -40,7 +40,7 @@ struct RenderOptions {
     bool no_legend = false;            ///< omit the legend and the colour bar
     std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Throws Error (usage) for options that `render` would refuse. Call it before reading the meshes.

@@ -19,7 +19,7 @@ struct CreaseOptions {
     double floor = 0.03;     ///< min response of a crease (curvature times scale)
     double shortest = 0.05;  ///< min length of a crease, as a share of the bounding box diagonal
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A ridge or hollow.

@@ -31,7 +31,7 @@ struct DeformOptions {
     int passes = 5;     ///< maximum number of passes that update constraints on axes and measures of other parts
     int conflicts = 8;  ///< maximum number of constraints omitted, one at a time, to find conflicts if one fails; 0: none
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Tolerances for the result of a deformation: tighter than those for relations of scans, since deviations of edited shapes, such

@@ -14,7 +14,7 @@ struct EditWords {
                                                       ///< ,AXIS
     std::vector<std::string> keep, level;             ///< PART or PART MEASURE; PARTS
     [[nodiscard]] bool is_edit() const { return stretch.size() + raise.size() + rotate.size() > 0; }
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// The annotations that a word refers to, in the order of the set: the one with this id; otherwise those with this tag;

@@ -13,7 +13,7 @@ struct ClassifyOptions {
     bool strict = false;
     double close = 0.05;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A quantity of the object compared with the learnt range.

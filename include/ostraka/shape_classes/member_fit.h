@@ -29,7 +29,7 @@ struct MemberFitOptions {
         fit.last_search_radius = 0.05;
     }
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A whole object; it may have no annotations.

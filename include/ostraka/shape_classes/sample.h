@@ -14,7 +14,7 @@ struct SampleOptions {
     double edit = 0.2;
     int attempts = 20;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct ClassSample {

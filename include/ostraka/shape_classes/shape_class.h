@@ -21,7 +21,7 @@ struct LearnOptions {
     double unsure = 0.15;
     double accept = 0.05;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// The values of one quantity on the members, and the range accepted for other objects.

@@ -11,7 +11,7 @@ struct ModeOptions {
     int maximum = 1000;     ///< maximum number of modes
     double variance = 1.0;  ///< modes are kept up to this share of the variance
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct ShapeModes {

@@ -13,7 +13,7 @@ struct ClayOptions {
     int slices = 400;
     double wall = 0;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Volumes in the mesh's unit cubed. NaN: unknown.

@@ -56,7 +56,7 @@ struct TubeOptions {
     double similarity = 0.1;
     std::uint64_t seed = 1;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct Tube {

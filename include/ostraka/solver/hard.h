@@ -16,7 +16,7 @@ struct HardOptions {
     double tolerance = 1e-6;  ///< a hard constraint is met if the distance of each of its rows is at most this share of the
                               ///< diagonal
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct HardSummary {

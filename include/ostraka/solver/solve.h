@@ -22,7 +22,7 @@ struct SolveOptions {
                           ///< unit
     int window = 5;       ///< number of previous steps used by Anderson acceleration; 0: plain iterations
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 enum class StopReason { converged, residual, iterations, stalled };

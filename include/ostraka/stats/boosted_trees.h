@@ -30,7 +30,7 @@ struct BoostOptions {
     double row_share = 0.5;     ///< fraction of the samples drawn for each tree
     double column_share = 0.4;  ///< fraction of the features drawn for each tree
     std::uint64_t seed = 1;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A sum of trees that estimates the log odds of the positive class.

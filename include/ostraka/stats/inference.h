@@ -37,7 +37,7 @@ struct StabilityOptions {
     int resamples = 100;
     double share = 0.8;  ///< fraction of the samples, drawn without replacement
     std::uint64_t seed = 1;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Stability of a cluster under clustering of subsamples.

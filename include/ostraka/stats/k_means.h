@@ -14,7 +14,7 @@ struct KMeansOptions {
     int restarts = 20;     ///< number of initialisations; the cheapest result is kept
     int iterations = 300;  ///< maximum per initialisation
     std::uint64_t seed = 1;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct KMeansResult {
@@ -47,7 +47,7 @@ struct ClusterCountOptions {
     enum class Criterion { silhouette, gap } criterion = Criterion::silhouette;
     int references = 50;
     KMeansOptions k_means = {};  ///< its number of clusters is ignored
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct ClusterCount {

@@ -60,7 +60,7 @@ struct CrossValidationOptions {
     int folds = 10;
     int repeats = 10;
     std::uint64_t seed = 1;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct CrossValidation {

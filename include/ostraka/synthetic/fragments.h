@@ -17,7 +17,7 @@ struct FragmentOptions {
     bool moved = true;   ///< apply a random rigid motion
     std::uint64_t seed = 1;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct SyntheticFragment {

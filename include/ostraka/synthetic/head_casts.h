@@ -25,7 +25,7 @@ struct CastOptions {
     std::uint64_t vertices = 10000;
     std::uint64_t seed = 1;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A cast with its random parameters.
@@ -50,7 +50,7 @@ struct MouldPopulationOptions {
     double difference = 1;
     std::uint64_t seed = 1;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Specification of one head of a population.

@@ -46,7 +46,7 @@ struct ArchetypeOptions {
     double difference = 1;   ///< variation between archetypes: 1 = standard deviation of proportions of about 8 %
     std::uint64_t seed = 1;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 /// Generates a random archetype.
 HeadShape head_archetype(const ArchetypeOptions& options);

@@ -14,7 +14,7 @@ struct MakeOptions {
     std::uint64_t seed = 1;          ///< rotates and shifts the lattice, so that seeds give independent meshes of one object
     double noise = 0;                ///< maximum displacement of vertices along the normal, relative to the mean edge length
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct SyntheticMesh {

@@ -37,7 +37,7 @@ struct StatuetteParameters {
     std::uint64_t seed = 1;  ///< random seed of wave phases, noise, holes and mesh lattice
     std::uint64_t vertices = 10000;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// A named point on the surface.
@@ -88,7 +88,7 @@ struct PopulationOptions {
     int holes = 0;
     double size_spread = 0.07;
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Parameters of every statuette of a population; object i does not depend on the number of objects.
@@ -106,7 +106,7 @@ struct ProportionedOptions {
     static constexpr std::array<const char*, 4> size_names{"total height", "base diameter", "arm length", "head height"};
     /// Whether this size is in fixed proportion to others.
     [[nodiscard]] bool is_fixed(const std::string& size) const;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Medians as in Table 3.1 of the thesis; object i does not depend on the number of objects. Throws Error (usage) for options

@@ -35,7 +35,7 @@ struct TemplateOptions {
     bool allow_outside = false;  ///< parts may lie outside the template's folder
     bool force_mesh = false;     ///< accept annotations of another mesh if their indices and edges fit
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Reads a template's file without opening its parts. Throws Error (input) with the file, the JSON pointer and the remedy for:

@@ -18,7 +18,7 @@ struct CorrespondenceOptions {
     enum class Corner { projection, source } vertex = Corner::projection;  ///< face corner nearest to projection or source
     /// Cosine of `max_angle`.
     [[nodiscard]] double min_cosine() const { return std::cos(max_angle * pi / 180); }
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 enum class CorrespondenceKind {

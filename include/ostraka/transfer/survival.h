@@ -14,7 +14,7 @@ struct SurvivalOptions {
     double ratio = 0.7;
     double area_error = 0.25;
     std::uint64_t minimum = 20;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 struct Survival {

@@ -23,7 +23,7 @@ struct TransferOptions {
     bool refine = false;
     bool overlap = true;
     bool force = false;
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 enum class TransferOutcome { kept, became_line, became_point, lost };

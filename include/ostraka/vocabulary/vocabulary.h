@@ -161,7 +161,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 struct CheckVocabularyOptions {
     bool strict = false;  ///< treat quantities that are not in the vocabulary as defects
 
-    void describe(OptionList& visit);
+    void list_options(OptionList& list);
 };
 
 /// Checks the tags and attributes of a set. Defects: a tag that no concept has or that several have, a qualitative attribute

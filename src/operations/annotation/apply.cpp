@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationApply final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer per face)").optional();
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
@@ -26,8 +26,8 @@ struct AnnotationApply final : Operation {
         p.input_option("edit", Kind::annotations, edited, "existing annotations, to which the steps of the recipe apply");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) in which all tags and attributes must be defined");
-        words.describe(p.options);
-        pictures.describe(p);
+        words.list_options(p.options);
+        pictures.declare(p);
         declare_annotations(p.report);
     }
 

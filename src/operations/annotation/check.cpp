@@ -12,13 +12,13 @@ namespace ostraka {
 namespace {
 
 struct AnnotationCheck final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
-        reading.describe(p.options);
+        reading.list_options(p.options);
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) in which all tags and attributes must be defined");
-        words.describe(p.options);
+        words.list_options(p.options);
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("graph", Kind::graph, graph,
                        "relationships that the rules refer to (.graph.json); without it containment and adjacency are computed "

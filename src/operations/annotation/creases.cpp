@@ -10,12 +10,12 @@ namespace ostraka {
 namespace {
 
 struct AnnotationCreases final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
         p.options("regions", regions, "write the creases as regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.table("creases", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
                        number("length", "length", "length"), number("width", "width", "length"),
                        number("mean curvature", "mean curvature", "1/length"), number("strength", "strength"));

@@ -7,7 +7,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationDiff final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh to which both sets of annotations belong");
         p.input("before", Kind::annotations, before, "first set of annotations (.ant.json)");
         p.input("after", Kind::annotations, after, "second set of annotations (.ant.json), compared with the first");

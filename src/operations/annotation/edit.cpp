@@ -40,7 +40,7 @@ std::array<int, 3> named_colour(const std::string& text) {
 }
 
 struct AnnotationEditing final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.output("output", Kind::annotations, output, "annotations to write");
         p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");

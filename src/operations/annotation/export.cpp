@@ -11,11 +11,11 @@ namespace ostraka {
 namespace {
 
 struct AnnotationExport final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.output("output", Kind::text, output, "file to write");
         describe_format(p, format);
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("format"), integer("annotations"), integer("bytes"), text("sha256"));
     }
 

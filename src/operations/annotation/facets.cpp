@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationFacets final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
                 "annotations (.ant.json) to update or create, with regions \"outer\", \"inner\" and \"fracture\"; for a mesh "
@@ -22,7 +22,7 @@ struct AnnotationFacets final : Operation {
                         "file to write (.npy, or text; see 'render --map'): for each face, its probability of belonging to a "
                         "fracture, without its neighbours");
         p.options("unit", unit, "unit of the mesh's coordinates for a new file, e.g. mm");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
         p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),
                        number("confidence", "confidence"));

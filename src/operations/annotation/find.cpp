@@ -63,7 +63,7 @@ struct ReadObject {
 };
 
 struct AnnotationFind final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.options("query", query, "query, such as '2 arm and 2 leg' or 'area(handle) >= area(body) / 3'").required().positional();
         p.input("objects", Kind::collection, objects,
                 "folders of meshes, lists of objects (.study.json), meshes or annotations (.ant.json); annotations and "

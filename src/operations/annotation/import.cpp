@@ -9,14 +9,14 @@ namespace ostraka {
 namespace {
 
 struct AnnotationImport final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("input", Kind::text, input, "file to read");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
         p.input_option("onto", Kind::annotations, onto,
                        "annotations of the mesh, to which the annotations or attributes in the file are added");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),
                        number("toSurface", "to surface", "length"), number("toVertex", "to vertex", "length"));

@@ -8,7 +8,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationInfer final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.input("vocabulary", Kind::vocabulary, vocabulary, "vocabulary with rules (.vocabulary.json, .ttl, .rdf)");
         p.output("output", Kind::annotations, output, "annotations to write");

@@ -7,7 +7,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationList final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         declare_annotations(p.report);
     }

@@ -11,13 +11,13 @@ namespace ostraka {
 namespace {
 
 struct AnnotationMerge final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh to which all three sets of annotations belong");
         p.input("base", Kind::annotations, base, "set of annotations from which both changed sets were made (.ant.json)");
         p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
         p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(boolean("merged"), integer("annotations"));
         p.report.table("conflicts", integer("id", "id"), text("tag", "tag"), text("field", "conflict"), text("base", "base"),
                        text("ours", "ours"), text("theirs", "theirs"));

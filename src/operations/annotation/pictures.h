@@ -13,7 +13,7 @@ struct AnnotationPictures {
     MeshOutput coloured;
     FileOutput labels;
 
-    void describe(Parameters& p) {
+    void declare(Parameters& p) {
         p.output_option("ply", Kind::mesh, coloured,
                         "write the mesh in the colours of its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,

@@ -14,7 +14,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationRemap final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("before", Kind::mesh, before, "mesh before the change");
         p.input("annotations", Kind::annotations, annotations,
                 "annotations (.ant.json) or label file of the mesh before the change");
@@ -25,8 +25,8 @@ struct AnnotationRemap final : Operation {
         p.input_option("face-map", Kind::index_map, face_map,
                        "index map (JSON): for each face before the change, its index afterwards; without this map, faces are "
                        "mapped by their corners");
-        reading.describe(p.options);
-        pictures.describe(p);
+        reading.list_options(p.options);
+        pictures.declare(p);
         declare_annotations(p.report);
         p.report.values(integer("labels", "labels written"));
     }

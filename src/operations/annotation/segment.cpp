@@ -11,13 +11,13 @@ namespace ostraka {
 namespace {
 
 struct AnnotationSegment final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh must be closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.output_option("labels-out", Kind::labels, labels_out,
                         "label file to write: for each face, the number of its segment; one per line");
-        options.describe(p.options);
-        thickness_options.describe(p.options);
+        options.list_options(p.options);
+        thickness_options.list_options(p.options);
         p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),
                        number("area", "area", "length^2"));
     }

@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct AnnotationSelect final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json) to update or create");
         p.output_option("output", Kind::annotations, output,
@@ -21,7 +21,7 @@ struct AnnotationSelect final : Operation {
         p.output_option("recipe", Kind::recipe, recipe,
                         "write the recipe to this file, and leave the recipe of --record unchanged")
             .updates(record);
-        step.describe(p.options);
+        step.list_options(p.options);
         p.options.group("New file");
         p.options("class", object_class, "class of the object (any text), stored in a new file");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm), stored in a new file");

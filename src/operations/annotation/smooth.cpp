@@ -9,13 +9,13 @@ namespace ostraka {
 namespace {
 
 struct AnnotationSmooth final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.output("output", Kind::annotations, output,
                  "annotations to write (.ant.json), with outlines through the faces of the mesh");
         p.options("annotation", names, "ids or tags of the annotations to smooth; all annotations if left out").words();
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), number("length_before", "length before", "length"),
                        number("length_after", "after", "length"), number("area_before", "area before", "length^2"),
                        number("area_after", "after", "length^2"), number("moved", "moved", "length"), text("note", "note"));

@@ -8,10 +8,10 @@ namespace ostraka {
 namespace {
 
 struct AnnotationSurvival final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), integer("vertices", "smallest number of vertices"),
                        text("end", "and below"));
     }

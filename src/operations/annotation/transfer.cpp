@@ -35,7 +35,7 @@ std::string remarks_on(const TransferScore& score) {
 }
 
 struct AnnotationTransfer final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("source", Kind::mesh, source, "annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "annotations of the source mesh (.ant.json)");
         p.input("target", Kind::mesh, target, "mesh of the same object at another resolution");
@@ -47,7 +47,7 @@ struct AnnotationTransfer final : Operation {
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
         p.output_option("map", Kind::index_map, map,
                         "with --refine: JSON file to write: for each new face, the index of the old face");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.options(
             "register", registers,
             "first register the source mesh onto the target mesh: the meshes may differ in unit and pose (see 'mesh register')",

@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 struct CheckOfCage final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage file");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json), for --graph");

@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 struct CageEdit final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("cage", Kind::cage, cage, "cage file");
         p.input("edit", Kind::edit, edit, "edit of the cage vertices (.edit.json); its selections are cageVertices, box or all");
         p.output("output", Kind::cage, output, "cage to write");

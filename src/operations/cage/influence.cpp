@@ -16,7 +16,7 @@ namespace ostraka {
 namespace {
 
 struct CageInfluence final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage of the mesh");
         p.input("weights", Kind::coordinates, weights, "weights written by 'cage weights' (.npy)");

@@ -17,7 +17,7 @@ namespace ostraka {
 namespace {
 
 struct CageMake final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh may be open");
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
         p.input_option("annotations", Kind::annotations, annotations,
@@ -30,8 +30,8 @@ struct CageMake final : Operation {
                        "relationships (.graph.json) with constraints that the cage must be able to satisfy: near the constrained "
                        "parts the cage is denser and closer to the mesh, with up to twice the vertices (exit code 3: a "
                        "constraint cannot be satisfied)");
-        vocabulary.describe(p, "by which tags of annotations are matched with --parts");
-        options.describe(p.options);
+        vocabulary.declare(p, "by which tags of annotations are matched with --parts");
+        options.list_options(p.options);
         p.options(
             "levels", levels,
             "numbers of vertices, separated by commas: write nested cages, each around the next finer one, as output-NUMBER",

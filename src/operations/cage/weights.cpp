@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct CageCoordinates final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage: a closed mesh around the mesh (polygons are triangulated)");
         p.output("output", Kind::coordinates, output,
@@ -20,7 +20,7 @@ struct CageCoordinates final : Operation {
                   "kind of coordinates: mean-value; local, harmonic or positive-mean-value (inside the cage; never negative); "
                   "green (strictly inside; not for constraints)",
                   Choices(coordinate_kinds()));
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
                         integer("cageFaces", "cage faces"), any("certificate"), number("storedShare"), number("amplification"),
                         integer("outside"), integer("crossed"), integer("cageIntersections"), texts("objections"),

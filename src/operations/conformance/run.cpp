@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct ConformanceRun final : Conformance {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.options("command", command, "program to test and its first arguments, after --").positional().words();
         p.options("lines", lines,
                   "start the program once, and send each case as one line of JSON to its standard input (doc/conformance.md)");

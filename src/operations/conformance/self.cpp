@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct ConformanceSelf final : Conformance {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.options("record", record, "record the output of this command as the expected output, after a change of the kit")
             .unrecorded();
         describe_kit(p);

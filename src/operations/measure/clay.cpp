@@ -13,13 +13,13 @@ namespace ostraka {
 namespace {
 
 struct MeasureClay final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; the mesh may be closed or open");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json): unit and upward direction")
             .optional();
-        up.describe(p, "direction perpendicular to the slices; by default the upward direction of the annotations, or 0,0,1");
+        up.declare(p, "direction perpendicular to the slices; by default the upward direction of the annotations, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, such as mm; by default the unit of the annotations");
-        options.describe(p.options);
+        options.list_options(p.options);
         for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }

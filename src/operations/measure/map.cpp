@@ -15,7 +15,7 @@ namespace ostraka {
 namespace {
 
 struct MeasureMap final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::values, output, "file to write: one value per vertex or face (.npy, or text)");
         p.options("of", quantity, "quantity whose map is computed",
@@ -26,12 +26,12 @@ struct MeasureMap final : Operation {
                   Range{0, std::numeric_limits<int>::max()});
         p.input_option("annotations", Kind::annotations, annotations,
                        "annotations of the mesh (.ant.json); --annotation gets an attribute that refers to the map");
-        attribute.describe(p, "NAME of --of");
+        attribute.declare(p, "NAME of --of");
         p.options("annotation", annotation,
                   "id or tag of the annotation that gets the new attribute; the whole object if left out");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm), if the annotations do not state a unit");
-        options.curvature_options.describe(p.options);
-        options.thickness_options.describe(p.options);
+        options.curvature_options.list_options(p.options);
+        options.thickness_options.list_options(p.options);
         quantity_option = p.options.find("of");
         p.report.values(integer("values"), integer("without"));
         for (const char* figure : {"min", "5 %", "median", "mean", "95 %", "max"}) p.report.values(number(figure, figure));

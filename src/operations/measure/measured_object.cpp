@@ -4,7 +4,7 @@
 
 namespace ostraka {
 
-Slot& MeasuredObject::describe(Parameters& p) {
+Slot& MeasuredObject::declare(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
     Slot& annotations_slot = p.input_option("annotations", Kind::annotations, annotations,
                                             "annotations of the mesh (.ant.json); the whole object is measured if left out");

@@ -13,7 +13,7 @@ struct MeasuredObject {
 
     /// Declares the slots `mesh`, `annotations` and `output`, and the option `unit`. Returns the annotations slot, which the
     /// caller may make optional.
-    Slot& describe(Parameters& p);
+    Slot& declare(Parameters& p);
 
     /// The annotations to change, with the unit set.
     AnnotationSet read(Report& report) const;

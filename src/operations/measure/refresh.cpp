@@ -8,8 +8,8 @@ namespace ostraka {
 namespace {
 
 struct MeasureRefresh final : Operation {
-    void describe(Parameters& p) override {
-        Slot& annotations = object.describe(p);
+    void declare(Parameters& p) override {
+        Slot& annotations = object.declare(p);
         annotations.needed = true;
         annotations.help = "annotations of the mesh (.ant.json)";
         p.options("merge-pickings", merge, "merge measures with the same name into one measure with repeated pickings");

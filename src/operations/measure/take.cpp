@@ -16,8 +16,8 @@ namespace ostraka {
 namespace {
 
 struct MeasureTake final : Operation {
-    void describe(Parameters& p) override {
-        object.describe(p);
+    void declare(Parameters& p) override {
+        object.declare(p);
         p.options("tool", tool,
                   "measuring tool: ruler (straight distance), tape (over the surface) or bounding (between two parallel planes)",
                   Choices{"ruler", "tape", "bounding"})

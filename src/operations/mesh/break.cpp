@@ -15,14 +15,14 @@ namespace ostraka {
 namespace {
 
 struct MeshBreak final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh file");
         p.output("output", Kind::mesh, output, "mesh file of the fragment to write");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the whole object (.ant.json)");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the fragment to write");
         p.output_option("pose-out", Kind::pose, pose_out,
                         "JSON file to write: 4 x 4 matrix that transforms the fragment back to its place on the whole object");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.options("at", at, "centre of the fragment: coordinates x,y,z, or the tag of an annotation").required();
         p.report.values(integer("vertices"), integer("faces"), any("pose"));
     }

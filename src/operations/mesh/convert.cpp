@@ -10,7 +10,7 @@ namespace ostraka {
 namespace {
 
 struct MeshConvert final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; tetrahedra: .mesh, .vtu");
         p.output("output", Kind::mesh, output.with_encoding(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");

@@ -13,11 +13,11 @@ namespace ostraka {
 namespace {
 
 struct MeshExtract final : AnnotatedMeshOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.output("output", Kind::mesh, output, "mesh of the part to write");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
-        vocabulary.describe(p, "by which tags of annotations are matched with --annotation and --without");
+        vocabulary.declare(p, "by which tags of annotations are matched with --annotation and --without");
         p.options("annotation", names,
                   "id or tag of regions that form the part (a tag: all regions with this tag); the whole mesh if left out")
             .words();

@@ -35,9 +35,9 @@ std::size_t count_degenerate(const PolygonSoup& soup) {
 }
 
 struct MeshInfo final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
-        options.describe(p.options);
+        options.list_options(p.options);
         declare_diagnosis(p.report);
         p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"), number("crack_width"));
     }

@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct MeshMake final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.options("object", object_name, "name of the object to make (see --list)",
                   Words{synthetic_object_names(), {}, [](const std::string& name) { static_cast<void>(synthetic_object(name)); }})
             .positional();
@@ -20,7 +20,7 @@ struct MeshMake final : Operation {
         p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one per line");
         p.order({"object", "output"});
         p.options("list", list_objects, "list the objects with their parts and labels, and make no mesh").unrecorded();
-        options.describe(p.options);
+        options.list_options(p.options);
 
         p.report.values(text("object"), text("class"), text("unit"), integer("vertices"), integer("faces"), integer("genus"),
                         number("area", "", "length^2"), number("meanEdgeLength", "", "length"));

@@ -9,9 +9,9 @@ namespace ostraka {
 namespace {
 
 struct MeshRefine final : MeshResizeBound {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_bound(p);
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(integer("levels"), integer("bisections"));
     }
 

@@ -12,14 +12,14 @@ namespace ostraka {
 namespace {
 
 struct MeshRegister final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("source", Kind::mesh, source, "mesh that is moved onto the target");
         p.input("target", Kind::mesh, target,
                 "mesh of the same object, in any unit and pose, at any resolution; it stays unchanged");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: the source registered onto the target").optional();
         p.output_option("matrix", Kind::pose, matrix,
                         "JSON file to write: the transformation of the source as the rows of a 4 x 4 matrix");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),
                         numbers("translation", "translation", "length"), number("rms", "rms", "length"), number("rmsOfDiagonal"),

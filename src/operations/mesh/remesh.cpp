@@ -11,9 +11,9 @@ namespace ostraka {
 namespace {
 
 struct MeshRemesh final : MeshResize {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_meshes(p);
-        options.describe(p.options);
+        options.list_options(p.options);
         p.options.find("vertices")->required();
         p.report.values(boolean("reached"), number("target_edge_length", "", "length"), integer("vertices_before_adjustment"),
                         number("deviation", "", "length"));

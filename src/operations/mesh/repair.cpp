@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 struct MeshRepair final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
         p.output_option("vertex-map", Kind::index_map, vertex_map,
@@ -20,7 +20,7 @@ struct MeshRepair final : Operation {
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: for each old triangle, the index of the new triangle, or -1 if it was dropped");
         p.output_option("report", Kind::report, report_file, "JSON file to write: the same report as --json prints");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));
         p.report.table("steps", text("step"), any("counts"));
         p.report.people_table("", {"step", "what", "count"});

@@ -9,13 +9,13 @@ namespace ostraka {
 namespace {
 
 struct MeshSimplify final : MeshResizeBound {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_bound(p);
         p.output_option("vertex-map", Kind::index_map, vertex_map,
                         "JSON file to write: for each old vertex, the index of the new vertex");
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: for each old face, the index of the new face, or -1 if it vanished");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");
         p.options("protect-outlines", protect, "same effect as --outlines protect; the pins of measures also stay unchanged")

@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 struct RelationAdd final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         p.input_option("graph", Kind::graph, graph,
                        "graph to which the relationship is added; created if the file does not exist");

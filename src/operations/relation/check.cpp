@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 struct RelationCheckAll final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         p.input_option("rest", Kind::mesh, rest,
@@ -20,7 +20,7 @@ struct RelationCheckAll final : RelationOperation {
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf): a rule for a concept also applies to narrower concepts");
-        tolerances.describe(p.options);
+        tolerances.list_options(p.options);
         describe_relationships(p.report, true);
         for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));
         p.report.table("rules", text("rule", "rule"), integer("annotation", "id"), text("part", "part"), text("text", "broken"));

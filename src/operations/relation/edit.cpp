@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct RelationEdit final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         describe_output(p);

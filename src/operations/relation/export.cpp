@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 struct RelationExport final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         p.output("output", Kind::text, output, "drawing to write (.svg, .pdf, .png), or a file for Graphviz (.dot, .gv)");

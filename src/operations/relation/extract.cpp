@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 
 struct RelationExtract final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_output(p);
         p.input_option("graph", Kind::graph, graph,
@@ -27,7 +27,7 @@ struct RelationExtract final : RelationOperation {
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: an annotation inside an annotation "
                        "of its whole is related to it as 'part of'");
-        tolerances.describe(p.options);
+        tolerances.list_options(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
     }

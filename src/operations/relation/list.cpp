@@ -6,7 +6,7 @@ namespace ostraka {
 namespace {
 
 struct RelationList final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         describe_relationships(p.report);

@@ -8,7 +8,7 @@ namespace ostraka {
 namespace {
 
 struct RelationRemove final : RelationOperation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_inputs(p);
         describe_graph(p);
         describe_output(p);

@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-void StudyFiles::describe(Parameters& p, bool labels, const std::string& collections) {
+void StudyFiles::declare(Parameters& p, bool labels, const std::string& collections) {
     p.input("collection", Kind::collection, collection, collections);
     p.output(
          "output", Kind::folder, output,

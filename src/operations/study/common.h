@@ -10,8 +10,8 @@ namespace ostraka {
 class StudyFiles {
 public:
     /// Declares the slots and --plots; with `labels` also --truth, --truth-column and the members result.truth.
-    void describe(Parameters& p, bool labels,
-                  const std::string& collections = "folder of meshes, or a list of objects (.study.json)");
+    void declare(Parameters& p, bool labels,
+                 const std::string& collections = "folder of meshes, or a list of objects (.study.json)");
     /// Throws Error (usage) if the output folder is the folder of the collection.
     void check() const;
     /// Reads the collection (only the objects of the shard, unless `all`) and its labels, reports their notes, records both in
@@ -54,9 +54,9 @@ struct StudyOperation : Operation {
 /// The part of each object that a study examines.
 class StudyPart {
 public:
-    void describe(Parameters& p) {
-        options_.describe(p.options);
-        vocabulary_.describe(p, "by which tags of annotations are matched with the names of parts");
+    void declare(Parameters& p) {
+        options_.list_options(p.options);
+        vocabulary_.declare(p, "by which tags of annotations are matched with the names of parts");
     }
     void check() const {
         static_cast<void>(ObjectParts(options_));

@@ -17,10 +17,10 @@ namespace ostraka {
 namespace {
 
 struct StudyLandmarks final : StudyOperation {
-    void describe(Parameters& p) override {
-        files.describe(p, true);
+    void declare(Parameters& p) override {
+        files.declare(p, true);
         p.options("components", components, "number of principal components to write", Range{1, 1000});
-        options.describe(p.options);
+        options.list_options(p.options);
         for (const char* count : {"objects", "landmarks", "iterations"}) p.report.values(integer(count));
         for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
         p.report.values(boolean("converged"), numbers("components"));

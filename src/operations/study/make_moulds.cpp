@@ -15,10 +15,10 @@ namespace ostraka {
 namespace {
 
 struct StudyMakeMoulds final : StudyMake {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_folder(p, "folder to write: a PLY mesh with labelled faces for each object, and the known answers (truth.csv)");
-        population.describe(p.options);
-        cast.describe(p.options);
+        population.list_options(p.options);
+        cast.list_options(p.options);
         p.report.values(integer("objects"), texts("parts"));
         p.report.people_table("", {"label", "part"});
     }

@@ -14,9 +14,9 @@ namespace ostraka {
 namespace {
 
 struct StudyMakeTechnique final : StudyMakeStatuettes {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         describe_folder(p, "folder to write: meshes, annotations and the known answers (truth.csv)");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("folder"));
         for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));
     }

@@ -17,9 +17,9 @@ namespace ostraka {
 namespace {
 
 struct StudyMoulds final : StudyOperation {
-    void describe(Parameters& p) override {
-        files.describe(p, true);
-        part.describe(p);
+    void declare(Parameters& p) override {
+        files.declare(p, true);
+        part.declare(p);
         p.options("similarity", similarity,
                   "similarity of two heads by which they are grouped: number of matches, of consistent matches, distance after "
                   "registration, or all combined",
@@ -27,9 +27,9 @@ struct StudyMoulds final : StudyOperation {
         p.options("leave-out", leave_out, "labels of faces that are left out of the analysis, such as beards").words();
         p.options("choices", choices,
                   "also write a table of the groups that every similarity, method and rule for epsilon gives");
-        compare.describe(p.options);
-        group.describe(p.options);
-        stability.describe(p.options);
+        compare.list_options(p.options);
+        group.list_options(p.options);
+        stability.list_options(p.options);
         for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.values(text(word));
         for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"}) p.report.values(number(figure));
         p.report.values(boolean("clear"));

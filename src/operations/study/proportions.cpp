@@ -109,9 +109,9 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
 }
 
 struct StudyProportions final : StudyOperation {
-    void describe(Parameters& p) override {
-        files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
-        vocabulary.describe(p, "by which tags of annotations are matched with the names in --measures");
+    void declare(Parameters& p) override {
+        files.declare(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
+        vocabulary.declare(p, "by which tags of annotations are matched with the names in --measures");
         p.input_option("measures", Kind::text, measures, "definitions of the measures to take on every object (.measures.json)");
         p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template for which proportions are proposed");
         p.input_option("template-annotations", Kind::annotations, annotations, "annotations of the template (.ant.json)");
@@ -121,8 +121,8 @@ struct StudyProportions final : StudyOperation {
                         "graph to write (.graph.json), with fixed proportions as constraints on the template");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the template to write (.ant.json), with the measures to which the constraints refer");
-        options.describe(p.options);
-        proposals.describe(p.options);
+        options.list_options(p.options);
+        proposals.list_options(p.options);
         p.report.values(integer("objects"));
         std::vector<Field> columns{text("name"),       text("unit"),
                                    integer("objects"), number("average"),

@@ -15,7 +15,7 @@ namespace ostraka {
 namespace {
 
 struct StudySegments final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.output_option("curve", Kind::picture, curve,
@@ -23,9 +23,9 @@ struct StudySegments final : Operation {
         p.input_option("compare", Kind::annotations, compare,
                        "annotations of the known parts (.ant.json), with which the result is compared; by default the labels of "
                        "the mesh file, if any");
-        up.describe(p, "upward direction; by default the upward direction of the annotations of --compare, or 0,0,1");
+        up.declare(p, "upward direction; by default the upward direction of the annotations of --compare, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of --compare");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
         p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),
                        number("gap", "gap"), number("gapError", "gap error"));

@@ -14,13 +14,13 @@ namespace ostraka {
 namespace {
 
 struct StudyOfTechnique final : StudyOperation {
-    void describe(Parameters& p) override {
-        files.describe(p, true);
-        part.describe(p);
-        up.describe(
+    void declare(Parameters& p) override {
+        files.declare(p, true);
+        part.declare(p);
+        up.declare(
             p, "upward direction of all objects; by default the upward direction of the annotations of each object, or 0,0,1");
-        slices.describe(p.options);
-        options.describe(p.options);
+        slices.list_options(p.options);
+        options.list_options(p.options);
         for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));
         for (const char* answer : {"learned", "separated"}) p.report.values(boolean(answer));
         p.report.table("classifiers", text("name"), texts("descriptors"), integer("objects"), numbers("f1Interval"),

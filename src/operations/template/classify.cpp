@@ -13,14 +13,14 @@ namespace ostraka {
 namespace {
 
 struct TemplateClassify final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("files", Kind::shape_class, files,
                 "class files (.class.json), then the mesh file of each object (for classes of landmarks: the landmark file)")
             .many();
-        vocabulary.describe(p, as_template_words);
+        vocabulary.declare(p, as_template_words);
         p.output_option("report", Kind::report, answer,
                         "file to write: the complete answer as JSON (doc/schema/classification.schema.json)");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.schema = "classification";
         p.report.people_table("", {"object", "class", "verdict", "score", "against"});
     }

@@ -35,7 +35,7 @@ inline void add_template(Report& report, const Template& package, bool contents)
 struct TemplateInspection : Operation {
     explicit TemplateInspection(bool shows_contents) : contents(shows_contents) {}
 
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("template", Kind::template_package, input, "template (.template.json)");
         declare_template(p.report, contents);
     }

@@ -14,7 +14,7 @@ namespace ostraka {
 namespace {
 
 struct TemplateLearn final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("template", Kind::template_package, template_input,
                 "template (.template.json), or, for a class of landmarks only, the first member (.mrk.json, .fcsv, .tps, .pp), "
                 "which determines the set of landmarks and the orientation of the mean");
@@ -31,9 +31,9 @@ struct TemplateLearn final : Operation {
             .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; created if missing").flag();
         p.options("name", name, "name of the class; by default the class of the template");
-        vocabulary.describe(p, as_template_words);
+        vocabulary.declare(p, as_template_words);
         p.options("given", given, "same effect as --correspondence given");
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
                         number("diversity"), numbers("varianceShares"));
         p.report.people_table("members", {"member", "placed by", "scale", "centroid size", "from the mean %", "archetype"});

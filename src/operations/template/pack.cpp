@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct TemplatePack final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.output("output", Kind::template_package, output, "template to write (.template.json)");
         const auto part = [&](const char* role, Kind kind, const char* help) -> Slot& {
             return p.input_option(role, kind, parts[role], help);
@@ -27,9 +27,9 @@ struct TemplatePack final : Operation {
         part("landmarks", Kind::landmarks, "landmarks of the template (.ant.json)");
         p.options("class", object_class, "class of the object; by default the class in the annotations");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm); by default the unit of the annotations");
-        up.describe(p, "upward direction; by default the upward direction of the annotations");
+        up.declare(p, "upward direction; by default the upward direction of the annotations");
         p.options("copy", copy, "copy the files into the folder of the template");
-        options.describe(p.options);
+        options.list_options(p.options);
         declare_template(p.report, true);
     }
 

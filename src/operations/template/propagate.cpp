@@ -14,12 +14,12 @@ namespace ostraka {
 namespace {
 
 struct TemplatePropagate final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("template", Kind::template_package, template_input, "template (.template.json)");
         p.input("members", Kind::mesh, members, "mesh file of each member, with annotations in NAME.ant.json beside it")
             .many()
             .with_annotations_beside();
-        vocabulary.describe(p, as_template_words);
+        vocabulary.declare(p, as_template_words);
         p.output("output", Kind::folder, output,
                  "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; created if missing")
             .flag();
@@ -28,7 +28,7 @@ struct TemplatePropagate final : Operation {
                   "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
                   "template (auto); all as they are (given); all by fitting the template (fitted)",
                   Choices{"auto", "given", "fitted"});
-        options.fit.describe(p.options);
+        options.fit.list_options(p.options);
         p.report.table("members", text("name", "member"), text("placedBy", "placed by"), number("distance", "distance %"),
                        number("distanceBack"), number("unmatched", "unmatched %"), number("unexplained", "unexplained %"),
                        number("stretch"), number("bend"), integer("annotations", "annotations"), integer("lost", "lost"),

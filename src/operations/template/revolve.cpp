@@ -12,12 +12,12 @@ namespace ostraka {
 namespace {
 
 struct TemplateRevolve final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("sherds", Kind::mesh, files, "closed mesh of a sherd, in the pose that the sherd had in the vessel").many();
         p.output("output", Kind::folder, output, "folder to write: the template of the vessel").flag();
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
-        options.describe(p.options);
-        reading.describe(p.options);
+        options.list_options(p.options);
+        reading.list_options(p.options);
         p.report.schema = "vessel";
         p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"), number("lean", "own axis leans, degrees"),
                        number("aside", "aside"), number("weight", "share of the axis %"), number("disagreement"),

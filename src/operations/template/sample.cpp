@@ -13,11 +13,11 @@ namespace ostraka {
 namespace {
 
 struct TemplateSample final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("class", Kind::shape_class, file, "class file (.class.json), as written by 'template learn'");
         p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; created if missing")
             .flag();
-        options.describe(p.options);
+        options.list_options(p.options);
         p.report.schema = "samples";
     }
 

@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct VocabularyCheck final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("scheme", scheme, scheme_help);
         p.report.checks = true;

@@ -11,7 +11,7 @@ namespace ostraka {
 namespace {
 
 struct VocabularyConvert final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("input", Kind::vocabulary, input, vocabulary_file);
         p.output("output", Kind::vocabulary, output, "vocabulary to write (.vocabulary.json, .ttl, .rdf)");
         p.options("scheme", scheme, scheme_help);

@@ -14,7 +14,7 @@ namespace ostraka {
 namespace {
 
 struct VocabularyShow final : Operation {
-    void describe(Parameters& p) override {
+    void declare(Parameters& p) override {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("language", language, "language of the labels that are shown");
         p.options("under", under, "id or label of a concept: show only this concept and its narrower concepts");
