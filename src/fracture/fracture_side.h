@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// A point on the rim of a fracture, with the directions there.
+/// A point on the rim of a fracture, with the directions of the adjacent surfaces.
 struct RimFrame {
     /// Position; unit normals of the adjacent intact side and of the fracture surface.
     Eigen::Vector3d place, side, fracture;

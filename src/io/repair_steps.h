@@ -11,7 +11,7 @@ struct RepairSoup {
     TriangleSoup soup;
     /// Per vertex: the identical old vertex (no_index: new); the old vertex that provides the attributes.
     std::vector<Index> vertex_source, vertex_like;
-    /// Per triangle: the identical old triangle (no_index: new); the old one that provides the attributes.
+    /// Per triangle: the identical old triangle (no_index: new); the old triangle that provides the attributes.
     std::vector<Index> face_source, face_like;
     /// Per triangle corner: 3 * old triangle + old corner that provides the texture coordinates.
     std::vector<std::array<Index, 3>> corner_like;
@@ -40,7 +40,7 @@ std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
 /// Distances within which points are merged.
 struct MergeDistances {
-    double distance;  ///< points closer than this are merged; in the mesh's unit
+    double distance;  ///< points closer than this distance are merged; in the mesh's unit
     double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
 };
 /// Merges points on open borders. `crack` receives the width of cracks along the edges; 0 if there are none.

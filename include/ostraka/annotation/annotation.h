@@ -75,9 +75,9 @@ enum class AnnotationType { point, line, region };
 /// Colour (grey) of annotations that cover the whole object and thus distinguish no part.
 inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 
-/// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used.
-/// A free annotation has its own curves, which need not follow the edges; its selection then holds the elements nearest to the
-/// curves (curves.h).
+/// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used. A
+/// free annotation has its own curves, which need not follow the edges; the selection of a free annotation holds the elements
+/// nearest to the curves (curves.h).
 struct Annotation {
     int id = 0;                                  ///< unique among the annotations of the set
     std::string tag;                             ///< name of the annotated part

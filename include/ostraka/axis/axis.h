@@ -59,19 +59,19 @@ Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpti
 /// and the result of the highest quality is kept. Quality: the fraction of the area (without parts that face along the axis)
 /// within `tolerance` of the revolved profile. No axis is found for flat parts, spheres (infinitely many), shapes that are not
 /// rotationally symmetric or that fit about several lines, and short arcs (relative error of the diameter above one half).
-/// Figures: largest diameter, per cent of the circle preserved, rms distance from the profile, standard errors of the direction
+/// `figures`: largest diameter, per cent of the circle preserved, rms distance from the profile, standard errors of the direction
 /// and of the diameter. Linear in faces.
 Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
 /// Axis of a tubular part through the centroids of slices, which are cut across the longest principal direction and then again
 /// across the local tangent of the curve. A slice that covers less than 300 degrees contributes the centre of its fitted circle
 /// instead. The straight axis is fitted to these centres. Quality: 1 - mean radius / length. No axis is found for parts that are
-/// not longer than wide. Figures: length, mean radius, rms distance of the centres from the straight axis. O(slices x faces).
+/// not longer than wide. `figures`: length, mean radius, rms distance of the centres from the straight axis. O(slices x faces).
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
 /// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest component, with its holes filled. The axis is the
 /// longest path in the skeleton, or its loop. Quality: the fraction of the skeleton's length on the longest path. No axis is
-/// found for parts that contract to a point. Figures: length, number of branches, rms distance of the path from the straight
+/// found for parts that contract to a point. `figures`: length, number of branches, rms distance of the path from the straight
 /// axis. The part may have at most 200 000 faces.
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 

@@ -87,7 +87,7 @@ struct TechniqueOutlier {
     double distance = 0;
 };
 
-/// The technique found for one object.
+/// The technique that the study found for one object.
 struct TechniqueAnswer {
     std::string name, label;  ///< name of the object; its known technique (empty: unknown)
     std::string answer;       ///< label or group given by the study; empty if there is no answer
