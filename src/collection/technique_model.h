@@ -42,8 +42,8 @@ struct TechniqueModel {
     std::optional<Threshold> threshold;
     [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle) - limit; }
 };
-/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur. Scores are scaled so that their
-/// standard deviation about the class means is 1 over the rows.
+/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur among the given rows. Scores are
+/// scaled so that their standard deviation about the class means is 1 over the rows.
 TechniqueModel learn(const Eigen::MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows);
 
 /// Cross-validation of one classifier, with its uncertainty and receiver operating characteristic (technique_validation.cpp).

@@ -1,7 +1,7 @@
 // Loops over eight points at a time, which the compiler vectorises for each vector width the processor may have.
 //
-// They use plain IEEE arithmetic without contraction (see the flags of these files), so that every vector width and every
-// machine gives the same bits.
+// The loops use plain IEEE arithmetic without contraction (see the compiler flags of these files), so that every vector width
+// and every machine gives the same bits.
 #pragma once
 
 #include <bit>

@@ -25,7 +25,7 @@ public:
 
     /// Sets the positions on the sheet of the two ends of the range.
     void stretch_over(double low, double high) { low_ = low, high_ = high; }
-    /// Position on the sheet of a value.
+    /// Position of a value on the sheet.
     [[nodiscard]] double pixel(double value) const {
         return low_ + (place(value) - minimum_) / (maximum_ - minimum_) * (high_ - low_);
     }

@@ -110,7 +110,7 @@ struct AnnotationSet {
     std::string object_class;                 ///< class of the object ("class" in the file); empty if unknown
     std::string unit;                         ///< unit of the mesh's coordinates; empty if unknown
     std::optional<std::array<double, 3>> up;  ///< upward direction of the object; none if unknown
-    std::vector<Annotation> annotations;      ///< in the order of the file
+    std::vector<Annotation> annotations;      ///< the annotations, in the order of the file
     Json provenance;                          ///< provenance as read from the file; null if the file has none
     std::vector<std::string> notes;           ///< remarks by the reader or by functions that adapted the set to a changed mesh
 

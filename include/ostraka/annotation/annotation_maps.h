@@ -39,8 +39,8 @@ private:
 };
 
 /// Writes the annotations into the property maps of `mesh`; existing maps are overwritten. An edit that splits a face or an edge
-/// copies the index of its set to the parts; an edge between two faces with different sets lies on an outline. Linear in the size
-/// of the mesh and the selections.
+/// copies the index of its set to the parts; an edge between two faces with different sets lies on an outline. Time: linear in
+/// the size of the mesh and the selections.
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 
 /// Reads the annotations back from the property maps of an edited mesh, which must be free of garbage (collect_garbage).

@@ -28,7 +28,7 @@ namespace ostraka {
 struct Anything {};
 /// Rule of an option: numbers from min to max are allowed.
 struct Range {
-    double min, max;  ///< both allowed
+    double min, max;  ///< smallest and largest allowed number
 };
 /// Rule of an option: only these names are allowed.
 struct Choices {

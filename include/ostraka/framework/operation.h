@@ -82,7 +82,7 @@ public:
 
 /// A row of the table of operations.
 struct OperationEntry {
-    const char* name;                      ///< e.g. "annotation transfer"
+    const char* name;                      ///< name of the operation, such as "annotation transfer"
     const char* help;                      ///< help text
     std::unique_ptr<Operation> (*make)();  ///< creates an instance
     /// Raised when the operation gives different results for the same inputs, so that earlier results are computed again.

@@ -23,7 +23,7 @@ SurfaceCurve curve_through(const Mesh& mesh, const std::vector<SurfacePoint>& po
 
 /// Traces the intersection of the surface with the plane through both points and the direction `up` (for example the mean surface
 /// normal) from `from` to `to`. The result is nullopt if the trace reaches the border, does not reach `to`, or becomes longer
-/// than `limit`. Linear in the number of faces crossed.
+/// than `limit`. Time: linear in the number of faces crossed.
 std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to, const Vector& up,
                                        double limit);
 

@@ -17,7 +17,7 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes 
 
 /// Options of `export_annotations`.
 struct ExportOptions {
-    LandmarkFileOptions landmarks;  ///< for landmark formats
+    LandmarkFileOptions landmarks;  ///< options for the landmark formats
 
     void describe(OptionList& visit);  ///< adds every member to a list of options
 };
@@ -37,7 +37,7 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
 
 /// Options of `import_annotations`.
 struct ImportOptions {
-    LandmarkFileOptions landmarks;  ///< for landmark formats
+    LandmarkFileOptions landmarks;  ///< options for the landmark formats
     PlaceOptions place;             ///< how points are placed on the mesh
 
     void describe(OptionList& visit);  ///< adds every member to a list of options

@@ -20,7 +20,7 @@ struct Landmark {
 struct LandmarkCurve {
     std::string name;                           ///< name of the curve
     bool closed = false;                        ///< true: the last point is connected to the first point, which is not repeated
-    std::vector<std::array<double, 3>> points;  ///< in the space and unit of the mesh
+    std::vector<std::array<double, 3>> points;  ///< coordinates of the points, in the space and unit of the mesh
     /// Id of the annotation to which the curve belongs; none if the file does not give it.
     std::optional<int> group;
 };
@@ -103,8 +103,8 @@ struct PlacedAnnotations {
 /// Makes annotations from landmarks: each landmark becomes a point at the closest vertex (the lower index at equal distance), the
 /// landmarks of one group become one annotation, and each curve becomes a poly-line of shortest paths through the vertices
 /// closest to its points. If landmarks are beyond the tolerance, for example in a file in RAS space for a mesh in LPS space,
-/// throws Error (input) with the farthest landmark and a remedy. O((n + k) log n) for n vertices and k landmarks, not counting
-/// the paths.
+/// throws Error (input) with the farthest landmark and a remedy. Time: O((n + k) log n) for n vertices and k landmarks, not
+/// counting the paths.
 PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks, const std::string& where,
                                   const PlaceOptions& options = {});
 
