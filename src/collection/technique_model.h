@@ -54,7 +54,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
 /// `min_compared` other objects of each label exist (technique_range.cpp).
 std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vector<TechniqueObject>& objects,
                                                                 const std::string& positive, double unlike_from);
-inline constexpr std::size_t min_compared = 3;
+inline constexpr std::size_t min_compared = 3;  ///< minimum number of other objects of each label
 
 /// Sets `words`, the explanation of every answer (technique_words.cpp).
 void explain_answers(TechniqueStudy& study, const std::vector<TechniqueObject>& objects);

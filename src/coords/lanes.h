@@ -17,8 +17,8 @@
 
 namespace ostraka::coords {
 
-inline constexpr int lanes = 8;
-using Lanes = double[lanes];
+inline constexpr int lanes = 8;  ///< number of points processed at a time
+using Lanes = double[lanes];     ///< one number per point
 
 inline constexpr double pi = 3.14159265358979323846;
 

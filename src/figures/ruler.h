@@ -29,7 +29,7 @@ public:
     [[nodiscard]] double pixel(double value) const {
         return low_ + (place(value) - minimum_) / (maximum_ - minimum_) * (high_ - low_);
     }
-    [[nodiscard]] std::vector<Tick> ticks() const;
+    [[nodiscard]] std::vector<Tick> ticks() const;  ///< ticks at round values in the range
     /// True if the value lies in the range.
     [[nodiscard]] bool inside(double value) const { return place(value) >= minimum_ && place(value) <= maximum_; }
     /// Value at the lower end of the range.

@@ -22,10 +22,11 @@ struct RepairSoup {
 
     explicit RepairSoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
+    /// Appends a vertex and returns its index; see `vertex_source` and `vertex_like`.
     Index add_vertex(const std::array<double, 3>& place, Index source, Index like, bool is_touched);
     void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
                       bool is_flipped);
-    void flip(Index triangle);
+    void flip(Index triangle);  ///< reverses the orientation
     /// Removes the triangles whose flag is 0.
     void keep_triangles(const std::vector<std::uint8_t>& keep);
     /// Drops vertices without triangles; with `keep_original`, one copy of each old vertex is kept. Returns the number of dropped
@@ -33,7 +34,7 @@ struct RepairSoup {
     std::size_t drop_isolated(bool keep_original);
 };
 
-using Counts = std::vector<std::pair<std::string, std::size_t>>;
+using Counts = std::vector<std::pair<std::string, std::size_t>>;  ///< kind of change -> number of changes
 
 /// For each halfedge of a manifold soup: its opposite halfedge; no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);

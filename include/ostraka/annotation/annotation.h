@@ -115,7 +115,7 @@ struct AnnotationSet {
     std::vector<std::string> notes;           ///< remarks by the reader or by functions that adapted the set to a changed mesh
 
     [[nodiscard]] const Annotation* find(int id) const;  ///< the annotation with this id; null if there is none
-    [[nodiscard]] Annotation* find(int id);
+    [[nodiscard]] Annotation* find(int id);              ///< the annotation with this id; null if there is none
 };
 
 std::string to_string(AnnotationType type);

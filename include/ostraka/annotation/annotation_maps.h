@@ -12,8 +12,8 @@ namespace ostraka {
 /// is the empty set, which elements added by an edit have as well. Faces store regions, edges store poly-lines, vertices store
 /// points.
 inline constexpr const char* vertex_annotations = "v:annotations";
-inline constexpr const char* edge_annotations = "e:annotations";
-inline constexpr const char* face_annotations = "f:annotations";
+inline constexpr const char* edge_annotations = "e:annotations";  ///< map of poly-lines
+inline constexpr const char* face_annotations = "f:annotations";  ///< map of regions
 /// Map that gives, per face, the regions whose free outlines cut the face. A face cut by free outlines counts as inside a region
 /// if most of the face's area is inside.
 inline constexpr const char* face_cuts = "f:annotation-cuts";

@@ -73,7 +73,7 @@ public:
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    void write(std::string_view bytes);
+    void write(std::string_view bytes);  ///< appends bytes to the temporary file
     void commit();
 
 private:
@@ -157,8 +157,8 @@ public:
     ~Sha256();
     Sha256(const Sha256&) = delete;
     Sha256& operator=(const Sha256&) = delete;
-    void update(const void* data, std::size_t size);
-    std::string hexadecimal();  ///< the checksum; no data may be added afterwards
+    void update(const void* data, std::size_t size);  ///< adds bytes
+    std::string hexadecimal();                        ///< the checksum; no data may be added afterwards
 
 private:
     void* context_;

@@ -94,7 +94,7 @@ struct IndexMap {
 /// An output that is an index map.
 class IndexMapOutput : public Slot {
 public:
-    void write(IndexMap map) const;
+    void write(IndexMap map) const;  ///< writes the map with provenance
 };
 
 /// An output of any other kind, written by a function of the caller. In memory the object holds the bytes (std::string).

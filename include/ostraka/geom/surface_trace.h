@@ -14,7 +14,7 @@ struct SurfaceCurve {
     std::vector<SurfacePoint> points;  ///< ends of the straight pieces, in order
     /// For each piece: index of the face that contains it (either face for a piece along an edge).
     std::vector<Index> faces;
-    [[nodiscard]] double length(const Mesh& mesh) const;
+    [[nodiscard]] double length(const Mesh& mesh) const;  ///< total length of the pieces
 };
 
 /// The curve through points; each two consecutive points must lie in a common face. Throws Error (input) if a point does not fit
