@@ -68,9 +68,9 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
                               const LandmarkFileOptions& options = {});
 
 /// The points and poly-lines of a set: an annotation of one point becomes a landmark named by its tag; an annotation of several
-/// points becomes landmarks "tag 1", "tag 2" ...; a poly-line becomes a curve. Not representable are regions, colours, attributes
-/// and, in formats other than mrk, poly-lines; notes give the number of regions, poly-lines and attributes (of exported
-/// annotations) that were left out.
+/// points becomes landmarks "tag 1", "tag 2" ...; a poly-line becomes a curve. Landmarks cannot represent regions, colours,
+/// attributes and, in formats other than mrk, poly-lines; notes give the number of regions, poly-lines and attributes (of
+/// exported annotations) that were left out.
 LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFormat format = LandmarkFormat::mrk);
 
 /// Options for placing points on a mesh.
