@@ -25,7 +25,7 @@ inline std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
 /// Per cent of the full turn that the angles cover (`angle_covered`).
 inline double covered_percent(std::vector<double> angles) { return 100 * angle_covered(std::move(angles)) / (2 * pi); }
 
-/// Moments of a part. Throws Error (usage) for options out of range, Error (input) if no face has an area.
+/// Area moments of a part. Throws Error (usage) for options out of range, Error (input) if no face has an area.
 AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options);
 /// Diagonal of the bounding box of the faces.
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);

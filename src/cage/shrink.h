@@ -31,7 +31,7 @@ std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t target, 
 
 /// Number of vertices of the whole surface, both halves together.
 std::size_t whole_size(const Mesh& half);
-/// The part of a closed surface on the side that the normal points to, cut along the plane.
+/// The part of a closed surface on the side of the plane to which the plane's normal points, cut along the plane.
 Mesh upper_half(const Mesh& surface, const MirrorPlane& plane);
 /// The half and its mirror image, joined at the border.
 Mesh mirrored_whole(const Mesh& half, const MirrorPlane& plane);

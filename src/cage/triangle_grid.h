@@ -8,7 +8,7 @@
 
 namespace ostraka::cage {
 
-using Triangle = std::array<Vertex, 3>;
+using Triangle = std::array<Vertex, 3>;  ///< corners of a triangle
 
 /// True if two triangles intersect elsewhere than at the vertices and edges that they share; decided in exact arithmetic.
 bool overlap(const Triangle& s, const std::array<Point, 3>& points_s, const Triangle& t, const std::array<Point, 3>& points_t);
@@ -17,7 +17,7 @@ bool overlap(const Triangle& s, const std::array<Point, 3>& points_s, const Tria
 /// least as large as its bounding box, in at most eight cells.
 class TriangleGrid {
 public:
-    explicit TriangleGrid(double cell) : cell_(cell) {}
+    explicit TriangleGrid(double cell) : cell_(cell) {}  ///< cell: smallest cell size
 
     void insert(Face face, const CGAL::Bbox_3& box) {
         const int level = level_of(box);

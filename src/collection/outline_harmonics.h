@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-inline constexpr std::size_t max_harmonics = 6;
+inline constexpr std::size_t max_harmonics = 6;  ///< number of harmonics computed
 
 /// Fourier coefficients of the radius of an outline.
 struct OutlineHarmonics {

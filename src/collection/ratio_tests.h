@@ -15,7 +15,7 @@ struct Pair {
 };
 
 /// Logarithms of measures minus column centres: x_ij - c_j, where the c_j minimise the sum of (x_ij - s_i - c_j)^2 over the
-/// values present and s_i is the size of object i. NaN stays NaN.
+/// values present and s_i is the size of object i. NaN entries stay NaN.
 Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs);
 
 /// Variance of the difference of two columns.

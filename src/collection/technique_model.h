@@ -42,8 +42,8 @@ struct TechniqueModel {
     std::optional<Threshold> threshold;
     [[nodiscard]] double score(const Eigen::VectorXd& x) const { return weights.dot(x - middle) - limit; }
 };
-/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur. Scores are scaled so that their
-/// standard deviation about the class means is 1 over the rows.
+/// Trains on the given rows; `truth` has one entry per row of `values`. Both classes must occur among the given rows. Scores are
+/// scaled so that their standard deviation about the class means is 1 over the rows.
 TechniqueModel learn(const Eigen::MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows);
 
 /// Cross-validation of one classifier, with its uncertainty and receiver operating characteristic (technique_validation.cpp).
@@ -54,7 +54,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
 /// `min_compared` other objects of each label exist (technique_range.cpp).
 std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vector<TechniqueObject>& objects,
                                                                 const std::string& positive, double unlike_from);
-inline constexpr std::size_t min_compared = 3;
+inline constexpr std::size_t min_compared = 3;  ///< minimum number of other objects of each label
 
 /// Sets `words`, the explanation of every answer (technique_words.cpp).
 void explain_answers(TechniqueStudy& study, const std::vector<TechniqueObject>& objects);

@@ -1,7 +1,7 @@
 // Loops over eight points at a time, which the compiler vectorises for each vector width the processor may have.
 //
-// They use plain IEEE arithmetic without contraction (see the flags of these files), so that every vector width and every
-// machine gives the same bits.
+// The loops use plain IEEE arithmetic without contraction (see the compiler flags of these files), so that every vector width
+// and every machine gives the same bits.
 #pragma once
 
 #include <bit>
@@ -17,8 +17,8 @@
 
 namespace ostraka::coords {
 
-inline constexpr int lanes = 8;
-using Lanes = double[lanes];
+inline constexpr int lanes = 8;  ///< number of points processed at a time
+using Lanes = double[lanes];     ///< one number per point
 
 inline constexpr double pi = 3.14159265358979323846;
 

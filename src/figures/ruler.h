@@ -25,11 +25,11 @@ public:
 
     /// Sets the positions on the sheet of the two ends of the range.
     void stretch_over(double low, double high) { low_ = low, high_ = high; }
-    /// Position on the sheet of a value.
+    /// Position of a value on the sheet.
     [[nodiscard]] double pixel(double value) const {
         return low_ + (place(value) - minimum_) / (maximum_ - minimum_) * (high_ - low_);
     }
-    [[nodiscard]] std::vector<Tick> ticks() const;
+    [[nodiscard]] std::vector<Tick> ticks() const;  ///< ticks at round values in the range
     /// True if the value lies in the range.
     [[nodiscard]] bool inside(double value) const { return place(value) >= minimum_ && place(value) <= maximum_; }
     /// Value at the lower end of the range.

@@ -15,7 +15,9 @@ struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace ostraka::figures {
 
+/// Size of text, and margin of a sheet, in points.
 inline constexpr double text_size = 13, margin = 14;
+/// Colours of text and axes, of grid lines, of secondary lines and of the background.
 inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, quiet_line{150, 150, 150}, paper{255, 255, 255};
 
 /// Colours that colour-blind readers can distinguish (Okabe and Ito), followed by further colours.
@@ -40,7 +42,9 @@ public:
     Sheet(const Sheet&) = delete;
     Sheet& operator=(const Sheet&) = delete;
 
+    /// Draws a straight line.
     void line(double x1, double y1, double x2, double y2, const Rgb& colour, double width, bool dashed = false);
+    /// Draws a poly-line.
     void polyline(const std::vector<std::array<double, 2>>& places, const Rgb& colour, bool dashed = false, double width = 1.8);
     /// Fills the area inside closed curves by the even-odd rule.
     void fill(const std::vector<std::vector<std::array<double, 2>>>& curves, const Rgb& colour);
@@ -63,7 +67,7 @@ public:
     [[nodiscard]] std::string fitted(const std::string& words, double width, double size = text_size);
 
     void clip(const Box& box);  ///< restricts drawing to the box until unclip()
-    void unclip();
+    void unclip();              ///< ends clip()
 
     /// Ends drawing and returns the bytes of the file. Throws Error (failure) if drawing failed.
     std::string finish();

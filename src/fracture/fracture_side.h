@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// A point on the rim of a fracture, with the directions there.
+/// A point on the rim of a fracture, with the directions of the adjacent surfaces.
 struct RimFrame {
     /// Position; unit normals of the adjacent intact side and of the fracture surface.
     Eigen::Vector3d place, side, fracture;
@@ -50,6 +50,7 @@ SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals
 /// Samples and rim of one fragment's fracture.
 struct FractureSide {
     FractureSide() = default;
+    /// Samples a fragment. `radius`: distance within which the directions at the rim are averaged.
     FractureSide(const Fragment& fragment, double radius, int frame_count, int sample_count);
 
     std::vector<RimFrame> frames;                                  ///< frames along the rim

@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-/// The precomputed data.
+/// The precomputed data of a fragment's fracture.
 struct PreparedFracture::Parts {
     Mesh mesh;                                         ///< surface of the fragment
     std::string name;                                  ///< name of the fragment

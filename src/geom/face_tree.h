@@ -35,10 +35,10 @@ public:
     [[nodiscard]] std::optional<SurfaceHit> closest(const Point& query, const Vector& normal, double min_cosine,
                                                     double search_radius) const;
 
-    /// The faces that the segment intersects, in unspecified order. Exact for the given coordinates.
+    /// The faces that the segment intersects, in unspecified order. The test is exact for the given coordinates.
     [[nodiscard]] std::vector<Index> met(const Point& from, const Point& to) const;
 
-    /// True if the segment intersects a face for which `ignored` is false. Exact for the given coordinates.
+    /// True if the segment intersects a face for which `ignored` is false. The test is exact for the given coordinates.
     [[nodiscard]] bool meets(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
 private:

@@ -16,8 +16,9 @@ std::string attribute_table(const AnnotationSet& set);
 bool is_attribute_table(const std::string& bytes);
 
 /// Applies an attribute table to the set from which the table was exported: the tag, colour and attributes of each annotation in
-/// the table are replaced; other annotations are unchanged. Selections never change. Returns the number of changed annotations.
-/// Throws Error (input) with line and column for an annotation that is not in the set, a different type, or an invalid cell.
+/// the table are replaced; other annotations are unchanged. Selections of annotations never change. Returns the number of changed
+/// annotations. Throws Error (input) with line and column for an annotation that is not in the set, a different type, or an
+/// invalid cell.
 std::size_t apply_attribute_table(const std::string& bytes, AnnotationSet& set, const std::string& where);
 
 }  // namespace ostraka

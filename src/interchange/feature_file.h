@@ -54,7 +54,7 @@ public:
     /// True: the table was written by this toolkit, and ids, kinds, colours, notes and attributes are available.
     bool ours = false;
     std::vector<std::string> tags, remarks, attributes;  ///< per row: tag, note, and attributes as JSON
-    std::vector<int> ids, kinds, colours;                ///< per row; colours: three numbers per row
+    std::vector<int> ids, kinds, colours;                ///< per row: id, kind, and three colour channels
     std::vector<std::string> notes;                      ///< messages about content of the file that was not read
 
     /// The toolkit's data in the extras of the glTF mesh; null if there are none.

@@ -6,7 +6,7 @@
 
 namespace ostraka::interchange {
 
-using Notes = std::vector<std::string>;
+using Notes = std::vector<std::string>;  ///< messages about data that a format cannot store
 
 LandmarkSet read_landmark_table(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);
 LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options);

@@ -29,7 +29,7 @@ std::uint8_t channel_from_unit(double value, std::size_t& out_of_range);
 /// Colour channel from a value between 0 and 255. NaN and values out of range are clamped and counted in `out_of_range`.
 std::uint8_t channel_from_byte(double value, std::size_t& out_of_range);
 
-inline constexpr Colour white{255, 255, 255, 255};
+inline constexpr Colour white{255, 255, 255, 255};  ///< colour of elements without a colour
 
 /// The faces to write: options.polygons, or the triangles if there are no polygons.
 class WrittenFaces {

@@ -13,7 +13,7 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 /// Type of the numbers of a property.
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-std::size_t size_of(PlyType type);  ///< in bytes
+std::size_t size_of(PlyType type);  ///< size of a number in bytes
 /// True for floating-point types.
 inline bool is_real(PlyType type) { return type >= PlyType::float32; }
 
@@ -29,7 +29,7 @@ struct PlyProperty {
 struct PlyElement {
     std::string name;                     ///< "vertex", "face" ...
     std::size_t count = 0;                ///< number of elements given in the header
-    std::vector<PlyProperty> properties;  ///< in the order of the file
+    std::vector<PlyProperty> properties;  ///< properties of an element, in the order of the file
     /// Minimum size in bytes of one element in a file of this format.
     [[nodiscard]] std::size_t min_bytes(PlyFormat format) const;
 };

@@ -11,7 +11,7 @@ struct RepairSoup {
     TriangleSoup soup;
     /// Per vertex: the identical old vertex (no_index: new); the old vertex that provides the attributes.
     std::vector<Index> vertex_source, vertex_like;
-    /// Per triangle: the identical old triangle (no_index: new); the old one that provides the attributes.
+    /// Per triangle: the identical old triangle (no_index: new); the old triangle that provides the attributes.
     std::vector<Index> face_source, face_like;
     /// Per triangle corner: 3 * old triangle + old corner that provides the texture coordinates.
     std::vector<std::array<Index, 3>> corner_like;
@@ -22,10 +22,11 @@ struct RepairSoup {
 
     explicit RepairSoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
+    /// Appends a vertex and returns its index; see `vertex_source` and `vertex_like`.
     Index add_vertex(const std::array<double, 3>& place, Index source, Index like, bool is_touched);
     void add_triangle(const std::array<Index, 3>& corners, Index source, Index like, const std::array<Index, 3>& corners_like,
                       bool is_flipped);
-    void flip(Index triangle);
+    void flip(Index triangle);  ///< reverses the orientation
     /// Removes the triangles whose flag is 0.
     void keep_triangles(const std::vector<std::uint8_t>& keep);
     /// Drops vertices without triangles; with `keep_original`, one copy of each old vertex is kept. Returns the number of dropped
@@ -33,14 +34,14 @@ struct RepairSoup {
     std::size_t drop_isolated(bool keep_original);
 };
 
-using Counts = std::vector<std::pair<std::string, std::size_t>>;
+using Counts = std::vector<std::pair<std::string, std::size_t>>;  ///< kind of change -> number of changes
 
 /// For each halfedge of a manifold soup: its opposite halfedge; no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
 /// Distances within which points are merged.
 struct MergeDistances {
-    double distance;  ///< points closer than this are merged; in the mesh's unit
+    double distance;  ///< points closer than this distance are merged; in the mesh's unit
     double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
 };
 /// Merges points on open borders. `crack` receives the width of cracks along the edges; 0 if there are none.

@@ -38,7 +38,7 @@ DisjointSets joined_vertices(const TriangleSoup& soup);
 /// Groups the halfedges of a soup by edge. Time: linear, plus the sorting of about six halfedges per vertex.
 SoupEdges group_edges(const TriangleSoup& soup);
 
-/// For each point, the smallest index of a point with the same position (negative zero equals zero). Expected linear time.
+/// For each point, the smallest index of a point with the same position (negative zero equals zero). Expected time: linear.
 std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points);
 
 /// Checks a triangle soup: throws Error (input) if a vertex index is out of range, if a coordinate is not finite or beyond 1e100,

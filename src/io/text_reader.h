@@ -20,9 +20,10 @@ public:
           file_(std::move(file)),
           comment_(comment) {}
 
-    /// Skips the rest of the current line and moves to the first word of the next non-empty line; false at the end of the text.
+    /// Skips the rest of the current line and moves to the first word of the next non-empty line. Returns false at the end of the
+    /// text.
     bool next_line();
-    /// Skips blanks, comments and line ends; false at the end of the text.
+    /// Skips blanks, comments and line ends. Returns false at the end of the text.
     bool skip_space();
     /// True if there are no more words on the current line.
     bool line_done() {

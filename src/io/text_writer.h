@@ -18,7 +18,7 @@ public:
         buffer_.append(words);
         flush_if_full();
     }
-    void character(char c) { buffer_.push_back(c); }
+    void character(char c) { buffer_.push_back(c); }  ///< appends one character
     /// Writes a number with the shortest digits that read back to the same number.
     template <class T>
     void number(T value) {

@@ -116,8 +116,8 @@ public:
     [[nodiscard]] bool found() const;
     /// Estimate of the reciprocal condition number.
     [[nodiscard]] double rcond() const;
-    [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
-    [[nodiscard]] Eigen::MatrixX3d solve(const Eigen::MatrixX3d& b) const;
+    [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;    ///< solution of A x = b
+    [[nodiscard]] Eigen::MatrixX3d solve(const Eigen::MatrixX3d& b) const;  ///< one system per column
 
 private:
     struct Factor;

@@ -10,7 +10,7 @@ namespace ostraka {
 /// LDL^T factorisation of a symmetric sparse matrix (Eigen's SimplicialLDLT); only the lower triangle is read.
 class SparseLdlt {
 public:
-    explicit SparseLdlt(const Eigen::SparseMatrix<double>& a);
+    explicit SparseLdlt(const Eigen::SparseMatrix<double>& a);  ///< factorises at once
     ~SparseLdlt();
 
     /// False if a pivot is zero.

@@ -75,9 +75,9 @@ enum class AnnotationType { point, line, region };
 /// Colour (grey) of annotations that cover the whole object and thus distinguish no part.
 inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 
-/// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used.
-/// A free annotation has its own curves, which need not follow the edges; its selection then holds the elements nearest to the
-/// curves (curves.h).
+/// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used. A
+/// free annotation has its own curves, which need not follow the edges; the selection of a free annotation holds the elements
+/// nearest to the curves (curves.h).
 struct Annotation {
     int id = 0;                                  ///< unique among the annotations of the set
     std::string tag;                             ///< name of the annotated part
@@ -110,12 +110,12 @@ struct AnnotationSet {
     std::string object_class;                 ///< class of the object ("class" in the file); empty if unknown
     std::string unit;                         ///< unit of the mesh's coordinates; empty if unknown
     std::optional<std::array<double, 3>> up;  ///< upward direction of the object; none if unknown
-    std::vector<Annotation> annotations;      ///< in the order of the file
+    std::vector<Annotation> annotations;      ///< the annotations, in the order of the file
     Json provenance;                          ///< provenance as read from the file; null if the file has none
     std::vector<std::string> notes;           ///< remarks by the reader or by functions that adapted the set to a changed mesh
 
     [[nodiscard]] const Annotation* find(int id) const;  ///< the annotation with this id; null if there is none
-    [[nodiscard]] Annotation* find(int id);
+    [[nodiscard]] Annotation* find(int id);              ///< the annotation with this id; null if there is none
 };
 
 std::string to_string(AnnotationType type);

@@ -17,7 +17,8 @@ struct ReadAnnotationsOptions {
 
 /// Reads the annotations of `mesh` from a file of ours, of the thesis (no format and no mesh member) or of the prototype (.ant;
 /// notes report what could not be converted). Checks the schema, indices, edges, ids, and whether the file was made for this
-/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Linear in the size of the file and the selections.
+/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Time: linear in the size of the file and the
+/// selections.
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options = {});
 
 /// Reads the annotations of `mesh` from a JSON document in memory; `where` names the document in error messages.

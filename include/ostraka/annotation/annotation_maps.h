@@ -12,8 +12,8 @@ namespace ostraka {
 /// is the empty set, which elements added by an edit have as well. Faces store regions, edges store poly-lines, vertices store
 /// points.
 inline constexpr const char* vertex_annotations = "v:annotations";
-inline constexpr const char* edge_annotations = "e:annotations";
-inline constexpr const char* face_annotations = "f:annotations";
+inline constexpr const char* edge_annotations = "e:annotations";  ///< map of poly-lines
+inline constexpr const char* face_annotations = "f:annotations";  ///< map of regions
 /// Map that gives, per face, the regions whose free outlines cut the face. A face cut by free outlines counts as inside a region
 /// if most of the face's area is inside.
 inline constexpr const char* face_cuts = "f:annotation-cuts";
@@ -39,8 +39,8 @@ private:
 };
 
 /// Writes the annotations into the property maps of `mesh`; existing maps are overwritten. An edit that splits a face or an edge
-/// copies the index of its set to the parts; an edge between two faces with different sets lies on an outline. Linear in the size
-/// of the mesh and the selections.
+/// copies the index of its set to the parts; an edge between two faces with different sets lies on an outline. Time: linear in
+/// the size of the mesh and the selections.
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 
 /// Reads the annotations back from the property maps of an edited mesh, which must be free of garbage (collect_garbage).

@@ -17,7 +17,8 @@ bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 std::array<int, 3> fresh_colour(AnnotatedMeshView object, const Annotation& joining);
 
 /// Assigns colours to the regions of a set; no two of these regions may share a face. Result: distinct colours as long as the
-/// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
+/// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Time:
+/// linear in the size of the mesh.
 void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
 /// The regions of a set, by descending area; of regions of equal area, the later region in the set comes first. Painting the
@@ -25,7 +26,7 @@ void colour_regions(const Mesh& mesh, AnnotationSet& set);
 std::vector<const Annotation*> regions_largest_first(AnnotatedMeshView object);
 
 /// Colours each face and each vertex by the smallest region that covers it (grey: none), and the vertices of line and point
-/// annotations by the colour of their annotation. Linear in the size of the mesh and the selections.
+/// annotations by the colour of their annotation. Time: linear in the size of the mesh and the selections.
 MeshExtras colour_by_annotation(AnnotatedMeshView object);
 
 }  // namespace ostraka

@@ -24,7 +24,7 @@ struct StrandUse {
 /// Splits the curves of the chosen annotations at junctions: places whose number of neighbours is not two, ends of curves, and
 /// vertices at the border of the mesh. Equal stretches of several curves become one strand, even if their directions are
 /// opposite. Appends the strands to `strands`. Returns for each annotation and each of its curves the sequence of strands; the
-/// sequence is empty for annotations that are not chosen and for curves of one place. O(k log k) for k places.
+/// sequence is empty for annotations that are not chosen and for curves of one place. Time: O(k log k) for k places.
 std::vector<std::vector<std::vector<StrandUse>>> separate_nonmanifold(
     const Mesh& mesh, const std::vector<std::vector<std::vector<SurfacePoint>>>& curves, const std::vector<bool>& chosen,
     std::vector<CurveStrand>& strands);

@@ -24,12 +24,13 @@ std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotati
 /// Classifies each face of the mesh as inside, outside or partly inside a free region.
 CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation);
 
-/// Computes the elements of a free annotation nearest to its curves. Region: faces with at least half of their area inside, and
-/// the connected components listed in `faces` that no curve traverses. Line: a path of edges. Point: vertices. Throws Error
-/// (input) as `curves_on` does, and if outlines contradict each other.
+/// Computes the elements of a free annotation nearest to its curves. The elements of a region are the faces with at least half of
+/// their area inside, and the connected components listed in `faces` that no curve traverses. The elements of a line are a path
+/// of edges, and the elements of a point annotation are vertices. Throws Error (input) as `curves_on` does, and if outlines
+/// contradict each other.
 void settle_elements(const Mesh& mesh, Annotation& annotation);
 
-/// Area and perimeter of a region; those of a free region are computed from its curves.
+/// Area and perimeter of a region; for a free region, both are computed from its curves.
 RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation);
 /// Area of a region; 0 for points and lines.
 double area_of(const Mesh& mesh, const Annotation& annotation);
@@ -37,7 +38,7 @@ double area_of(const Mesh& mesh, const Annotation& annotation);
 /// The faces of a region, ascending, each with the fraction of its area that lies inside the region: 1, or less if a free outline
 /// cuts the face.
 std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region);
-/// Length of a line annotation; that of a free line is computed from its curves.
+/// Length of a line annotation; for a free line, the length is computed from its curves.
 double length_of(const Mesh& mesh, const Annotation& annotation);
 /// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation);
@@ -65,7 +66,7 @@ struct CutMesh : AnnotatedMesh {
     }
 };
 
-/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Linear in the size of the mesh plus O(k
+/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Time: linear in the size of the mesh plus O(k
 /// log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 

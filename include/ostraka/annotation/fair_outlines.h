@@ -33,7 +33,7 @@ struct FairedAnnotation {
 /// weight of the second differences that keeps the curve within `distance`. The curve is projected onto the surface and joined by
 /// traces. Then stretches are shifted sideways so that each region keeps its area (least squares over all stretches). An
 /// annotation whose outline would intersect itself is left unchanged; its note gives this reason. Throws Error (input) for an id
-/// that is not in the set. O(n log n) in the length of the curves, times some tens of iterations.
+/// that is not in the set. Time: O(n log n) in the length of the curves, times some tens of iterations.
 std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set, const std::vector<int>& ids,
                                             const FairOptions& options = {});
 

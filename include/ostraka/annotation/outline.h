@@ -14,7 +14,7 @@ using Outline = std::vector<Index>;
 /// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, the outline is split
 /// so that the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed
 /// once). Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
-/// halfedge. Linear in the number of selected faces, except for one pass over the flags.
+/// halfedge. Time: linear in the number of selected faces, except for one pass over the flags.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected);
 /// The outlines of a set of faces, given by their indices.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces);
@@ -51,7 +51,7 @@ Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges);
 /// Selects faces by winding number: crossing an edge from right to left adds the net number of its traversals in `edges`. The
 /// result is defined for intersecting outlines too: in each connected component, among the sets "faces with winding number at
 /// least k" and the empty set, the set whose area is closest to `expected_area`. Returns nullopt if the winding numbers
-/// contradict each other (the edges are not a boundary). Linear in the size of the mesh.
+/// contradict each other (the edges are not a boundary). Time: linear in the size of the mesh.
 std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::vector<Halfedge>& edges, double expected_area);
 
 /// Area and perimeter of a region.

@@ -24,7 +24,8 @@ struct SmoothRegions {
 /// Smooths the borders between labels. Each vertex gets a weight per label: the fraction of the area around the vertex that has
 /// the label, smoothed `rounds` times over the one-ring. A point has the label with the largest interpolated weight; outlines lie
 /// where the two largest weights are equal. A border moves by one or two edges at most. A label that would vanish keeps its faces
-/// and their outline. `label_of_face`: arbitrary integers, one per face. O(n), except for the sorting of elements on borders.
+/// and their outline. `label_of_face`: arbitrary integers, one per face. Time: O(n), except for the sorting of elements on
+/// borders.
 SmoothRegions smooth_regions(const Mesh& mesh, const std::vector<int>& label_of_face, int rounds = 2);
 
 }  // namespace ostraka

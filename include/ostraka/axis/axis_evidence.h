@@ -43,8 +43,8 @@ public:
 
     /// Normal equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
     /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance of
-    /// patch means to the variance of single samples. `round` is small for parts that are no surface of revolution about any
-    /// nearby line.
+    /// patch means to the variance of single samples. The member `round` is small for a part that is not a surface of revolution
+    /// about any line near the guess.
     [[nodiscard]] AxisEvidence at(const AxisGuess& guess) const;
 
     /// True if the part has enough faces for `at`.

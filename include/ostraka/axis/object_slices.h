@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// Where an object is sliced.
+/// Direction and heights at which an object is sliced.
 struct CutOptions {
     /// Method that finds the axis across which slices are cut; the axis is oriented upwards as far as possible, and the skeleton
     /// gives a curve. None: slices are cut across `up`.

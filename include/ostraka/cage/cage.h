@@ -46,11 +46,12 @@ struct CageResult {
 
 /// Wraps the mesh (Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022) and collapses edges of the wrap (cost: Garland
 /// and Heckbert 1997). A collapse is made only if no triangle then intersects the mesh or another triangle and no part of the
-/// mesh is left outside. These conditions are checked exactly before every collapse, so that the cage always encloses the mesh.
-/// If the target number is not reached, a coarser wrap is tried. With a mirror plane, one half is built around the union of the
-/// mesh and its mirror image, and then mirrored. The mesh need not be closed; isolated vertices are ignored. Throws Error (input)
-/// for a mesh without extent or without a face of positive area, and for a mesh so far from the origin that the precision of its
-/// coordinates is too coarse for the offset; Error (usage) for invalid options and a plane without a direction.
+/// mesh is left outside. The conditions for a collapse are checked exactly before every collapse, so that the cage always
+/// encloses the mesh. If the target number is not reached, a coarser wrap is tried. With a mirror plane, one half is built around
+/// the union of the mesh and its mirror image, and then mirrored. The mesh need not be closed; isolated vertices are ignored.
+/// Throws Error (input) for a mesh without extent or without a face of positive area, and for a mesh so far from the origin that
+/// the precision of its coordinates is too coarse for the offset; Error (usage) for invalid options and a plane without a
+/// direction.
 CageResult make_cage(const Mesh& mesh, const CageOptions& options = {}, const CageDensity& density = {},
                      const std::optional<MirrorPlane>& mirror = {});
 

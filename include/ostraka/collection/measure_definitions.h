@@ -45,7 +45,7 @@ struct MeasureDefinition {
 
 /// The content of a *.measures.json file.
 struct MeasureDefinitions {
-    std::vector<MeasureDefinition> measures;  ///< in the order of the file
+    std::vector<MeasureDefinition> measures;  ///< the definitions, in the order of the file
     std::string text;                         ///< text of the file; part of the keys of results that depend on it
 };
 

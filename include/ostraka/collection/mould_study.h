@@ -34,8 +34,9 @@ struct MouldGroupSummary {
     std::optional<double> within;      ///< mean distance between two members; none for a group of one head
     /// Index of the other group with the smallest mean distance; none if there is no other group.
     std::optional<int> nearest;
-    std::optional<double> to_nearest;  ///< mean distance between the members of this group and of `nearest`
-    double silhouette = 0;             ///< mean silhouette of the members
+    /// Mean distance between members of this group and members of the group `nearest`.
+    std::optional<double> to_nearest;
+    double silhouette = 0;  ///< mean silhouette of the members
 };
 std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study);  ///< one per group
 

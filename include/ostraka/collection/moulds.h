@@ -49,8 +49,8 @@ struct MouldMatrices {
 };
 
 /// Compares every pair of heads. Pairs whose results are in `store` are not compared again. The results of a head are stored as
-/// soon as the head has been compared with all later heads. If the store has a share, only the heads of the share are compared
-/// with the later heads. The matrices do not depend on the number of threads.
+/// soon as the head has been compared with all later heads. If the store works on a shard of the objects, only the heads of the
+/// shard are compared with the later heads. The matrices do not depend on the number of threads.
 MouldMatrices compare_heads(const std::vector<std::string>& names, const std::vector<PreparedHead>& heads,
                             const CompareOptions& options, const ResultStore& store = ResultStore(),
                             const std::vector<std::string>& checksums = {});
@@ -63,16 +63,16 @@ struct PreparedCollection {
     /// One per object of the collection; the result of an object that failed states the problem.
     std::vector<ObjectResult> results;
     CompareOptions options;  ///< the options, with the feature size that was used
-    /// "sizes" or "features" if these results of other shares are not available yet; `heads` is then empty.
+    /// "sizes" or "features" if these results of other shards are not available yet; `heads` is then empty.
     std::string waits_for;
 };
 
 /// Reads the meshes (or selected parts of the meshes), removes the faces with one of the labels `leave_out`, keeps the largest
 /// connected component, and computes the features. If the options give no feature size, the size is the median of the square
 /// roots of the areas, rounded to the nearest power of 1.1 so that adding a head seldom changes the size. Features are kept in
-/// `store`, sizes in the store's part "sizes". If the store has a share, the sizes of the share are computed first, the features
-/// of the share once all sizes are available, and the heads once all features are available. Throws the errors of
-/// `for_each_object`.
+/// `store`, sizes in the store's part "sizes". If the store works on a shard of the objects, the sizes of the shard are computed
+/// first, the features of the shard once all sizes are available, and the heads once all features are available. Throws the
+/// errors of `for_each_object`.
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
                                       const std::vector<int>& leave_out, const ResultStore& store,
                                       const ObjectParts& parts = ObjectParts());

@@ -21,7 +21,7 @@ struct CollectionObject {
     Path landmarks;     ///< 3D Slicer markups (.mrk.json); empty if the object has no landmarks
     std::string unit;   ///< unit of the coordinates; empty if the collection does not give it
     std::string label;  ///< known class label; empty if unknown
-    /// SHA-256 over the contents of the object's files; empty if a file cannot be read, and for objects outside the share.
+    /// SHA-256 over the contents of the object's files; empty if a file cannot be read, and for objects outside the shard.
     std::string checksum;
 };
 
@@ -42,7 +42,7 @@ void check_new_collection(const Path& folder);
 /// NAME.mrk.json belong to the object NAME; markups without a mesh form an object that has only landmarks. Names under which
 /// results cannot be stored (longer than 200 bytes, with control characters or a backslash, not UTF-8) are left out. A file
 /// *.study.json (doc/schema/study.schema.json) lists objects with file paths relative to the study file; an invalid name in a
-/// study file is an error. Files of objects outside the `share` are not read. Throws Error (input) if the path is neither a
+/// study file is an error. Files of objects outside the shard `share` are not read. Throws Error (input) if the path is neither a
 /// folder nor a study file, if the collection has no objects, or if two objects have the same name. A missing or damaged file is
 /// reported only by the work on that object.
 Collection read_collection(const Path& folder_or_file, const Share& share = {});
@@ -73,7 +73,7 @@ public:
     [[nodiscard]] std::optional<Json> find(const std::string& name, const std::string& key) const;
     /// Stores a result.
     void keep(const std::string& name, const std::string& key, const JsonValue& result) const;
-    /// The share of the objects that this process works on; results of other objects are only looked up in the store.
+    /// The shard of the objects on which this process works; results of other objects are only looked up in the store.
     [[nodiscard]] const Share& share() const { return share_; }
 
 private:
@@ -86,14 +86,14 @@ struct ObjectResult {
     Json result;             ///< null if the work failed
     std::string problem;     ///< message with place and remedy if the work failed; empty otherwise
     bool resumed = false;    ///< true: the result was found in the store, not computed
-    bool elsewhere = false;  ///< true: the object belongs to another share and its result is not available yet
+    bool elsewhere = false;  ///< true: the object belongs to another shard and its result is not available yet
 };
 
 /// Applies `work` to every object, several in parallel, and returns the results in the order of the collection. Results do not
 /// depend on the number of threads (parallel loops inside `work` run on one thread). Errors of kind input and failure, and a lack
 /// of memory, are recorded as the object's problem; an Error of kind usage is thrown. Results are looked up and stored in `store`
 /// under a key of the object's contents and name and of `key_parts`: the name of the work and all options on which the work
-/// depends. Failures are not stored. For objects outside the store's share, `work` is not called; only stored results are
+/// depends. Failures are not stored. For objects outside the store's shard, `work` is not called; only stored results are
 /// returned. For objects without a checksum (unreadable files) `work` is called, so that its error gives the reason.
 std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
                                           const std::vector<std::string>& key_parts,

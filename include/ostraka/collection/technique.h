@@ -45,7 +45,7 @@ struct TechniqueSlice {
 
 /// Value of one descriptor of an object.
 struct TechniqueDescriptor {
-    std::string name;                        ///< as in technique_descriptors()
+    std::string name;                        ///< name of the descriptor (technique_descriptors)
     double value = TechniqueSlice::unknown;  ///< value of the descriptor; NaN if unknown
     std::size_t slices = 0;                  ///< number of slices from which the value is computed
 };

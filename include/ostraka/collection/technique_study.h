@@ -87,7 +87,7 @@ struct TechniqueOutlier {
     double distance = 0;
 };
 
-/// The technique found for one object.
+/// The technique that the study found for one object.
 struct TechniqueAnswer {
     std::string name, label;  ///< name of the object; its known technique (empty: unknown)
     std::string answer;       ///< label or group given by the study; empty if there is no answer
@@ -118,9 +118,9 @@ struct TechniqueStudy {
     std::vector<TechniqueAnswer> answers;  ///< one per object, in the order of the objects
 };
 
-/// Trains, validates and applies the classifiers. A labelled object is classified by a model trained on the other objects. There
-/// is no answer if the classifier is not better than classifying every object as positive, if the object is out-of-class (see
-/// `unlike_from`: outward distance from the closer of the two class medians, divided by 1.4826 times the median absolute
+/// Trains, validates and applies the classifiers. A labelled object is classified by a model trained on the other objects. An
+/// object gets no answer if the classifier is not better than classifying every object as positive, if the object is out-of-class
+/// (option `unlike_from`: outward distance from the closer of the two class medians, divided by 1.4826 times the median absolute
 /// deviation from the class medians), or if fewer than half of the resampled collections agree. An answer is clear with an
 /// agreement of at least 0.95 and an error of at most 0.05, likely with an agreement of at least 0.8 and an error of at most 0.2,
 /// and doubtful otherwise. Without labels the objects are split by the first descriptor of `answer_by` ("outside": by the first

@@ -42,11 +42,11 @@ struct ConformanceKit {
     Path folder;                           ///< folder of the kit
     std::string version;                   ///< version of the kit
     std::shared_ptr<const Json> document;  ///< the parsed conformance.json, to which the cases point
-    std::vector<ConformanceCase> cases;    ///< in the order of the document
+    std::vector<ConformanceCase> cases;    ///< the cases, in the order of the document
 };
 
-/// Reads FOLDER/conformance.json. Throws Error (input) that names the invalid case: operations, settings and outputs are
-/// checked against the table.
+/// Reads a kit from the file FOLDER/conformance.json. Throws Error (input) that names the invalid case: operations, settings and
+/// outputs are checked against the table.
 ConformanceKit read_kit(const Path& folder, const FindOperation& find);
 
 /// The answer of a backend to one case.

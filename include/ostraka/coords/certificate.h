@@ -40,7 +40,7 @@ struct CoordinateCertificate {
 };
 
 /// Measures the properties of coordinates of `points` in `cage`. Throws Error (usage) if the sizes do not match, Error (input)
-/// for a weight that is not finite. O(points x (vertices + faces)).
+/// for a weight that is not finite. Time: O(points x (vertices + faces)).
 CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, const std::vector<Point>& points,
                               const CoordinateOptions& options = {});
 

@@ -12,10 +12,10 @@ namespace ostraka {
 /// coordinates, the normal weights in "weights.normal.npy". Sparse coordinates are stored as compressed sparse rows:
 /// "weights.npy" holds the stored weights row by row, "weights.columns.npy" their columns, and "weights.rows.npy" the start of
 /// each row.
-Path coordinate_header_file(const Path& weights);  ///< weights.coordinates.json
-Path normal_weights_file(const Path& weights);     ///< weights.normal.npy
-Path sparse_columns_file(const Path& weights);     ///< weights.columns.npy
-Path sparse_rows_file(const Path& weights);        ///< weights.rows.npy
+Path coordinate_header_file(const Path& weights);  ///< "weights.coordinates.json" for "weights.npy"
+Path normal_weights_file(const Path& weights);     ///< "weights.normal.npy" for "weights.npy"
+Path sparse_columns_file(const Path& weights);     ///< "weights.columns.npy" for "weights.npy"
+Path sparse_rows_file(const Path& weights);        ///< "weights.rows.npy" for "weights.npy"
 
 /// Content of a header (doc/schema/coordinates.schema.json).
 struct CoordinateHeader {

@@ -85,15 +85,14 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// mean-value: Ju, Schaefer and Warren, Mean value coordinates for closed triangular meshes, 2005, in vector form; for points
 /// inside, outside and on the cage. On a face, edge or vertex of the cage, mean value coordinates are linear interpolation.
 /// green: Lipman, Levin and Cohen-Or, Green coordinates, 2008; for points strictly inside; the cage is oriented outward.
-/// The kinds harmonic, local and positive-mean-value are for points inside and on a cage without self-intersections. Their
-/// weights are sparse. As a last step, every row is projected to weights that are non-negative, sum to one and reproduce the
-/// point up to rounding.
-/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; computed by
-/// linear finite elements on tetrahedra inside the cage.
-/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; computed on the
-/// same tetrahedra; each gradient is weighted by its distance, within the cage, from the cage vertex.
-/// positive-mean-value: Lipman, Kopf, Cohen-Or and Levin, GPU-assisted positive mean value coordinates, 2007: mean value
-/// coordinates restricted to the part of the cage that is visible from the point, computed by evenly distributed rays.
+/// The kinds harmonic, local and positive-mean-value are for points inside and on a cage without self-intersections.
+/// The weights of these kinds are sparse. As a last step, every row is projected to weights that are non-negative, sum to one and
+/// reproduce the point up to rounding. harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character
+/// articulation, 2007; computed by linear finite elements on tetrahedra inside the cage. local: Zhang, Deng, Liu, Patanè,
+/// Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; computed on the same tetrahedra; each gradient is weighted by
+/// its distance, within the cage, from the cage vertex. positive-mean-value: Lipman, Kopf, Cohen-Or and Levin, GPU-assisted
+/// positive mean value coordinates, 2007: mean value coordinates restricted to the part of the cage that is visible from the
+/// point, computed by evenly distributed rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
 /// Coordinates of the vertices of a mesh in `cage`. If the cage contains other cages, the coordinates cover all nested cages

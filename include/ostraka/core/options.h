@@ -28,7 +28,7 @@ namespace ostraka {
 struct Anything {};
 /// Rule of an option: numbers from min to max are allowed.
 struct Range {
-    double min, max;  ///< both allowed
+    double min, max;  ///< smallest and largest allowed number
 };
 /// Rule of an option: only these names are allowed.
 struct Choices {
@@ -44,13 +44,13 @@ struct Words {
     /// text.
     std::function<void(const std::string&)> check = {};
 };
-using OptionRule = std::variant<Anything, Range, Choices, Words>;
+using OptionRule = std::variant<Anything, Range, Choices, Words>;  ///< which values an option allows
 
 /// An enumeration with the values 0, 1, ..., named in this order by the option's Choices.
 struct EnumValue {
-    void* value;  ///< address of the variable
-    std::size_t (*get)(const void*);
-    void (*set)(void*, std::size_t);
+    void* value;                      ///< address of the variable
+    std::size_t (*get)(const void*);  ///< reads the index of the enumerator
+    void (*set)(void*, std::size_t);  ///< writes the index of the enumerator
 };
 
 /// Reference to the variable that holds the value of an option.
@@ -113,8 +113,8 @@ struct Option {
     /// Marks an option that only the caller may set, not a study, a kit or a session.
     Option& only_by_caller() { return from_files = false, affects_result = false, *this; }
 
-    [[nodiscard]] OptionType type() const;
-    [[nodiscard]] bool is_list() const;  ///< true if the value is a list
+    [[nodiscard]] OptionType type() const;  ///< type of the value
+    [[nodiscard]] bool is_list() const;     ///< true if the value is a list
     /// True if there is no value: an empty text or list, or an empty optional.
     [[nodiscard]] bool empty() const;
     /// The value as text: numbers with 17 digits, true or false, lists of numbers joined by commas, lists of texts joined by ";

@@ -62,7 +62,7 @@ public:
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    void advance(std::size_t steps = 1);
+    void advance(std::size_t steps = 1);  ///< reports that further steps are done
 
 private:
     std::string phase_;

@@ -19,7 +19,7 @@ private:
 /// Adds the seconds between construction and destruction of this object to a sum.
 class AddedSeconds {
 public:
-    explicit AddedSeconds(double& sum) : sum_(sum) {}
+    explicit AddedSeconds(double& sum) : sum_(sum) {}  ///< `sum` must outlive this object
     ~AddedSeconds() { sum_ += watch_.seconds(); }
     AddedSeconds(const AddedSeconds&) = delete;
     AddedSeconds& operator=(const AddedSeconds&) = delete;

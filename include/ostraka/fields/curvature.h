@@ -35,7 +35,7 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options = {});
 /// Curvature integrals over each face; the integral over a region is the sum over its faces. An edge of length l and dihedral
 /// angle b (positive where convex) has the mean curvature integral l b / 2, half for each of its two faces; the angle deficit of
 /// a vertex is distributed over its faces by their angles (Cohen-Steiner and Morvan 2003). Border edges and border vertices
-/// contribute nothing, because curvature there belongs to the border.
+/// contribute nothing, because their curvature belongs to the border.
 struct CurvatureIntegrals {
     std::vector<double> mean;      ///< per face: integral of the mean curvature, in units of length
     std::vector<double> gaussian;  ///< per face: integral of the Gaussian curvature, in radians

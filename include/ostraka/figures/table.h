@@ -26,7 +26,7 @@ TableCell fixed_cell(const std::optional<double>& value, int after_point);
 /// A cell with a fraction, displayed in per cent and written to the CSV as a fraction; "-" if missing or not finite.
 TableCell percent_cell(const std::optional<double>& fraction, int after_point = 1);
 
-/// A column of a table. In the CSV it may be several columns, such as the two ends of an interval.
+/// A column of a table. In the CSV, a table column may be several columns, such as the two ends of an interval.
 struct TableColumn {
     std::string name;              ///< displayed heading
     std::vector<std::string> csv;  ///< headings of the CSV columns

@@ -35,7 +35,7 @@ bool is_folder(const Path& folder);  ///< true for an existing folder
 std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* other_entries = nullptr);
 /// Creates the folder and its missing parents. Throws Error (failure) if the folder cannot be created or a file has its name.
 void make_folder(const Path& folder);
-void remove_file(const Path& file);  ///< on disk or in memory
+void remove_file(const Path& file);  ///< removes a file on disk or in memory
 /// True if two paths denote the same file or folder, after resolving links and relative parts. The file need not exist.
 bool same_place(const Path& a, const Path& b);
 
@@ -73,7 +73,7 @@ public:
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    void write(std::string_view bytes);
+    void write(std::string_view bytes);  ///< appends bytes to the temporary file
     void commit();
 
 private:
@@ -121,7 +121,7 @@ std::size_t remove_stale_temporaries(const Path& folder);
 void write_file(const Path& file, std::string_view bytes, FileAccess access = FileAccess::usual);
 
 /// For a process that exits while its threads still work: waits for a commit in progress, then removes all temporary files,
-/// scratch folders and empty folders that this process created, and lets no more be created.
+/// scratch folders and empty folders that this process created. No more files can be created afterwards.
 void abandon_outputs();
 
 /// A new folder, private to this process, in the system's folder for temporary files; the destructor removes it with its
@@ -157,8 +157,8 @@ public:
     ~Sha256();
     Sha256(const Sha256&) = delete;
     Sha256& operator=(const Sha256&) = delete;
-    void update(const void* data, std::size_t size);
-    std::string hexadecimal();  ///< the checksum; no data may be added afterwards
+    void update(const void* data, std::size_t size);  ///< adds bytes
+    std::string hexadecimal();                        ///< the checksum; no data may be added afterwards
 
 private:
     void* context_;

@@ -41,7 +41,7 @@ NpyView view_npy(std::string_view bytes, const std::string& where);
 template <class Number>
 struct NpyArray {
     std::vector<std::size_t> shape;  ///< size of each of the one or two dimensions
-    std::vector<Number> values;      ///< in row-major order
+    std::vector<Number> values;      ///< the numbers, in row-major order
     [[nodiscard]] std::size_t rows() const { return shape.front(); }
     [[nodiscard]] std::size_t columns() const { return shape.size() < 2 ? 1 : shape[1]; }
 };
@@ -49,8 +49,8 @@ NpyArray<double> read_npy(const Path& file);                 ///< converts integ
 NpyArray<std::int64_t> read_npy_integers(const Path& file);  ///< the file must hold integers
 
 /// Writes an array as little-endian float64 or int64 in C order, atomically; `shape` has one or two sizes whose product is the
-/// number of values. Returns the SHA-256 of the file. Throws as AtomicFile does, and std::logic_error if the shape does not match
-/// the values.
+/// number of values. Returns the SHA-256 of the file. Throws the errors of AtomicFile, and std::logic_error if the shape does not
+/// match the values.
 std::string write_npy(const Path& file, std::span<const double> values, const std::vector<std::size_t>& shape);
 std::string write_npy(const Path& file, std::span<const std::int64_t> values, const std::vector<std::size_t>& shape);
 

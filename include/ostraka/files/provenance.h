@@ -21,7 +21,7 @@ struct Provenance {
     /// For each input: file name without folder, SHA-256 of the file's bytes.
     std::vector<std::pair<std::string, std::string>> inputs;
 
-    void add_input(const Path& file);
+    void add_input(const Path& file);  ///< adds the file's name and checksum
     [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;
     /// The provenance as one line, for the comment in a mesh file.
     [[nodiscard]] std::string to_line() const;

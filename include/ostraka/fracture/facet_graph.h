@@ -24,7 +24,7 @@ struct FacetGraph {
         double turn = 0;        ///< dihedral angle in radians; positive where convex
         Point middle{0, 0, 0};  ///< middle of the common boundary
     };
-    std::vector<Contact> contacts;  ///< ordered by a, then b
+    std::vector<Contact> contacts;  ///< pairs of adjacent patches, sorted by a, then by b
     double area = 0;                ///< area of the surface
     double size = 0;                ///< square root of the area: the unit of length
     double edge = 0;                ///< mean edge length of the mesh

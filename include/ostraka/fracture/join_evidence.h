@@ -31,7 +31,7 @@ struct JoinEvidence {
     /// Area of each fragment that is deeper inside the other fragment than the tolerance, both together, divided by the contact
     /// area.
     double penetration = 0;
-    double depth = 0;   ///< depth of the point of one fragment that is deepest inside the other
+    double depth = 0;   ///< depth of the point of one fragment that lies deepest inside the other fragment
     double widths = 0;  ///< absolute logarithm of the ratio of the widths of the two fracture surfaces
     // The next members compare the intact sides beside the rims, which wear preserves, along the rim that could be continued.
     double side_turn = 1;  ///< root mean square sine of the angle between the normals of the two intact sides

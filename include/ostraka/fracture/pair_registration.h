@@ -77,7 +77,7 @@ struct PairCandidate {
     /// Area of each fragment that is deeper inside the other fragment than the last search radius, as a fraction of the smaller
     /// fracture's area.
     double penetration = 0;
-    /// Depth of the point of one fragment that is deepest inside the other, in the unit of the fragments.
+    /// Depth of the point of one fragment that lies deepest inside the other fragment, in the unit of the fragments.
     double depth = 0;
     JoinEvidence evidence;  ///< features of the join
     double log_odds = 0;    ///< log odds of a true join from the evidence alone

@@ -78,7 +78,8 @@ public:
 
     /// Checksums of the files that hold an object.
     struct Checksums {
-        std::string sha256;  ///< of the object's file, or of the file that `write` would produce; empty if unknown
+        /// SHA-256 of the object's file, or of the file that `write` would produce; empty if unknown.
+        std::string sha256;
         /// Name and SHA-256 of accompanying files, such as the header of coordinates.
         std::vector<std::pair<std::string, std::string>> beside;
     };
@@ -162,7 +163,7 @@ public:
 
     /// Adds the slot's own options to the options of the operation, such as --force-mesh for annotations.
     virtual void list_options(OptionList& options) {}
-    /// Throws Error (usage) if a file name is invalid for this kind of slot. Called before any work starts.
+    /// Throws Error (usage) if a file name is invalid for this kind of slot. The context calls `check` before any work starts.
     virtual void check() const {}
     /// True if the i-th source is a folder that receives several files.
     [[nodiscard]] virtual bool fills_folder(std::size_t /*i*/) const { return false; }

@@ -82,7 +82,7 @@ public:
 
 /// A row of the table of operations.
 struct OperationEntry {
-    const char* name;                      ///< e.g. "annotation transfer"
+    const char* name;                      ///< name of the operation, such as "annotation transfer"
     const char* help;                      ///< help text
     std::unique_ptr<Operation> (*make)();  ///< creates an instance
     /// Raised when the operation gives different results for the same inputs, so that earlier results are computed again.
@@ -179,7 +179,9 @@ public:
     /// wrong type or is not allowed.
     void set(const std::string& option, const std::string& value);
     void set(const std::string& option, const char* value) { set(option, std::string(value)); }
+    /// Sets an option of type boolean.
     void set(const std::string& option, bool value);
+    /// Sets an option of type number or integer.
     void set(const std::string& option, double value);
     /// Sets the file of a slot; a repeatable slot gets a further file. Throws Error (usage) if the slot does not exist.
     void set_file(const std::string& slot, const Path& file);

@@ -88,12 +88,13 @@ struct IndexMap {
     std::vector<Index> map;        ///< for each old element: its new index; `no_index` if it was removed
     std::size_t to = 0;            ///< number of new elements
     std::string description = {};  ///< text for readers of the file; may be empty
-    bool nearest = false;          ///< true: old elements were matched to the nearest new elements, not to identical ones
+    /// True: old elements were matched to the nearest new elements, not to identical elements.
+    bool nearest = false;
 };
 /// An output that is an index map.
 class IndexMapOutput : public Slot {
 public:
-    void write(IndexMap map) const;
+    void write(IndexMap map) const;  ///< writes the map with provenance
 };
 
 /// An output of any other kind, written by a function of the caller. In memory the object holds the bytes (std::string).

@@ -182,7 +182,7 @@ public:
     /// Adds a note to the result; notes are printed on standard error and are in the JSON as result.notes.
     void note(std::string text);
     void notes(const std::vector<std::string>& texts);
-    /// Sets the result of a check: result.sound, defects and findings. With a defect, the answer is "no". `place`: key and
+    /// Sets the result of a check: result.sound, defects and findings. If there is a defect, the answer is "no". `place`: key and
     /// heading of the column of locations.
     void findings(const std::vector<Finding>& findings, const std::string& place = "where");
     /// Sets a value that may differ between identical runs, such as seconds; '.' in the key separates nested members.

@@ -22,7 +22,8 @@ Circle fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<
 using PlaneSegments = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 
 /// Circle with minimum mean squared distance (geometric fit) to the segments. The mean is an integral along the segments, not a
-/// sum over end points, so that splitting a segment does not change the circle. Damped Newton iteration from the algebraic fit.
+/// sum over end points, so that splitting a segment does not change the circle. The method is a damped Newton iteration that
+/// starts from the algebraic fit.
 Circle fit_circle(const PlaneSegments& segments);
 
 /// Angle, in radians, that the segments cover as seen from `centre`.

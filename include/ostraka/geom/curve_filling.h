@@ -30,8 +30,8 @@ struct CurveFilling {
 
 /// Computes the region to the left of the curves, plus the connected components that contain a face of `seeds`. Each curve is
 /// closed (its last node is its first) or ends at the border of the mesh. A face of which curves traverse only edges, not the
-/// interior, is `in` or `out`. O(n) for the flags; O(k) for the k pieces of the curves, except for faces that several stretches
-/// of curves traverse, which cost O(k log k).
+/// interior, is `in` or `out`. Time: O(n) for the flags; O(k) for the k pieces of the curves, except for faces that several
+/// stretches of curves traverse, which cost O(k log k).
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds = {});
 
 /// Classifies points in cut faces as inside or outside.

@@ -26,7 +26,8 @@ struct InsertedCurves {
 /// Adds a vertex at each node of the curves and subdivides the faces so that each piece of a curve becomes an edge, or a path of
 /// edges if curves cross inside a face (constrained Delaunay triangulation of each crossed face, in its plane). Nodes with the
 /// same element and the same position become one vertex. The faces that replace an old face take its position in the order of
-/// faces. Linear in the size of the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.
+/// faces. Time: linear in the size of the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of
+/// range.
 InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
 
 /// For each face that curves traverse: the fraction of its area to the left of the curves; for faces in `rings` rings around the

@@ -33,7 +33,7 @@ public:
     /// A motion about the centre, as parameters.
     struct Step {
         Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< rotation axis times angle in radians
-        Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< in the mesh's unit
+        Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< translation in the mesh's unit
         double growth = 0;                                      ///< natural logarithm of the scale
     };
     /// Computes the step of minimum error; `scaled`: true to estimate a scale too. `damping` (a fraction of the trace of the

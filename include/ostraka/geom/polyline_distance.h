@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-using Segments = std::vector<std::pair<Point, Point>>;
+using Segments = std::vector<std::pair<Point, Point>>;  ///< the two ends of each segment
 
 /// Two-sided Hausdorff distance between two sets of segments (degenerate segments represent points), sampled at the end points
 /// and midpoints of the segments; the distances of the samples are exact (AABB tree, O(n log n)). The distance is 0 if both sets

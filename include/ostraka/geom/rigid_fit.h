@@ -14,7 +14,7 @@ struct Motion {
     double scale = 1;                                        ///< scale factor; 1 for rigid motions
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
-    [[nodiscard]] Motion inverse() const;
+    [[nodiscard]] Motion inverse() const;  ///< the motion that undoes this motion
     /// Composition: first `other`, then this motion.
     [[nodiscard]] Motion after(const Motion& other) const;
     bool operator==(const Motion&) const = default;

@@ -40,7 +40,7 @@ public:
     /// end points of the segment.
     [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double max_distance) const;
 
-    /// True if the segment intersects a face for which `ignored` is false. Exact for the given coordinates.
+    /// True if the segment intersects a face for which `ignored` is false. The test is exact for the given coordinates.
     [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
     /// The point of the surface closest to `query`.

@@ -14,7 +14,7 @@ struct SurfaceCurve {
     std::vector<SurfacePoint> points;  ///< ends of the straight pieces, in order
     /// For each piece: index of the face that contains it (either face for a piece along an edge).
     std::vector<Index> faces;
-    [[nodiscard]] double length(const Mesh& mesh) const;
+    [[nodiscard]] double length(const Mesh& mesh) const;  ///< total length of the pieces
 };
 
 /// The curve through points; each two consecutive points must lie in a common face. Throws Error (input) if a point does not fit
@@ -23,7 +23,7 @@ SurfaceCurve curve_through(const Mesh& mesh, const std::vector<SurfacePoint>& po
 
 /// Traces the intersection of the surface with the plane through both points and the direction `up` (for example the mean surface
 /// normal) from `from` to `to`. The result is nullopt if the trace reaches the border, does not reach `to`, or becomes longer
-/// than `limit`. Linear in the number of faces crossed.
+/// than `limit`. Time: linear in the number of faces crossed.
 std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to, const Vector& up,
                                        double limit);
 

@@ -23,7 +23,7 @@ struct Difference {
 
 /// The differences from `a` to `b`: first differences of the set itself, then of annotations in ascending order of id. The list
 /// is empty if and only if the files of both sets are equal except for the provenance. `differences(b, a)` gives the same list
-/// with the sides exchanged. Linear, except for sorting.
+/// with the sides exchanged. Time: linear, except for sorting.
 std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet& b);
 
 /// A field that both sides of a merge changed in different ways.

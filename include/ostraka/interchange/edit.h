@@ -44,8 +44,8 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
 /// selection of an annotation changes, values measured on the annotation are recomputed, or marked stale if recomputing is not
 /// possible. The parts of a split are ordered by their smallest element; the first part keeps the id, and the other parts get
 /// unused ids. Each part keeps all attributes except measures; a measure stays with the part that contains one of its pins (the
-/// first part if no part does). Returns notes on changes beyond those requested. Throws Error (input) for an unknown annotation
-/// or attribute, an ambiguous tag, an id in use, incompatible types, or invalid pins.
+/// first part if no part does). Returns notes about changes that were not requested by a step. Throws Error (input) for an
+/// unknown annotation or attribute, an ambiguous tag, an id in use, incompatible types, or invalid pins.
 std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, const std::vector<AnnotationEdit>& edits,
                                           const std::string& where);
 

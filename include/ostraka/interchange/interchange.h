@@ -18,7 +18,7 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes 
 
 /// Options of `export_annotations`.
 struct ExportOptions {
-    LandmarkFileOptions landmarks;  ///< for landmark formats
+    LandmarkFileOptions landmarks;  ///< options for the landmark formats
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
@@ -37,7 +37,7 @@ ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::stri
 
 /// Options of `import_annotations`.
 struct ImportOptions {
-    LandmarkFileOptions landmarks;  ///< for landmark formats
+    LandmarkFileOptions landmarks;  ///< options for the landmark formats
     PlaceOptions place;             ///< how points are placed on the mesh
 
     void list_options(OptionList& list);  ///< adds every member to a list of options

@@ -20,7 +20,7 @@ struct Landmark {
 struct LandmarkCurve {
     std::string name;                           ///< name of the curve
     bool closed = false;                        ///< true: the last point is connected to the first point, which is not repeated
-    std::vector<std::array<double, 3>> points;  ///< in the space and unit of the mesh
+    std::vector<std::array<double, 3>> points;  ///< coordinates of the points, in the space and unit of the mesh
     /// Id of the annotation to which the curve belongs; none if the file does not give it.
     std::optional<int> group;
 };
@@ -68,9 +68,9 @@ std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, con
                               const LandmarkFileOptions& options = {});
 
 /// The points and poly-lines of a set: an annotation of one point becomes a landmark named by its tag; an annotation of several
-/// points becomes landmarks "tag 1", "tag 2" ...; a poly-line becomes a curve. Not representable are regions, colours, attributes
-/// and, in formats other than mrk, poly-lines; notes give the number of regions, poly-lines and attributes (of exported
-/// annotations) that were left out.
+/// points becomes landmarks "tag 1", "tag 2" ...; a poly-line becomes a curve. Landmarks cannot represent regions, colours,
+/// attributes and, in formats other than mrk, poly-lines; notes give the number of regions, poly-lines and attributes (of
+/// exported annotations) that were left out.
 LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format = LandmarkFormat::mrk);
 
 /// Options for placing points on a mesh.
@@ -103,8 +103,8 @@ struct PlacedAnnotations {
 /// Makes annotations from landmarks: each landmark becomes a point at the closest vertex (the lower index at equal distance), the
 /// landmarks of one group become one annotation, and each curve becomes a poly-line of shortest paths through the vertices
 /// closest to its points. If landmarks are beyond the tolerance, for example in a file in RAS space for a mesh in LPS space,
-/// throws Error (input) with the farthest landmark and a remedy. O((n + k) log n) for n vertices and k landmarks, not counting
-/// the paths.
+/// throws Error (input) with the farthest landmark and a remedy. Time: O((n + k) log n) for n vertices and k landmarks, not
+/// counting the paths.
 PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks, const std::string& where,
                                   const PlaceOptions& options = {});
 

@@ -111,7 +111,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options 
 
 /// Estimated width of cracks in a surface torn along its edges. A border point has a mate if another border point is closer than
 /// half of the shortest edge at the point. The width is four times the distance within which nine in ten of the points with a
-/// mate have their mate; 0 if fewer than nine in ten border points have a mate. O(n log n).
+/// mate have their mate; 0 if fewer than nine in ten border points have a mate. Time: O(n log n).
 double crack_width(const TriangleSoup& soup);
 
 /// Result of `self_intersections`.

@@ -13,10 +13,10 @@ namespace ostraka::glb {
 
 // Constants of glTF 2.0 (Khronos, sections 3.6, 3.7, 5.1, 5.11).
 inline constexpr int signed_byte = 5120, byte = 5121, signed_short = 5122, short_word = 5123, word = 5125, single = 5126;
-inline constexpr int array_buffer = 34962, element_array_buffer = 34963;
+inline constexpr int array_buffer = 34962, element_array_buffer = 34963;  ///< targets of buffer views
 /// Marks a node, in its extras, whose only purpose is to display the mesh upright and in metres.
 inline constexpr const char* display_only = "ostraka-display";
-inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;
+inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;  ///< modes of primitives
 
 /// Converts an sRGB colour channel (IEC 61966-2-1; 0 to 255) to a linear colour channel, because glTF vertex colours are linear
 /// (section 3.7.2.1).

@@ -40,15 +40,16 @@ struct RepairStep {
 /// The repaired mesh, with maps from old to new elements.
 struct RepairResult {
     Mesh mesh;  ///< the repaired mesh: an oriented manifold, open or closed
-    /// Attributes of the new elements; an element without an old one takes the values of the nearest old element that was kept.
+    /// Attributes of the new elements; a new element without an identical old element takes the values of the nearest old element
+    /// that was kept.
     MeshExtras extras;
     /// For each old vertex (triangle): index of the new vertex (triangle); no_index if removed. Merged vertices and duplicate
     /// triangles map to the element that was kept; vertices moved to smooth a fold keep their identity; a split vertex maps to
     /// its first copy, and a split triangle to its first part.
     std::vector<Index> vertex_map, face_map;
-    /// For each new vertex (triangle): index of the old vertex (triangle); no_index if there is no old one.
+    /// For each new vertex (triangle): index of the old vertex (triangle); no_index for elements that are new.
     std::vector<Index> vertex_source, face_source;
-    /// True after wrapping: the maps give the nearest element instead of the identical one.
+    /// True after wrapping: the maps give the nearest elements instead of identical elements.
     bool maps_by_distance = false;
     std::vector<RepairStep> steps;  ///< the steps carried out, in order
     /// Messages about steps that were not carried out, with reasons, and about lost data.

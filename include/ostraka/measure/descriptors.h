@@ -35,8 +35,8 @@ struct NamedMap {
 struct DescriptorOptions {
     bool curvature = false;              ///< true: add statistics of mean and Gaussian curvature
     bool thickness = false;              ///< true: add statistics of the thickness (shape diameter)
-    CurvatureOptions curvature_options;  ///< used if `curvature`
-    ThicknessOptions thickness_options;  ///< used if `thickness`
+    CurvatureOptions curvature_options;  ///< used if `curvature` is true
+    ThicknessOptions thickness_options;  ///< used if `thickness` is true
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };

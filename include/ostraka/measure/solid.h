@@ -20,7 +20,7 @@ struct RegionSolid {
 /// Computes the volume V = 1/3 sum c . n A over the region's faces (Zhang and Chen 2001; c is the centroid, n the unit normal and
 /// A the area of a face) and over the fans that join each outline with the mean of its vertices. All positions are relative to
 /// the centre of the region's bounding box. The centroid is the weighted mean of the centroids of the corresponding tetrahedra.
-/// Throws Error (usage) for a face out of range. Linear, except for the hulls (n log n in the length of an outline).
+/// Throws Error (usage) for a face out of range. Time: linear, except for the hulls (n log n in the length of an outline).
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// Volume of a mesh without border, independent of its orientation; NaN for an open mesh.

@@ -14,10 +14,11 @@
 
 namespace ostraka {
 
+/// Geometry with exact predicates in double precision.
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
-using Mesh = CGAL::Surface_mesh<Point>;
+using Mesh = CGAL::Surface_mesh<Point>;  ///< halfedge mesh of triangles
 using Vertex = Mesh::Vertex_index;
 using Halfedge = Mesh::Halfedge_index;
 using Edge = Mesh::Edge_index;
