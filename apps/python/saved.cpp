@@ -171,24 +171,24 @@ PolygonSoup soup_of(const MeshFile& file) {
 }
 
 /// Builds the same halfedge order as reading a file does.
-MeshFile mesh_of(PolygonSoup soup, std::vector<Index> triangle_polygon) {
+MeshFile mesh_of(PolygonSoup soup, std::vector<Index> polygon_of_triangle) {
     TriangleSoup triangles;
     for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
         if (soup.polygon_begin[i + 1] != 3 * (i + 1)) fail_archive("has polygons that are not triangles");
         triangles.triangles.push_back({soup.corners[3 * i], soup.corners[3 * i + 1], soup.corners[3 * i + 2]});
     }
-    check_count(triangle_polygon.size(), soup.polygon_count(), "polygons");
+    check_count(polygon_of_triangle.size(), soup.polygon_count(), "polygons");
     triangles.points = std::move(soup.points);
-    return {build_mesh(triangles), std::move(soup.extras), std::move(triangle_polygon), std::move(soup.notes)};
+    return {build_mesh(triangles), std::move(soup.extras), std::move(polygon_of_triangle), std::move(soup.notes)};
 }
 
 Object restored_mesh(Reader& reader) {
     PolygonSoup soup;
-    std::vector<Index> triangle_polygon;
+    std::vector<Index> polygon_of_triangle;
     MeshWriting writing;
-    reader(soup, triangle_polygon, writing);
+    reader(soup, polygon_of_triangle, writing);
     check_mesh(soup);
-    const auto mesh = std::make_shared<const MeshFile>(mesh_of(std::move(soup), std::move(triangle_polygon)));
+    const auto mesh = std::make_shared<const MeshFile>(mesh_of(std::move(soup), std::move(polygon_of_triangle)));
     Object object(mesh);
     object.write = write_mesh_with(std::move(writing), [mesh](const Path& file, const WriteOptions& options) {
         write_mesh(file, mesh->mesh, mesh->extras, options);
@@ -435,7 +435,7 @@ Held restored(Type type, Reader& reader) {
 
 void save_data(Writer& writer, const Object& object) {
     if (const auto mesh = object.as<MeshFile>())
-        writer(Type::mesh, soup_of(*mesh), mesh->triangle_polygon, writing_of(object, mesh->mesh.number_of_faces()));
+        writer(Type::mesh, soup_of(*mesh), mesh->polygon_of_triangle, writing_of(object, mesh->mesh.number_of_faces()));
     else if (const auto soup = object.as<PolygonSoup>()) writer(Type::polygons, *soup, writing_of(object, soup->polygon_count()));
     else if (const auto set = object.as<AnnotationSet>())
         writer(Type::annotations, *set, bytes_of_object(object, file_name_of(object)));

@@ -75,7 +75,7 @@ std::vector<Index> pins_of(const Measure& measure) {
     return pins;
 }
 
-Figures figures_of(const Attribute& attribute) {
+Figures attribute_values(const Attribute& attribute) {
     const Measure& measure = attribute.measure;
     const Descriptor& descriptor = attribute.descriptor;
     if (attribute.type == AttributeType::descriptor) return {descriptor.values, descriptor.unit, descriptor.stale};

@@ -137,7 +137,7 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
         if (annotation.all) fail(where, at, "the whole mesh has curves", "drop them or the mark \"all\"");
         Annotation again = annotation;
         try {
-            settle_elements(mesh, again);
+            compute_elements(mesh, again);
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::cancelled) throw;
             fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());

@@ -229,7 +229,7 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
     for (std::size_t i = 0; i < seeds.size(); ++i) places::check_face(mesh, seeds[i], where, at + "/seeds/" + to_string(i));
     annotation.faces = seeds;  // whole components, given by one face each
     try {
-        settle_elements(mesh, annotation);
+        compute_elements(mesh, annotation);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled) throw;
         fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());

@@ -45,7 +45,7 @@ bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation) {
     return annotation.all || 20 * annotation.faces.size() >= 19 * mesh.number_of_faces();
 }
 
-std::array<int, 3> fresh_colour(AnnotatedMeshView object, const Annotation& joining) {
+std::array<int, 3> unused_colour(AnnotatedMeshView object, const Annotation& joining) {
     if (covers_nearly_all(object.mesh, joining)) return neutral_colour;
     std::set<std::array<int, 3>> taken;
     for (const Annotation& annotation : object.annotations.annotations) taken.insert(annotation.colour);

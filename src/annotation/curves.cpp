@@ -78,7 +78,7 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation) {
     return filling_of(mesh, annotation, curves_on(mesh, annotation));
 }
 
-void settle_elements(const Mesh& mesh, Annotation& annotation) {
+void compute_elements(const Mesh& mesh, Annotation& annotation) {
     if (!is_free(annotation)) return;
     const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
     if (annotation.type == AnnotationType::region) {
@@ -114,7 +114,7 @@ double area_of(const Mesh& mesh, const Annotation& annotation) {
     return is_free(annotation) ? filling_of(mesh, annotation).area(mesh) : area_of(mesh, annotation.faces);
 }
 
-std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region) {
+std::vector<std::pair<Index, double>> face_area_fractions(const Mesh& mesh, const Annotation& region) {
     std::vector<std::pair<Index, double>> shares;
     if (!is_free(region)) {
         for (const Index f : region.faces) shares.emplace_back(f, 1.0);
@@ -298,7 +298,7 @@ std::vector<SurfacePoint> without_needless(const Mesh& mesh, std::vector<Surface
 
 }  // namespace
 
-void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
+void uncut_annotation(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     annotation.curves.clear();
     bool free = false;
     const auto place = [&](Index v) {
@@ -335,7 +335,7 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
         old.erase(std::unique(old.begin(), old.end()), old.end());
         annotation.faces = std::move(old);
     }
-    if (free || annotation.type != AnnotationType::region) settle_elements(mesh, annotation);
+    if (free || annotation.type != AnnotationType::region) compute_elements(mesh, annotation);
     if (!free) annotation.curves.clear();  // the curves follow edges of the mesh, so the elements represent them exactly
 }
 

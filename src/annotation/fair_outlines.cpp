@@ -103,7 +103,7 @@ public:
                     what.moved = std::max(what.moved, hausdorff_distance(segments(drawn(strand)), segments(strand.points)));
                 }
             one.curves = curves_now(i);
-            settle_elements(mesh_, one);
+            compute_elements(mesh_, one);
             if (one.type == AnnotationType::region) {
                 const RegionMeasures measures = measure_region(mesh_, one);
                 what.area_after = measures.area;

@@ -23,7 +23,7 @@ std::int32_t parse_label(std::string_view text, const std::string& where) {
 
 }  // namespace
 
-std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, const std::vector<Index>& triangle_polygon) {
+std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, const std::vector<Index>& polygon_of_triangle) {
     const std::string text = read_file(file);
     std::vector<std::int32_t> labels;
     std::size_t line_number = 0, blank_since = 0;
@@ -40,9 +40,9 @@ std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, 
         labels.push_back(parse_label(line, file.string() + ", line " + std::to_string(line_number)));
     }
     if (labels.size() == face_count) return labels;
-    const std::size_t polygons = triangle_polygon.empty()
+    const std::size_t polygons = polygon_of_triangle.empty()
                                      ? face_count
-                                     : *std::max_element(triangle_polygon.begin(), triangle_polygon.end()) + std::size_t{1};
+                                     : *std::max_element(polygon_of_triangle.begin(), polygon_of_triangle.end()) + std::size_t{1};
     if (labels.size() != polygons) {
         const std::string counts = polygons == face_count
                                        ? std::to_string(face_count) + " faces"
@@ -51,8 +51,8 @@ std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, 
                    "give the labels of this mesh, one for each face");
     }
     std::vector<std::int32_t> per_triangle;
-    per_triangle.reserve(triangle_polygon.size());
-    for (const Index polygon : triangle_polygon) per_triangle.push_back(labels[polygon]);
+    per_triangle.reserve(polygon_of_triangle.size());
+    for (const Index polygon : polygon_of_triangle) per_triangle.push_back(labels[polygon]);
     return per_triangle;
 }
 
@@ -139,7 +139,7 @@ std::vector<std::int32_t> labels_on_top(AnnotatedMeshView object) {
 
 FaceLabels face_labels(AnnotatedMeshView object) {
     FaceLabels result;
-    const AlongEdges along_edges(object);
+    const EdgeAlignedAnnotations along_edges(object);
     result.of_face = labels_on_top(along_edges.object());
     if (!along_edges.cut()) return result;
     // A face cut by outlines gets the label of most of its area.

@@ -43,7 +43,7 @@ void close_cuts(CutPart& part, const std::vector<Halfedge>& cuts) {
     cap.id = free_id(part.annotations);
     cap.tag = "cut";
     for (std::size_t f = before; f < after; ++f) cap.faces.push_back(static_cast<Index>(f));
-    cap.colour = fresh_colour(part, cap);
+    cap.colour = unused_colour(part, cap);
     part.annotations.annotations.push_back(std::move(cap));
 }
 

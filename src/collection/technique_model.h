@@ -53,7 +53,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
 /// For each object, the descriptor that most strongly marks it as out-of-class; none if no descriptor does, or if fewer than
 /// `min_compared` other objects of each label exist (technique_range.cpp).
 std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vector<TechniqueObject>& objects,
-                                                                const std::string& positive, double unlike_from);
+                                                                const std::string& positive, double min_outlier_distance);
 inline constexpr std::size_t min_compared = 3;  ///< minimum number of other objects of each label
 
 /// Sets `words`, the explanation of every answer (technique_words.cpp).

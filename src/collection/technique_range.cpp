@@ -44,7 +44,7 @@ double distance_outside(const LabelledValues& class_values, double x) {
 }  // namespace
 
 std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vector<TechniqueObject>& objects,
-                                                                const std::string& positive, double unlike_from) {
+                                                                const std::string& positive, double min_outlier_distance) {
     std::vector<std::optional<TechniqueOutlier>> result(objects.size());
     for (const DescriptorMeaning& descriptor : technique_descriptors()) {
         if (!compared(descriptor)) continue;
@@ -60,7 +60,7 @@ std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vecto
             if (!other_values.enough()) return;
             const double distance = distance_outside(other_values, value(row));
             auto& maximum = result[table.objects[row]];
-            if (distance < unlike_from || (maximum && maximum->distance >= distance)) return;
+            if (distance < min_outlier_distance || (maximum && maximum->distance >= distance)) return;
             std::vector<double> scaled_values = other_values.values[0];
             scaled_values.insert(scaled_values.end(), other_values.values[1].begin(), other_values.values[1].end());
             for (double& scaled_value : scaled_values) scaled_value = from_scale(descriptor, scaled_value);

@@ -100,7 +100,7 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
         for (std::size_t row = 0; row < rows; ++row)
             if (!is_drawn[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
     });
-    const auto unlike = technique_outliers(objects, study.positive, options.unlike_from);
+    const auto unlike = technique_outliers(objects, study.positive, options.min_outlier_distance);
     for (std::size_t row = 0; row < rows; ++row) {
         TechniqueAnswer& answer = study.answers[table.objects[row]];
         answer.score = models[row].score(table.values.row(static_cast<Eigen::Index>(row)));
@@ -293,7 +293,7 @@ void TechniqueStudyOptions::list_options(OptionList& list) {
          Range{10, 100000});
     list("simulations", simulations,
          "number of simulated collections with one group, with which a division into two groups is compared", Range{19, 100000});
-    list("unlike-from", unlike_from,
+    list("unlike-from", min_outlier_distance,
          "minimum distance of any descriptor of an object from the collection, in robust standard deviations, at which the "
          "object gets no answer",
          Range{1, 1e6});

@@ -160,7 +160,7 @@ Backend::~Backend() = default;
 std::unique_ptr<Backend> command_backend(std::vector<std::string> words, ArgumentsOf arguments, double time_limit) {
     return std::make_unique<CommandBackend>(std::move(words), std::move(arguments), time_limit);
 }
-std::unique_ptr<Backend> lines_backend(std::vector<std::string> words, double time_limit) {
+std::unique_ptr<Backend> json_lines_backend(std::vector<std::string> words, double time_limit) {
     return std::make_unique<LinesBackend>(std::move(words), time_limit);
 }
 

@@ -122,10 +122,10 @@ Coordinates interior_coordinates(const std::string& kind, const Mesh& mesh, cons
         cage, points, options.snap, options.drop, kind,
         [&] {
             {
-                const AddedSeconds added(tetrahedra);
+                const ScopedSeconds added(tetrahedra);
                 inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, kind);
             }
-            const AddedSeconds added(at_nodes);
+            const ScopedSeconds added(at_nodes);
             weights = weights_of(*inside, cage);
         },
         [&](const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });

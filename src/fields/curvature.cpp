@@ -64,7 +64,7 @@ struct FaceShares {
     std::vector<Vector> vector;
 };
 
-FaceShares face_shares(const Mesh& mesh) {
+FaceShares face_area_fractions(const Mesh& mesh) {
     const std::vector<Vector> normals = unit_normals(mesh);
     std::vector<EdgeCurvature> edges(mesh.number_of_edges());
     std::vector<double> deficits(mesh.number_of_vertices());
@@ -94,7 +94,7 @@ struct VertexShares {
 };
 
 VertexShares vertex_shares(const Mesh& mesh) {
-    const FaceShares faces = face_shares(mesh);
+    const FaceShares faces = face_area_fractions(mesh);
     const std::size_t count = mesh.number_of_vertices();
     VertexShares shares;
     shares.mean.assign(count, 0);
@@ -151,7 +151,7 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
     return result;
 }
 
-CurvatureIntegrals curvature_integrals(const Mesh& mesh) { return face_shares(mesh).integrals; }
+CurvatureIntegrals curvature_integrals(const Mesh& mesh) { return face_area_fractions(mesh).integrals; }
 
 RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& integrals, const std::vector<Index>& faces) {
     if (integrals.mean.size() != mesh.number_of_faces()) fail_usage("the integrals belong to another mesh", "compute them again");

@@ -4,8 +4,8 @@
 
 namespace ostraka {
 
-std::vector<std::size_t> min_labels(const FacetGraph& graph, const std::vector<std::vector<double>>& costs,
-                                    const std::vector<double>& boundary) {
+std::vector<std::size_t> min_cost_labels(const FacetGraph& graph, const std::vector<std::vector<double>>& costs,
+                                         const std::vector<double>& boundary) {
     std::vector<std::size_t> labels(graph.count(), 0);
     for (std::size_t p = 0; p < labels.size(); ++p)
         for (std::size_t label = 1; label < costs.size(); ++label)

@@ -66,7 +66,7 @@ private:
             costs[0][p] = graph_.areas[p] * std::log1p(std::exp(odds));
             costs[1][p] = graph_.areas[p] * std::log1p(std::exp(-odds));
         }
-        labels_ = min_labels(graph_, costs, boundary());
+        labels_ = min_cost_labels(graph_, costs, boundary());
         for (std::size_t& label : labels_) label = label == 1 ? fracture_label : 0;
         return std::find(labels_.begin(), labels_.end(), fracture_label) != labels_.end();
     }
@@ -111,7 +111,7 @@ private:
         for (std::size_t c = 0; c < between.size(); ++c)
             if (labels_[graph_.contacts[c].a] == fracture_label || labels_[graph_.contacts[c].b] == fracture_label)
                 between[c] = 0;
-        const std::vector<std::size_t> side = min_labels(graph_, costs, between);
+        const std::vector<std::size_t> side = min_cost_labels(graph_, costs, between);
         for (const Index p : intact) labels_[p] = side[p];
     }
 

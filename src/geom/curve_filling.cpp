@@ -78,7 +78,7 @@ public:
     Filler(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) : mesh_(mesh), curves_(curves) {}
 
     /// Geometric solution for one stretch that enters and leaves the face at its boundary; returns false for other cases.
-    bool simple(const Stretch& stretch, FaceVerdict& verdict) {
+    bool simple(const Stretch& stretch, FaceClassification& verdict) {
         const Halfedge rim[3] = {mesh_.next(mesh_.halfedge(Face(stretch.face))),
                                  mesh_.next(mesh_.next(mesh_.halfedge(Face(stretch.face)))), mesh_.halfedge(Face(stretch.face))};
         const SurfaceCurve& curve = curves_[stretch.curve];
@@ -128,8 +128,8 @@ public:
 
     /// General solution by a triangulation of the face along all its pieces; `parts`, if given, receives the triangles and
     /// whether they are inside.
-    FaceVerdict general(const std::vector<Stretch>& stretches,
-                        std::vector<std::pair<std::array<Point, 3>, bool>>* parts = nullptr) {
+    FaceClassification general(const std::vector<Stretch>& stretches,
+                               std::vector<std::pair<std::array<Point, 3>, bool>>* parts = nullptr) {
         const Index face = stretches.front().face;
         std::vector<SurfaceCurve> pieces;
         for (const Stretch& stretch : stretches) {
@@ -150,7 +150,7 @@ public:
             for (std::size_t i = 0; i + 1 < path.size(); ++i)
                 if (path[i] != path[i + 1]) net[std::minmax(path[i], path[i + 1])] += path[i] < path[i + 1] ? 1 : -1;
         }
-        return judge_face(mesh_, face, cutter, triangles, net, parts);
+        return classify_face(mesh_, face, cutter, triangles, net, parts);
     }
 
 private:
@@ -189,10 +189,11 @@ private:
 
 }  // namespace
 
-FaceVerdict judge_face(const Mesh& mesh, Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
-                       const std::map<std::pair<Index, Index>, int>& net,
-                       std::vector<std::pair<std::array<Point, 3>, bool>>* parts) {
-    FaceVerdict verdict;
+FaceClassification classify_face(const Mesh& mesh, Index face, const FaceCutter& cutter,
+                                 const std::vector<std::array<Index, 3>>& triangles,
+                                 const std::map<std::pair<Index, Index>, int>& net,
+                                 std::vector<std::pair<std::array<Point, 3>, bool>>* parts) {
+    FaceClassification verdict;
     enum { unknown, left, right };
     std::vector<int> side(triangles.size(), unknown);
     std::map<std::pair<Index, Index>, std::size_t> owner;  // directed edge -> triangle on its left
@@ -271,7 +272,7 @@ CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curv
         std::size_t end = i;
         while (end < stretches.size() && stretches[end].face == stretches[i].face) ++end;
         const Index face = stretches[i].face;
-        FaceVerdict verdict;
+        FaceClassification verdict;
         if (end - i > 1 || !filler.simple(stretches[i], verdict))
             verdict = filler.general(
                 {stretches.begin() + static_cast<std::ptrdiff_t>(i), stretches.begin() + static_cast<std::ptrdiff_t>(end)});

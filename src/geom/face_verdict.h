@@ -11,7 +11,7 @@
 namespace ostraka {
 
 /// A face traversed by curves, and on which side of the curves its parts and adjacent faces lie.
-struct FaceVerdict {
+struct FaceClassification {
     double share = 0;  ///< fraction of the face's area to the left of the curves
     double area = 0;   ///< area of the face
     /// For the adjacent face at edge k (from corner k to k + 1): 1 left, 0 right, -1 unknown or crossed.
@@ -24,8 +24,9 @@ struct FaceVerdict {
 /// Classifies a face. `triangles`: the triangles into which the cutter divided the face. `net`: for pairs of vertices (smaller
 /// index first), number of curve pieces from the first to the second minus the number in the opposite direction. `parts`, if
 /// given, receives the triangles, each with true if it lies on the left.
-FaceVerdict judge_face(const Mesh& mesh, Index face, const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
-                       const std::map<std::pair<Index, Index>, int>& net,
-                       std::vector<std::pair<std::array<Point, 3>, bool>>* parts = nullptr);
+FaceClassification classify_face(const Mesh& mesh, Index face, const FaceCutter& cutter,
+                                 const std::vector<std::array<Index, 3>>& triangles,
+                                 const std::map<std::pair<Index, Index>, int>& net,
+                                 std::vector<std::pair<std::array<Point, 3>, bool>>* parts = nullptr);
 
 }  // namespace ostraka

@@ -53,7 +53,7 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
     return result;
 }
 
-std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings) {
+std::vector<std::pair<Index, double>> left_area_fractions(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings) {
     FaceCutter cutter(mesh, curves);
     // Pieces per face as directed pairs of vertices; a piece and its reverse cancel.
     std::map<Index, std::map<std::pair<Index, Index>, int>> pieces;
@@ -63,9 +63,9 @@ std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::v
             if (a != b) pieces[curves[c].faces[i]][std::minmax(a, b)] += a < b ? 1 : -1;
         }
     std::map<Index, double> share_of;
-    std::map<Index, FaceVerdict> verdicts;
+    std::map<Index, FaceClassification> verdicts;
     for (const auto& [face, net] : pieces) {
-        const FaceVerdict verdict = judge_face(mesh, face, cutter, cutter.cut(face), net);
+        const FaceClassification verdict = classify_face(mesh, face, cutter, cutter.cut(face), net);
         if (!verdict.known) continue;
         verdicts.emplace(face, verdict);
         if (verdict.area > 0) share_of[face] = verdict.share;

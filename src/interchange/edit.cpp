@@ -226,7 +226,7 @@ private:
         const CutMesh cut = cut_along_curves({mesh_, pair});
         Annotation joined = cut.annotations.annotations[0];
         join_elements(joined, cut.annotations.annotations[1]);
-        if (!joined.all) bring_back(mesh_, cut, joined);
+        if (!joined.all) uncut_annotation(mesh_, cut, joined);
         annotation.points = std::move(joined.points);
         annotation.polylines = std::move(joined.polylines);
         annotation.faces = std::move(joined.faces);
@@ -268,7 +268,7 @@ private:
             for (const Index point : cut_annotation.points) add().points = {point};
             for (const auto& polyline : cut_annotation.polylines) add().polylines = {polyline};
             for (auto& patch : patches(cut.mesh, cut_annotation.faces)) add().faces = std::move(patch);
-            for (Annotation& part : parts) bring_back(mesh_, cut, part);
+            for (Annotation& part : parts) uncut_annotation(mesh_, cut, part);
         } else {
             for (const Index point : original.points) add().points = {point};
             for (const auto& polyline : original.polylines) add().polylines = {polyline};
@@ -346,7 +346,7 @@ std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, 
     return Editor(mesh, set, where).run(edits);
 }
 
-void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& new_unit) {
+void change_length_unit(const Mesh& mesh, AnnotationSet& set, const std::string& new_unit) {
     const std::string old_unit = set.unit;
     set.unit = new_unit;
     for (Annotation& annotation : set.annotations)

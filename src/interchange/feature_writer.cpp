@@ -348,7 +348,7 @@ private:
                     values[i] += (values[i].empty() ? "" : "; ") + attribute.note;
                     continue;
                 }
-                const Figures figures = figures_of(attribute);
+                const Figures figures = attribute_values(attribute);
                 if (figures.values.size() != 1) continue;
                 auto& values =
                     numbers[figures.unit.empty() ? attribute.name : fmt::format("{} ({})", attribute.name, figures.unit)];
@@ -385,7 +385,7 @@ private:
 
 std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes) {
-    const AlongEdges along_edges(object);
+    const EdgeAlignedAnnotations along_edges(object);
     if (along_edges.cut())
         notes.emplace_back("the mesh is cut along free outlines; the curves on the original mesh are stored as well");
     const bool informed = std::any_of(object.annotations.annotations.begin(), object.annotations.annotations.end(),

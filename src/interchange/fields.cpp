@@ -45,7 +45,7 @@ std::string as_text(const Attribute& attribute) {
         if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
         if (attribute.measure.uncertainty) text += " +- " + digits(*attribute.measure.uncertainty);
     }
-    const auto [values, unit, stale] = figures_of(attribute);
+    const auto [values, unit, stale] = attribute_values(attribute);
     for (std::size_t i = 0; !measured && i < values.size() && i < 4; ++i) text += " " + digits(values[i]);
     if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
     if (!unit.empty()) text += " " + unit;

@@ -80,7 +80,7 @@ private:
 
     static std::string description_of(const Attribute& attribute) {
         if (attribute.type == AttributeType::semantic) return fmt::format("{}: {}", attribute.name, attribute.note);
-        const auto [values, unit, stale] = figures_of(attribute);
+        const auto [values, unit, stale] = attribute_values(attribute);
         std::string text = attribute.name + ":";
         for (std::size_t i = 0; i < values.size() && i < 8; ++i) text += " " + digits(values[i]);
         return text + (unit.empty() ? "" : " " + unit) + (stale ? " (stale)" : "");

@@ -141,7 +141,7 @@ MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     if (largest > max_coordinate || box_diagonal(result.mesh) < 1e-60)
         fail_input(name, "has coordinates outside the supported range (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
-    result.triangle_polygon = std::move(triangles.triangle_polygon);
+    result.polygon_of_triangle = std::move(triangles.polygon_of_triangle);
     result.notes = std::move(triangles.notes);
     return result;
 }

@@ -218,7 +218,7 @@ namespace {
 /// triangle, the first halfedge of its hole.
 Counts fill_once(RepairSoup& work, const HoleLimits& limits, const std::vector<Index>& skip, std::vector<Index>& hole_of) {
     auto& soup = work.soup;
-    const std::vector<Index> opposite = pair_manifold(soup);
+    const std::vector<Index> opposite = opposite_halfedges(soup);
     const std::vector<Index> place = same_place(soup.points);
     const std::vector<Hole> holes = find_holes(soup, opposite, place);
     DisjointSets sets = joined_vertices(soup);

@@ -90,7 +90,7 @@ Folds find_folds(const TriangleSoup& soup, const Pairs& pairs, int rings) {
             sets.unite(soup.triangles[t][0], v);
         }
     }
-    const std::vector<Index> opposite = pair_manifold(soup);
+    const std::vector<Index> opposite = opposite_halfedges(soup);
     for (Index h = 0; h < opposite.size(); ++h)
         if (opposite[h] == no_index) inside[origin(soup, h)] = inside[target(soup, h)] = 0;
     Folds folds{std::vector<Index>(soup.points.size(), no_index), {}, {}};

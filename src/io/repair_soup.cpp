@@ -92,7 +92,7 @@ std::size_t RepairSoup::drop_isolated(bool keep_original) {
     return keep.size() - next;
 }
 
-std::vector<Index> pair_manifold(const TriangleSoup& soup) {
+std::vector<Index> opposite_halfedges(const TriangleSoup& soup) {
     const SoupEdges edges = group_edges(soup);
     std::vector<Index> opposite(3 * soup.triangles.size(), no_index);
     for (std::size_t e = 0; e < edges.count(); ++e) {

@@ -37,7 +37,7 @@ struct RepairSoup {
 using Counts = std::vector<std::pair<std::string, std::size_t>>;  ///< kind of change -> number of changes
 
 /// For each halfedge of a manifold soup: its opposite halfedge; no_index on the border.
-std::vector<Index> pair_manifold(const TriangleSoup& soup);
+std::vector<Index> opposite_halfedges(const TriangleSoup& soup);
 
 /// Distances within which points are merged.
 struct MergeDistances {

@@ -232,7 +232,7 @@ Counts separate_nonmanifold(RepairSoup& work) {
 
 Counts orient_outwards(RepairSoup& work) {
     auto& soup = work.soup;
-    const std::vector<Index> opposite = pair_manifold(soup);
+    const std::vector<Index> opposite = opposite_halfedges(soup);
     DisjointSets sets = joined_vertices(soup);
     std::vector<Index> number(soup.points.size(), no_index), component(soup.triangles.size());
     std::vector<bool> closed;
@@ -293,7 +293,7 @@ bool joined_by_edge(const TriangleSoup& soup, const std::vector<Index>& opposite
 
 Counts flip_degenerate(RepairSoup& work) {
     auto& soup = work.soup;
-    std::vector<Index> opposite = pair_manifold(soup);
+    std::vector<Index> opposite = opposite_halfedges(soup);
     std::vector<Index> queue;
     const auto without_area = triangles_without_area(soup);
     for (Index t = 0; t < work.triangle_count(); ++t)

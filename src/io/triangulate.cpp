@@ -6,7 +6,7 @@ namespace ostraka {
 namespace {
 
 /// Assigns face and corner data to the triangles; vertex data are unchanged.
-MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygon, const std::vector<Index>& triangle_corner) {
+MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& polygon_of_triangle, const std::vector<Index>& triangle_corner) {
     MeshExtras result;
     result.vertex_colours = std::move(extras.vertex_colours);
     result.vertex_labels = std::move(extras.vertex_labels);
@@ -17,8 +17,8 @@ MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygo
         mapped.reserve(map.size());
         for (const Index i : map) mapped.push_back(values[i]);
     };
-    pick(extras.face_colours, triangle_polygon, result.face_colours);
-    pick(extras.face_labels, triangle_polygon, result.face_labels);
+    pick(extras.face_colours, polygon_of_triangle, result.face_colours);
+    pick(extras.face_labels, polygon_of_triangle, result.face_labels);
     pick(extras.corner_texture, triangle_corner, result.corner_texture);
     return result;
 }
@@ -63,7 +63,7 @@ TriangulatedSoup triangulate(PolygonSoup&& input) {
         gave_up += cut == io::CutResult::gave_up;
         for (const auto& piece : cut_triangles) {
             triangles.push_back({corners[begin + piece[0]], corners[begin + piece[1]], corners[begin + piece[2]]});
-            result.triangle_polygon.push_back(static_cast<Index>(i));
+            result.polygon_of_triangle.push_back(static_cast<Index>(i));
             if (!polygons.extras.corner_texture.empty())
                 for (const auto k : piece) triangle_corner.push_back(begin + k);
         }
@@ -75,7 +75,7 @@ TriangulatedSoup triangulate(PolygonSoup&& input) {
     if (gave_up > 0)
         result.notes.push_back(std::to_string(gave_up) +
                                " faces are too large and intricate to be cut cleanly; their triangles may overlap");
-    result.extras = follow(std::move(polygons.extras), result.triangle_polygon, triangle_corner);
+    result.extras = follow(std::move(polygons.extras), result.polygon_of_triangle, triangle_corner);
     return result;
 }
 

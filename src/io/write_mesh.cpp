@@ -45,7 +45,7 @@ MeshExtras polygon_extras(const MeshExtras& extras, const std::vector<Index>& tr
 std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
                                         const WriteOptions& options) {
     const std::string ending = extension(file);
-    if (options.polygons.size() != options.polygon_triangle.size())
+    if (options.polygons.size() != options.triangle_of_polygon.size())
         throw std::logic_error("write_mesh: polygons without triangles");
     for (const auto& polygon : options.polygons)
         for (const Index v : polygon)
@@ -54,17 +54,17 @@ std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& so
     std::vector<std::string> notes;
     if (ending != ".obj" && ending != ".off" && ending != ".ply") {
         triangle_options.polygons.clear();
-        triangle_options.polygon_triangle.clear();
+        triangle_options.triangle_of_polygon.clear();
         notes = write_triangles(file, soup, extras, triangle_options);
         notes.emplace_back("only OBJ, OFF and PLY can store polygons: they are triangulated");
         return notes;
     }
     for (FaceValues& face_attribute : triangle_options.face_values) {
         std::vector<float> values;
-        for (const Index t : options.polygon_triangle) values.push_back(face_attribute.values[t]);
+        for (const Index t : options.triangle_of_polygon) values.push_back(face_attribute.values[t]);
         face_attribute.values = std::move(values);
     }
-    const MeshExtras attributes = polygon_extras(extras, options.polygon_triangle);
+    const MeshExtras attributes = polygon_extras(extras, options.triangle_of_polygon);
     notes = ending == ".obj"   ? io::write_obj(file, soup, attributes, triangle_options)
             : ending == ".off" ? io::write_off(file, soup, attributes, triangle_options)
                                : io::write_ply(file, soup, attributes, triangle_options);

@@ -150,7 +150,7 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
             summary.elements = annotation.faces.size();
             // Faces cut by a curve may connect parts that the selected faces alone do not.
             std::vector<Index> touched;
-            for (const auto& [face, share] : face_shares(mesh, annotation)) touched.push_back(face);
+            for (const auto& [face, share] : face_area_fractions(mesh, annotation)) touched.push_back(face);
             summary.patches = count_patches(mesh, touched);
             summary.outlines = is_free(annotation) ? annotation.curves.size() : extract_outlines(mesh, annotation.faces).size();
             summary.area = measures.area;

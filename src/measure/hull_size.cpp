@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-HullSize hull_size(const std::vector<Point>& points) {
+ConvexHullSize convex_hull_size(const std::vector<Point>& points) {
     check_cancelled();
     if (points.size() < 4) return {};
     // Relative to the first point, for precision; a planar hull has no interior.

@@ -105,7 +105,7 @@ RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
         for (const Point& p : points) mean += (p - points.front()) / static_cast<double>(points.size());
         const Point apex = points.front() + mean;
         for (std::size_t i = 0; i < points.size(); ++i) sum.add(points[(i + 1) % points.size()], points[i], apex);
-        result.volume_bound += hull_size(points).volume;
+        result.volume_bound += convex_hull_size(points).volume;
         ++result.outlines;
     }
     result.volume = sum.volume();

@@ -223,7 +223,7 @@ private:
 
 void draw_annotations(Scene& scene, AnnotatedMeshView given, const AnnotationStyle& given_style) {
     // Free outlines are drawn exactly, on the mesh cut along them.
-    const AlongEdges along_edges(given);
+    const EdgeAlignedAnnotations along_edges(given);
     const auto& [mesh, set] = along_edges.object();
     AnnotationStyle style = given_style;
     if (const auto& cut = along_edges.cut()) {

@@ -53,9 +53,9 @@ std::optional<double> finite_in(const JsonValue& object, const char* name) {
 
 /// Value per triangle, taken from its polygon.
 std::vector<double> triangle_values(const std::vector<double>& polygon_values, const MeshFile& mesh) {
-    if (mesh.triangle_polygon.empty()) return polygon_values;
+    if (mesh.polygon_of_triangle.empty()) return polygon_values;
     std::vector<double> values;
-    for (const Index polygon : mesh.triangle_polygon)
+    for (const Index polygon : mesh.polygon_of_triangle)
         values.push_back(polygon < polygon_values.size() ? polygon_values[polygon] : std::nan(""));
     return values;
 }

@@ -97,7 +97,7 @@ struct Publish final : AnnotatedMeshOperation {
         Page page(name);
         PageObject page_object;
         page_object.name = name;
-        const AlongEdges along_edges(subject);  // free outlines are shown on the mesh cut along them
+        const EdgeAlignedAnnotations along_edges(subject);  // free outlines are shown on the mesh cut along them
         page_object.mesh = &along_edges.object().mesh;
         page_object.annotations = &along_edges.object().annotations;
         page.add(page_object);

@@ -136,22 +136,22 @@ struct Render final : Operation {
     Scene read(Context& context, std::size_t k, RenderOptions& render_options) const {
         Scene scene;
         MeshExtras extras;
-        std::vector<Index> triangle_polygon;
+        std::vector<Index> polygon_of_triangle;
         if (annotations.has(k)) {
             const MeshFile& file = meshes.get(k);
             scene.mesh = to_soup(file.mesh);
             extras = file.extras;
-            triangle_polygon = file.triangle_polygon;
+            polygon_of_triangle = file.polygon_of_triangle;
         } else {  // rendering needs no manifold
             TriangulatedSoup triangles = triangulate(meshes.take_polygons(k));
             context.notes(meshes.size() > 1 ? meshes.file(k) : std::string(), triangles.notes);
             scene.mesh = std::move(triangles.soup);
             extras = std::move(triangles.extras);
-            triangle_polygon = std::move(triangles.triangle_polygon);
+            polygon_of_triangle = std::move(triangles.polygon_of_triangle);
         }
         if (!titles.empty()) scene.title = titles[k] == "none" ? "" : titles[k];
         else if (meshes.size() > 1) scene.title = meshes.file_name(k);
-        if (maps.has(k)) colour_by_map(scene, triangle_polygon, k);
+        if (maps.has(k)) colour_by_map(scene, polygon_of_triangle, k);
         if (annotations.has(k)) {
             const Mesh& mesh = meshes.get(k).mesh;
             const AnnotationSet& set = annotations.on(mesh, k);

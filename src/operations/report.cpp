@@ -425,7 +425,7 @@ struct MakeReport final : Operation {
             shown.maps = std::move(object.maps);
             if (object.set) shown.annotations = &*object.set;
         }
-        std::optional<AlongEdges> along_edges;  // free outlines are shown on the mesh cut along them
+        std::optional<EdgeAlignedAnnotations> along_edges;  // free outlines are shown on the mesh cut along them
         if (shown.annotations != nullptr) along_edges.emplace(AnnotatedMeshView(*shown.mesh, *shown.annotations));
         if (along_edges && along_edges->cut()) {
             for (PageMap& map : shown.maps) {

@@ -329,7 +329,7 @@ struct SliceObject final : Operation {
     TubeOptions tube_options;
 
     // Set by `read_part`.
-    std::optional<AlongEdges> along_edges;
+    std::optional<EdgeAlignedAnnotations> along_edges;
     std::vector<Index> faces;  ///< faces of the part; empty: all
     Vector upwards{0, 0, 1};
     bool up_known = false;

@@ -42,7 +42,7 @@ std::vector<MatchFeatures> matching_features(AnnotatedMeshView object, const Mot
             weight += w;
         };
         if (annotation.type == AnnotationType::region) {
-            for (const auto& [face, share] : face_shares(object.mesh, annotation)) {
+            for (const auto& [face, share] : face_area_fractions(object.mesh, annotation)) {
                 const double area = share * face_area(object.mesh, Face(face)) * pose.scale * pose.scale;
                 features.extent += area;
                 add(pose(eigen(centroid(object.mesh, Face(face)))), area);

@@ -125,7 +125,7 @@ struct TemplateFitter::State : AnnotatedMeshView {
         while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
         Fitter coarse_fitter = smooth_fitter(search, options);
         coarse_fitter.run(0, level, fit);
-        const AddedSeconds watch(fit.seconds_coarsening);
+        const ScopedSeconds watch(fit.seconds_coarsening);
         if (level > 0) exact.start_at(follow(coarse_fitter));
         return level;
     }
@@ -167,7 +167,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     MatchSearch search(s, fragments, scale, options.outlines ? MatchSearch::Guides::paths : MatchSearch::Guides::landmarks);
     if (slides) search.recognise_shared_faces();
     {
-        const AddedSeconds watch(fit.seconds_coarsening);
+        const ScopedSeconds watch(fit.seconds_coarsening);
         s.prepare();
     }
     Fitter fine(s.fine, search, search.labels(s.mesh, {}), search.correspondences(), s.diagonal, options);

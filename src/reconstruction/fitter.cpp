@@ -39,7 +39,7 @@ double Fitter::smoothing(const NonRigidOptions& options, int level, double diago
 void Fitter::run(int first, int end, NonRigidFit& fit) {
     if (first == end) return;
     if (weights_ == nullptr) {
-        const AddedSeconds watch(fit.seconds_solving);
+        const ScopedSeconds watch(fit.seconds_solving);
         solver_ = &system_.renewed_solver();
     }
     for (int level = first; level < end; ++level) {
@@ -51,7 +51,7 @@ void Fitter::run(int first, int end, NonRigidFit& fit) {
             diagonal_;
         for (; record.steps < options_.steps; ++record.steps) {
             match(search_radius, fit);
-            const AddedSeconds watch(fit.seconds_solving);
+            const ScopedSeconds watch(fit.seconds_solving);
             const Points before = current_;
             if (record.steps == 0) start_ = level == 0 ? rest_ : current_;
             solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing, record.steps == 0);
@@ -67,7 +67,7 @@ void Fitter::run(int first, int end, NonRigidFit& fit) {
 }
 
 const std::vector<VertexMatch>& Fitter::match(double search_radius, NonRigidFit& fit) {
-    const AddedSeconds watch(fit.seconds_matching);
+    const ScopedSeconds watch(fit.seconds_matching);
     const double min_cosine = std::cos(options_.angle * pi / 180);
     if (slides()) {
         matches_ = search_.sliding_matches(current_, mesh_, labels_, search_radius, min_cosine, slides_);
@@ -91,7 +91,7 @@ void Fitter::polish(double search_radius, double smoothing, NonRigidFit& fit) {
     const Points level_points = current_;
     for (int step = 0; step < max_steps; ++step) {
         match(search_radius, fit);
-        const AddedSeconds watch(fit.seconds_solving);
+        const ScopedSeconds watch(fit.seconds_solving);
         const Points before = current_;
         if (!step_to_planes(level_points, smoothing)) return;
         if ((current_ - before).colwise().norm().maxCoeff() < min_change * diagonal_) return;

@@ -146,7 +146,7 @@ public:
 private:
     template <class Work>
     void timed(const char* phase, Work&& work) {
-        const AddedSeconds watch(result_.seconds[phase]);
+        const ScopedSeconds watch(result_.seconds[phase]);
         work();
     }
 

@@ -94,7 +94,7 @@ void check_adjacency(const SharedLengths& adjacent, const std::string& unit, con
 
 std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const RelationGraph& graph, const RelationOptions& options) {
     check_graph(graph, given.annotations, "graph");
-    const AlongEdges along_edges(given);
+    const EdgeAlignedAnnotations along_edges(given);
     const AnnotatedMeshView object = along_edges.object();
     const bool cut = along_edges.cut().has_value();
     SharedLengths stated, adjacent;  // only the pairs that occur in the graph

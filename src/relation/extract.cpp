@@ -367,7 +367,7 @@ ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGra
     using enum GeometricRelation;
     for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
         if (!object.annotations.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
-    const AlongEdges along_edges(object);
+    const EdgeAlignedAnnotations along_edges(object);
     for (Relationship& relationship : RelationMeter(along_edges.object(), options).extract(types, 0, &result.notes))
         add(std::move(relationship));
     return result;

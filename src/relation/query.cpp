@@ -39,7 +39,7 @@ std::string value_text(const Attribute& attribute, const AllowedAttribute* allow
         const Term* term = allowed != nullptr ? term_of(*allowed, attribute.note) : nullptr;
         return folded(term != nullptr ? term->name : attribute.note);
     }
-    const Figures figures = figures_of(attribute);
+    const Figures figures = attribute_values(attribute);
     std::string text;
     for (const double value : figures.values) {
         const QueryAmount amount = query_amount(value, figures.unit);
@@ -249,8 +249,9 @@ private:
         const auto [known, fresh] = quantities_.try_emplace({at, name});
         if (!fresh) return known->second;
         const Annotation& annotation = object_.annotations.annotations[at];
-        if (const Attribute* attribute = names_.find(annotation, name); attribute != nullptr && !figures_of(*attribute).stale) {
-            const Figures figures = figures_of(*attribute);
+        if (const Attribute* attribute = names_.find(annotation, name);
+            attribute != nullptr && !attribute_values(*attribute).stale) {
+            const Figures figures = attribute_values(*attribute);
             if (figures.values.size() == 1) known->second = query_amount(figures.values.front(), figures.unit);
             if (attribute->type == AttributeType::semantic) {
                 double value = 0;

@@ -309,7 +309,7 @@ void require_few(const AnnotationSet& set) {
 Topology topology(AnnotatedMeshView given) {
     require_few(given.annotations);
     check_annotations(given, "annotations");
-    const AlongEdges along_edges(given);
+    const EdgeAlignedAnnotations along_edges(given);
     const AnnotatedMeshView object = along_edges.object();
     FaceClasses classes(object);
     if (along_edges.cut()) classes.drop_slivers(object);

@@ -87,7 +87,7 @@ private:
             annotation.faces.resize(mesh_.number_of_faces());
             std::iota(annotation.faces.begin(), annotation.faces.end(), Index{0});
         } else if (!annotation.faces.empty()) {
-            bring_back(mesh_, cut, annotation);
+            uncut_annotation(mesh_, cut, annotation);
         }
         return annotation;
     }
@@ -100,7 +100,7 @@ private:
         Annotation annotation;
         annotation.type = type;
         annotation.curves = evaluator_.curves(*step.select, step.frame, here);
-        settle_elements(mesh_, annotation);
+        compute_elements(mesh_, annotation);
         return annotation;
     }
 
@@ -167,7 +167,7 @@ private:
                              free_id(set_)));
         Annotation annotation = selected(*step.type, step, step.outline);
         annotation.id = step.id;
-        annotation.colour = fresh_colour({mesh_, set_}, annotation);
+        annotation.colour = unused_colour({mesh_, set_}, annotation);
         set_looks(annotation, step);
         note_edges(annotation);
         if (step.attributes != nullptr) add_attributes(annotation, step);
@@ -277,7 +277,7 @@ private:
         auto curves = as_curves(annotation);
         for (auto& curve : as_curves(part)) curves.push_back(std::move(curve));
         annotation.curves = std::move(curves);
-        settle_elements(mesh_, annotation);
+        compute_elements(mesh_, annotation);
     }
 
     void change(Annotation& annotation, StepAction action, const Annotation& part) const {

@@ -50,7 +50,7 @@ FaceMoments face_moments(const Mesh& mesh, const Vector3d& origin) {
 /// Moments of the area enclosed by the outline; faces that it cuts count with their share.
 FaceMoments part_moments(const Mesh& mesh, const Annotation& part, const Vector3d& origin) {
     FaceMoments moments;
-    for (const auto& [face, fraction] : face_shares(mesh, part)) moments.add(mesh, Face(face), origin, fraction);
+    for (const auto& [face, fraction] : face_area_fractions(mesh, part)) moments.add(mesh, Face(face), origin, fraction);
     return moments;
 }
 

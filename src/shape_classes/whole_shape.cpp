@@ -83,7 +83,7 @@ void measure_solid(const Mesh& mesh, const Mesh& simplified, double area, WholeS
     const std::optional<double> volume = volume_of(mesh);
     if (!volume) return;
     shape.compactness = compactness_of(*volume, area);
-    const HullSize hull = hull_size({mesh.points().begin(), mesh.points().end()});
+    const ConvexHullSize hull = convex_hull_size({mesh.points().begin(), mesh.points().end()});
     if (hull.volume > 0) {
         shape.hull_share = std::min(1.0, *volume / hull.volume);
         shape.hull_compactness = compactness_of(hull.volume, hull.area);

@@ -64,7 +64,7 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     setup_.times = {};
     const Stopwatch clock;
     const auto project_at = [&](const Points& at) {
-        const AddedSeconds watch(summary.times.project);
+        const ScopedSeconds watch(summary.times.project);
         return project(at);
     };
     const auto record = [&](double objective) {
@@ -87,13 +87,13 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     while (summary.iterations < options.iterations && summary.stop != StopReason::residual) {
         plain = x;
         {
-            const AddedSeconds watch(summary.times.solve);
+            const ScopedSeconds watch(summary.times.solve);
             global_step(plain);
         }
         ++summary.iterations;
         bool accelerated = false;
         if (options.window > 0) {
-            const AddedSeconds watch(summary.times.accelerate);
+            const ScopedSeconds watch(summary.times.accelerate);
             anderson.next(x, plain, candidate);
             accelerated = summary.iterations > 1;
         }

@@ -148,7 +148,7 @@ void keep_partition(const Mesh& source, const std::vector<const Annotation*>& an
             Annotation& annotation = set.annotations[r];
             annotation.faces = parting.faces_of(r);
             annotation.curves.clear();
-            if (!annotation.faces.empty()) bring_back(target, cut, annotation);
+            if (!annotation.faces.empty()) uncut_annotation(target, cut, annotation);
         }
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled) throw;

@@ -243,7 +243,7 @@ void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edg
             std::reverse(curves.back().faces.begin(), curves.back().faces.end());
         }
     }
-    std::vector<std::pair<Index, double>> shares = left_shares(target_, curves, 2);
+    std::vector<std::pair<Index, double>> shares = left_area_fractions(target_, curves, 2);
     const auto is_shared = [&](const std::pair<Index, double>& entry) {
         const auto vertices = corners(target_, Face(entry.first));
         return std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) { return shared.count(v) > 0; });

@@ -45,7 +45,7 @@ void RegionSettling::settle(const Annotation& from, std::size_t outlines, Projec
         }
     }
     if (to.curves.empty()) projected.lost = true;
-    else settle_elements(target_, to);
+    else compute_elements(target_, to);
 }
 
 /// Components of the source that the region covers completely have no outline: one face of each is mapped to find the component
@@ -100,7 +100,7 @@ void RegionSettling::untangle(const Annotation& from, double expected, std::size
     const std::vector<Index> found = wound ? flagged(*wound) : std::vector<Index>();
     if (!found.empty() && is_plausible(area_of(cut.mesh, found), expected)) {
         to.faces = found;
-        bring_back(target_, cut, to);
+        uncut_annotation(target_, cut, to);
         return;
     }
     // Classifies each face by its corresponding place on the source.

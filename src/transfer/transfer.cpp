@@ -111,17 +111,17 @@ private:
 
 TransferResult Transfer::run(TransferTimes times) {
     {
-        const AddedSeconds seconds(times.correspondence);
+        const ScopedSeconds seconds(times.correspondence);
         match();
     }
     std::vector<ProjectedAnnotation> projected;
     {
-        const AddedSeconds seconds(times.paths);
+        const ScopedSeconds seconds(times.paths);
         edges_.trace();
         projected = project();
     }
     {
-        const AddedSeconds seconds(times.regions);
+        const ScopedSeconds seconds(times.regions);
         edges_.fill();
     }
     const Stopwatch watch;

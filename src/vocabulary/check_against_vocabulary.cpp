@@ -95,7 +95,7 @@ private:
 
     void quantity(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& pointer) {
         if (!allowed.quantitative()) return;
-        const auto [values, unit, stale] = figures_of(attribute);
+        const auto [values, unit, stale] = attribute_values(attribute);
         if (stale) {
             remark(pointer, fmt::format("the value of '{}' is stale: its range was not checked", attribute.name));
             return;

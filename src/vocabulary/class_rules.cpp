@@ -200,7 +200,7 @@ private:
             if (rule.min || rule.max || !rule.unit.empty()) return false;
             return rule.values.empty() || is_one_of(attribute.note, rule.values, allowed);
         }
-        const auto [values, unit, stale] = figures_of(attribute);
+        const auto [values, unit, stale] = attribute_values(attribute);
         text = values.empty() ? "without a value" : text_of(values.front()) + (unit.empty() ? "" : " " + unit);
         if (stale) text += " (stale)";
         if (!rule.values.empty()) return false;

@@ -166,7 +166,7 @@ private:
             value.word = attribute.note;
             return value;
         }
-        const Figures figures = figures_of(attribute);
+        const Figures figures = attribute_values(attribute);
         value.unit = figures.unit;
         if (figures.stale) value.missing = name + " is stale";
         else if (figures.values.size() == 1) value.number = figures.values.front();

@@ -70,7 +70,7 @@ Path Session::resolved(const JsonValue& value, const Slot& input, const std::str
                      : part == "graph"       ? "add a relationship first"
                                              : "choose another input");
     if (settings.object == no_index || slot == "target") settings.object = index;
-    if (input.reads_beside && part == "mesh" && !current.objects[index].part("annotations").empty())
+    if (input.reads_annotations_beside && part == "mesh" && !current.objects[index].part("annotations").empty())
         return with_beside(current.objects[index], step, settings);
     return (folder_ / file).lexically_normal();
 }

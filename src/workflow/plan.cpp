@@ -365,7 +365,7 @@ void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting,
         if (gathers_all && !input_slot->repeated && input_slot->kind != Kind::collection)
             fail_input(study.at(place), fmt::format("'{}' takes one {}", setting.name, to_string(input_slot->kind)),
                        fmt::format("give it one: ${{{}.{}}}", reference.name, reference.member));
-        on_disk = output_slot->kind == Kind::mesh && input_slot->reads_beside;
+        on_disk = output_slot->kind == Kind::mesh && input_slot->reads_annotations_beside;
         if (on_disk && !other.keep.contains(reference.member))
             fail_input(study.at(place),
                        fmt::format("'{}' also reads the annotations next to a file (NAME.ant.json), but '{}.{}' is not kept",

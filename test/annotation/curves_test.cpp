@@ -53,7 +53,7 @@ Annotation region(const Mesh& mesh, std::vector<std::vector<SurfacePoint>> curve
     Annotation annotation;
     annotation.tag = "cap";
     annotation.curves = std::move(curves);
-    settle_elements(mesh, annotation);
+    compute_elements(mesh, annotation);
     return annotation;
 }
 
@@ -154,7 +154,7 @@ TEST(FreeOutline, CutAndBroughtBackIsTheIdentity) {
         EXPECT_NEAR(before.area, after.area, 1e-10) << i;
         EXPECT_NEAR(before.perimeter, after.perimeter, 1e-10) << i;
         Annotation back = cut.annotations.annotations[i];
-        bring_back(mesh, cut, back);
+        uncut_annotation(mesh, cut, back);
         EXPECT_NEAR(measure_region(mesh, back).area, before.area, 1e-10) << i;
         EXPECT_NEAR(measure_region(mesh, back).perimeter, before.perimeter, 1e-10) << i;
         EXPECT_EQ(back.faces, set.annotations[i].faces) << i;
@@ -172,14 +172,14 @@ TEST(FreeOutline, FileRoundTripIsExact) {
     line.type = AnnotationType::line;
     line.curves.front().resize(20);
     line.faces.clear();
-    settle_elements(mesh, line);
+    compute_elements(mesh, line);
     set.annotations.push_back(line);
     Annotation point = line;
     point.id = 2;
     point.type = AnnotationType::point;
     point.polylines.clear();
     point.curves = {{line.curves.front()[3]}, {line.curves.front()[7]}};
-    settle_elements(mesh, point);
+    compute_elements(mesh, point);
     EXPECT_EQ(point.points.size(), 2U);
     set.annotations.push_back(point);
     const Json document = annotations_to_json({mesh, set}, "sphere.ply", {});
@@ -205,7 +205,7 @@ TEST(FreeOutline, InvalidCurvesAreRefused) {
         annotation.tag = "cap";
         annotation.curves = {std::move(curve)};
         try {
-            settle_elements(mesh, annotation);
+            compute_elements(mesh, annotation);
             ADD_FAILURE() << why;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::input);
@@ -270,7 +270,7 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
     for (std::size_t i = 0; i < 2; ++i) {
         Annotation back = cut.annotations.annotations[i];
         EXPECT_NEAR(measure_region(cut.mesh, back.faces).perimeter, measure_region(mesh, set.annotations[i]).perimeter, 1e-9);
-        bring_back(mesh, cut, back);
+        uncut_annotation(mesh, cut, back);
         EXPECT_NEAR(measure_region(mesh, back).area, area_of(mesh, set.annotations[i]), 1e-9);
     }
 }

@@ -102,9 +102,9 @@ TEST(Colouring, NeighboursDifferAndTheWholeIsNeutral) {
     two.annotations.erase(two.annotations.begin() + 1);
     Annotation joining;
     joining.faces = {0, 1};
-    EXPECT_EQ(fresh_colour({mesh, two}, joining), distinct_colour(1));
+    EXPECT_EQ(unused_colour({mesh, two}, joining), distinct_colour(1));
     joining.faces.resize(70);
-    EXPECT_EQ(fresh_colour({mesh, two}, joining), neutral_colour);
+    EXPECT_EQ(unused_colour({mesh, two}, joining), neutral_colour);
 }
 
 TEST(Labels, NamesAreObjectsOrLists) {

@@ -109,7 +109,7 @@ TEST(Part, FollowsFreeOutlines) {
             if (face == no_index && mesh.point(v).z() > 0.9999) face = f;
     const auto at = [&](double a, double b, double c) { return stored_point(mesh, surface_point(mesh, face, {a, b, c})); };
     free.curves = {{at(0.6, 0.2, 0.2), at(0.2, 0.6, 0.2), at(0.2, 0.2, 0.6), at(0.6, 0.2, 0.2)}};
-    settle_elements(mesh, free);
+    compute_elements(mesh, free);
     set.annotations.push_back(free);
     const CutPart part = cut_out_part({mesh, set}, {set.annotations.size() - 1});
     EXPECT_NEAR(surface_area(part.mesh), 0.16 * face_area(mesh, Face(face)), 1e-12);

@@ -251,7 +251,7 @@ TEST(TechniqueStudy, OutOfClassObjectsAreNotAnswered) {
     EXPECT_NE(study.answers[41].words.find("unlike the labelled objects"), std::string::npos) << study.answers[41].words;
     EXPECT_NE(study.answers[41].words.find("marks"), std::string::npos);
     TechniqueStudyOptions lenient;
-    lenient.unlike_from = 1e6;
+    lenient.min_outlier_distance = 1e6;
     EXPECT_FALSE(study_technique(objects, lenient).answers[41].unlike);
 }
 

@@ -92,7 +92,7 @@ TEST(LeftShares, MatchTheAreaOfTheHalfPlane) {
     const SurfaceSearch search(mesh);
     // Left of a line that runs towards +y, x is smaller.
     const double x = 0.4321;
-    const auto shares = left_shares(mesh, {line(mesh, search, Point(x, 0.0001, 0), Point(x, 0.9999, 0))}, 2);
+    const auto shares = left_area_fractions(mesh, {line(mesh, search, Point(x, 0.0001, 0), Point(x, 0.9999, 0))}, 2);
     ASSERT_FALSE(shares.empty());
     for (const auto& [f, share] : shares) {
         // Area of the triangle left of x, by clipping it.

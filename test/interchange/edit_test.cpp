@@ -190,14 +190,14 @@ TEST(RenameUnit, UnitsOfLengthsFollowAndNoNumberChanges) {
             else if (attribute.type == AttributeType::descriptor) result.push_back(attribute.descriptor.unit);
         return result;
     };
-    rename_unit(mesh, set, "cm");
+    change_length_unit(mesh, set, "cm");
     EXPECT_EQ(set.unit, "cm");
     EXPECT_EQ(units(), (std::vector<std::string>{"cm^2", "cm", "1/cm", "g", "mmol"}));
     EXPECT_EQ(*set.annotations[1].attributes[2].measure.value, 4);
     EXPECT_EQ(set.annotations[1].attributes[0].descriptor.values, std::vector<double>{4});
     // No unit, and back: values computed from the coordinates have a unit again.
-    rename_unit(mesh, set, "");
+    change_length_unit(mesh, set, "");
     EXPECT_EQ(units(), (std::vector<std::string>{"", "", "1/cm", "g", "mmol"}));
-    rename_unit(mesh, set, "m");
+    change_length_unit(mesh, set, "m");
     EXPECT_EQ(units(), (std::vector<std::string>{"m^2", "m", "1/cm", "g", "mmol"}));
 }

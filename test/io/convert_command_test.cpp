@@ -49,9 +49,9 @@ TEST(ConvertCommand, PolygonsAreCutAndMapped) {
     validate(map, "map", "map.json");
     EXPECT_EQ(map["from"].GetInt(), 4);
     EXPECT_EQ(map["to"].GetInt(), 3);
-    std::vector<int> triangle_polygon;
-    for (const auto& entry : map["map"].GetArray()) triangle_polygon.push_back(entry.GetInt());
-    EXPECT_EQ(triangle_polygon, (std::vector<int>{0, 0, 1, 1}));
+    std::vector<int> polygon_of_triangle;
+    for (const auto& entry : map["map"].GetArray()) polygon_of_triangle.push_back(entry.GetInt());
+    EXPECT_EQ(polygon_of_triangle, (std::vector<int>{0, 0, 1, 1}));
     EXPECT_NE(read_file(scratch / "a.ply").find("format ascii"), std::string::npos);
     EXPECT_NE(result.err.find("fewer than three distinct corners"), std::string::npos);
 }

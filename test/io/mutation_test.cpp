@@ -89,7 +89,7 @@ TEST(Mutation, ReadersSurviveDamagedFiles) {
                 ASSERT_EQ(mesh.number_of_faces(), defects.any() ? 0 : result.soup.triangles.size());
                 const std::size_t vertices = result.soup.points.size(), triangles = result.soup.triangles.size();
                 const auto complete = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
-                ASSERT_TRUE(complete(result.triangle_polygon.size(), triangles));
+                ASSERT_TRUE(complete(result.polygon_of_triangle.size(), triangles));
                 ASSERT_TRUE(complete(result.extras.vertex_colours.size(), vertices) &&
                             complete(result.extras.face_colours.size(), triangles));
                 ASSERT_TRUE(complete(result.extras.vertex_labels.size(), vertices) &&

@@ -93,7 +93,7 @@ TEST(Obj, ShortFacesAreReadAndGiveNoTriangle) {
     EXPECT_TRUE(has_note(soup.notes, "g, l"));
     const auto triangles = triangulate(std::move(soup));
     EXPECT_EQ(triangles.soup.triangles.size(), 1U);
-    EXPECT_EQ(triangles.triangle_polygon, (Corners{3}));
+    EXPECT_EQ(triangles.polygon_of_triangle, (Corners{3}));
     EXPECT_TRUE(has_note(triangles.notes, "3 faces have fewer than three"));
 }
 
@@ -362,7 +362,7 @@ TEST(ReadMesh, OnlyOrientedManifoldsPass) {
     EXPECT_TRUE(has(message(obj_square + "v 2 2 0\nf 1 2 3\nf 3 4 5\n"), "several sheets"));
     const auto mesh = read_mesh(scratch.file("b.obj", "v 9 9 9\n" + obj_square + "f 2 3 4 5\n"));
     EXPECT_EQ(mesh.mesh.number_of_vertices(), 5U);  // the isolated vertex stays
-    EXPECT_EQ(mesh.triangle_polygon, (Corners{0, 0}));
+    EXPECT_EQ(mesh.polygon_of_triangle, (Corners{0, 0}));
 }
 
 TEST(ReadPolygons, EveryDefectiveFileIsReadOrRefusedWithAMessage) {

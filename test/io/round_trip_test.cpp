@@ -45,7 +45,7 @@ TEST(RoundTrip, PlyKeepsEverything) {
             const auto back = reread(scratch / "a.ply");
             EXPECT_EQ(back.soup.points, soup.points);
             EXPECT_EQ(back.soup.triangles, soup.triangles);
-            EXPECT_TRUE(back.triangle_polygon.empty());
+            EXPECT_TRUE(back.polygon_of_triangle.empty());
             EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
             EXPECT_EQ(back.extras.face_colours, extras.face_colours);
             EXPECT_EQ(back.extras.vertex_labels, extras.vertex_labels);

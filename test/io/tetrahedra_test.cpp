@@ -115,7 +115,7 @@ TEST(Tetrahedra, SurfacesAloneAreReadAsWell) {
         "square.mesh",
         "MeshVersionFormatted 1\nDimension\n3\nVertices 4\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\nQuadrilaterals 1\n1 2 3 4 5\n"));
     EXPECT_EQ(file.mesh.number_of_faces(), 2U);
-    EXPECT_EQ(file.triangle_polygon, (std::vector<Index>{0, 0}));
+    EXPECT_EQ(file.polygon_of_triangle, (std::vector<Index>{0, 0}));
     EXPECT_TRUE(file.extras.tetrahedra.empty());
 }
 

@@ -86,7 +86,7 @@ TEST(Triangulate, TrianglesKeepTheirCornerOrder) {
     soup.polygon_begin = {0, 3, 6};
     const auto result = triangulate(std::move(soup));
     EXPECT_EQ(result.soup.triangles, (std::vector<std::array<Index, 3>>{{2, 0, 1}, {1, 3, 2}}));
-    EXPECT_TRUE(result.triangle_polygon.empty());
+    EXPECT_TRUE(result.polygon_of_triangle.empty());
 }
 
 TEST(Triangulate, QuadrilateralsTakeTheShorterDiagonalThatKeepsThemUpright) {
@@ -111,7 +111,7 @@ TEST(Triangulate, RepeatedCornersGiveNoRepeatedVertices) {
     for (const auto& [a, b, c] : result.soup.triangles) EXPECT_TRUE(a != b && b != c && c != a);
     ASSERT_EQ(result.extras.face_labels.size(), result.soup.triangles.size());
     for (std::size_t t = 0; t < result.soup.triangles.size(); ++t)
-        EXPECT_EQ(result.extras.face_labels[t], 10 + static_cast<int>(result.triangle_polygon[t]));
+        EXPECT_EQ(result.extras.face_labels[t], 10 + static_cast<int>(result.polygon_of_triangle[t]));
     EXPECT_FALSE(result.notes.empty());
 }
 

@@ -145,11 +145,11 @@ TEST(Solid, OpenRegionsAreClosedByTheirOutlines) {
 }
 
 TEST(Solid, HullVolume) {
-    EXPECT_EQ(hull_size({}).volume, 0);
-    EXPECT_EQ(hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).volume, 0);
-    EXPECT_EQ(hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.3, 0.2, 0}}).volume, 0);
-    EXPECT_EQ(hull_size(std::vector<Point>(5, Point(1, 2, 3))).volume, 0);
-    const HullSize corner = hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 0.1}});
+    EXPECT_EQ(convex_hull_size({}).volume, 0);
+    EXPECT_EQ(convex_hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).volume, 0);
+    EXPECT_EQ(convex_hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.3, 0.2, 0}}).volume, 0);
+    EXPECT_EQ(convex_hull_size(std::vector<Point>(5, Point(1, 2, 3))).volume, 0);
+    const ConvexHullSize corner = convex_hull_size({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 0.1}});
     EXPECT_NEAR(corner.volume, 1.0 / 6, 1e-15);
     EXPECT_NEAR(corner.area, 1.5 + std::sqrt(3.0) / 2, 1e-15);
 }

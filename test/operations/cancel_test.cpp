@@ -199,7 +199,7 @@ TEST(Cancelling, EachAlgorithmChecksForIt) {
         {"cage", [&] { static_cast<void>(make_cage(small, {})); }},
         {"segments", [&] { static_cast<void>(segment(mesh, thickness)); }},
         {"self-intersections", [&] { static_cast<void>(self_intersections(soup, 10)); }},
-        {"hull", [&] { static_cast<void>(hull_size(points)); }},
+        {"hull", [&] { static_cast<void>(convex_hull_size(points)); }},
         {"points", [&] { const PointTree tree(points); }},
         {"faces", [&] { const SurfaceSearch search(mesh); }},
         {"read", [&] { static_cast<void>(read_mesh(scratch / "sphere.obj")); }},

@@ -253,7 +253,7 @@ Annotation disc_on(const Mesh& mesh, double x, double y, double radius) {
         if (line)
             for (std::size_t i = 1; i < line->points.size(); ++i) places.push_back(stored_point(mesh, line->points[i]));
     }
-    settle_elements(mesh, disc);
+    compute_elements(mesh, disc);
     return disc;
 }
 
@@ -344,7 +344,7 @@ TEST(ProjectCurves, AnotherNumberOfOutlinesIsReported) {
     AnnotationSet set;
     Annotation both = disc_on(whole, 2.53, 4.91, 1.37);
     both.curves.push_back(disc_on(whole, 8.03, 4.91, 1.12).curves.front());
-    settle_elements(whole, both);
+    compute_elements(whole, both);
     set.annotations.push_back(both);
     const SurfaceSearch search(target);
     TransferOptions options;

@@ -144,7 +144,7 @@ struct Figures {
     bool stale = false;          ///< true: the mesh or the pins changed and the values were not recomputed
 };
 /// The numbers of a measure or descriptor attribute.
-Figures figures_of(const Attribute& attribute);
+Figures attribute_values(const Attribute& attribute);
 
 /// For each face of the mesh: true if the face is listed in `faces`.
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces);

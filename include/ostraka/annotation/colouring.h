@@ -14,7 +14,7 @@ bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 
 /// A colour for an annotation about to be added to the set: neutral if it covers nearly all of the mesh, else the first colour
 /// of the palette not used in the set.
-std::array<int, 3> fresh_colour(AnnotatedMeshView object, const Annotation& joining);
+std::array<int, 3> unused_colour(AnnotatedMeshView object, const Annotation& joining);
 
 /// Assigns colours to the regions of a set; no two of these regions may share a face. Result: distinct colours as long as the
 /// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Time:

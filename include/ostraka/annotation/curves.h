@@ -28,7 +28,7 @@ CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation);
 /// their area inside, and the connected components listed in `faces` that no curve traverses. The elements of a line are a path
 /// of edges, and the elements of a point annotation are vertices. Throws Error (input) as `curves_on` does, and if outlines
 /// contradict each other.
-void settle_elements(const Mesh& mesh, Annotation& annotation);
+void compute_elements(const Mesh& mesh, Annotation& annotation);
 
 /// Area and perimeter of a region; for a free region, both are computed from its curves.
 RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation);
@@ -37,7 +37,7 @@ double area_of(const Mesh& mesh, const Annotation& annotation);
 
 /// The faces of a region, ascending, each with the fraction of its area that lies inside the region: 1, or less if a free outline
 /// cuts the face.
-std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region);
+std::vector<std::pair<Index, double>> face_area_fractions(const Mesh& mesh, const Annotation& region);
 /// Length of a line annotation; for a free line, the length is computed from its curves.
 double length_of(const Mesh& mesh, const Annotation& annotation);
 /// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
@@ -66,15 +66,15 @@ struct CutMesh : AnnotatedMesh {
     }
 };
 
-/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Time: linear in the size of the mesh plus O(k
-/// log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
+/// Cuts the mesh along the free curves of the annotations and along the curves in `more`. Time: linear in the size of the mesh
+/// plus O(k log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
 /// Read-only access to an annotated mesh whose annotations all follow edges: the given one if no annotation is free, otherwise
 /// the mesh cut along the free curves. The constructor's argument must outlive this object.
-class AlongEdges {
+class EdgeAlignedAnnotations {
 public:
-    explicit AlongEdges(AnnotatedMeshView given) : given_(given) {
+    explicit EdgeAlignedAnnotations(AnnotatedMeshView given) : given_(given) {
         if (any_free(given.annotations)) cut_.emplace(cut_along_curves(given));
     }
     [[nodiscard]] AnnotatedMeshView object() const { return cut_ ? AnnotatedMeshView(*cut_) : given_; }
@@ -87,6 +87,6 @@ private:
 
 /// Maps an annotation of the cut mesh back to the original mesh. The annotation becomes free unless it follows edges of the
 /// original mesh. Places in the interior of a straight piece are dropped.
-void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation);
+void uncut_annotation(const Mesh& mesh, const CutMesh& cut, Annotation& annotation);
 
 }  // namespace ostraka

@@ -13,9 +13,10 @@ namespace ostraka {
 inline constexpr std::int32_t no_label = -1;
 
 /// Reads a label file: one integer per line, one line per face of the mesh file; blank lines at the end are ignored.
-/// `triangle_polygon` maps triangles to the file's polygons (empty: all polygons are triangles); the file may have one line per
-/// polygon or one line per triangle. Returns one label per triangle. Throws Error (input) with file and line.
-std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, const std::vector<Index>& triangle_polygon = {});
+/// `polygon_of_triangle` maps triangles to the file's polygons (empty: all polygons are triangles); the file may have one line
+/// per polygon or one line per triangle. Returns one label per triangle. Throws Error (input) with file and line.
+std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count,
+                                      const std::vector<Index>& polygon_of_triangle = {});
 /// Writes a label file: one label per line.
 void write_labels(const Path& file, const std::vector<std::int32_t>& labels);
 

@@ -39,7 +39,7 @@ struct TechniqueStudyOptions {
     int resamples = 300;             ///< number of resampled collections that classify each object
     int simulations = 999;           ///< number of simulated collections of one group, for the p-value of a split
     /// Min distance, in robust standard deviations of a descriptor, at which an object is out-of-class.
-    double unlike_from = 6;
+    double min_outlier_distance = 6;
     std::uint64_t seed = 1;  ///< random seed
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
@@ -120,12 +120,12 @@ struct TechniqueStudy {
 
 /// Trains, validates and applies the classifiers. A labelled object is classified by a model trained on the other objects. An
 /// object gets no answer if the classifier is not better than classifying every object as positive, if the object is out-of-class
-/// (option `unlike_from`: outward distance from the closer of the two class medians, divided by 1.4826 times the median absolute
-/// deviation from the class medians), or if fewer than half of the resampled collections agree. An answer is clear with an
-/// agreement of at least 0.95 and an error of at most 0.05, likely with an agreement of at least 0.8 and an error of at most 0.2,
-/// and doubtful otherwise. Without labels the objects are split by the first descriptor of `answer_by` ("outside": by the first
-/// principal component), and answers are given only if the split is better than splits of a single group (p at most 0.05). Throws
-/// Error (usage) for an unknown classifier or label; Error (input) without objects or with more than two distinct labels.
+/// (option `min_outlier_distance`: outward distance from the closer of the two class medians, divided by 1.4826 times the median
+/// absolute deviation from the class medians), or if fewer than half of the resampled collections agree. An answer is clear with
+/// an agreement of at least 0.95 and an error of at most 0.05, likely with an agreement of at least 0.8 and an error of at most
+/// 0.2, and doubtful otherwise. Without labels the objects are split by the first descriptor of `answer_by` ("outside": by the
+/// first principal component), and answers are given only if the split is better than splits of a single group (p at most 0.05).
+/// Throws Error (usage) for an unknown classifier or label; Error (input) without objects or with more than two distinct labels.
 TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options = {});
 
 /// The split of values into two groups with the smallest within-group variance: threshold, and fraction `share` of the variance

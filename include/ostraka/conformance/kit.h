@@ -71,7 +71,7 @@ using ArgumentsOf = std::function<std::vector<std::string>(const std::string& op
 std::unique_ptr<Backend> command_backend(std::vector<std::string> words, ArgumentsOf arguments, double time_limit);
 /// Backend that starts the program `words` once; the program answers each line of JSON with a line of JSON (doc/conformance.md).
 /// `time_limit`: in seconds per case.
-std::unique_ptr<Backend> lines_backend(std::vector<std::string> words, double time_limit);
+std::unique_ptr<Backend> json_lines_backend(std::vector<std::string> words, double time_limit);
 
 /// Outcome of a case.
 enum class Outcome { agrees, differs, unsupported };

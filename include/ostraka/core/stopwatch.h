@@ -17,12 +17,12 @@ private:
 };
 
 /// Adds the seconds between construction and destruction of this object to a sum.
-class AddedSeconds {
+class ScopedSeconds {
 public:
-    explicit AddedSeconds(double& sum) : sum_(sum) {}  ///< `sum` must outlive this object
-    ~AddedSeconds() { sum_ += watch_.seconds(); }
-    AddedSeconds(const AddedSeconds&) = delete;
-    AddedSeconds& operator=(const AddedSeconds&) = delete;
+    explicit ScopedSeconds(double& sum) : sum_(sum) {}  ///< `sum` must outlive this object
+    ~ScopedSeconds() { sum_ += watch_.seconds(); }
+    ScopedSeconds(const ScopedSeconds&) = delete;
+    ScopedSeconds& operator=(const ScopedSeconds&) = delete;
 
 private:
     double& sum_;

@@ -57,7 +57,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest);
 
 /// For each patch, the label of the labelling that minimises the sum of `costs[label][patch]` plus `boundary[contact]` over
 /// contacts between different labels (alpha expansion, initialised with the cheapest labels; Boykov, Veksler and Zabih 2001).
-std::vector<std::size_t> min_labels(const FacetGraph& graph, const std::vector<std::vector<double>>& costs,
-                                    const std::vector<double>& boundary);
+std::vector<std::size_t> min_cost_labels(const FacetGraph& graph, const std::vector<std::vector<double>>& costs,
+                                         const std::vector<double>& boundary);
 
 }  // namespace ostraka

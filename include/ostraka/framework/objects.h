@@ -113,20 +113,20 @@ public:
     Slot& operator=(const Slot&) = delete;
     virtual ~Slot();
 
-    std::string name;             ///< name of the slot, as flag and as JSON key
-    std::string help;             ///< help text
-    Role role = Role::input;      ///< input or output
-    Kind kind = Kind::text;       ///< kind of the objects
-    bool needed = true;           ///< true: the caller must give a file or object
-    bool repeated = false;        ///< true: several files or objects may be given
-    bool is_positional = true;    ///< true: given by its position on the command line, not by its name
-    bool takes_words = false;     ///< true: several file names may follow the flag
-    bool may_be_new = false;      ///< true: an input that is updated and need not exist yet
-    Slot* updated = nullptr;      ///< for an output: the input slot that it updates; null: none
-    bool is_named = false;        ///< true: files are given as NAME=FILE
-    bool takes_none = false;      ///< true: the word "none" stands for an absent file
-    bool reads_beside = false;    ///< for mesh files: true if NAME.ant.json beside NAME.ply is read too
-    std::vector<Source> sources;  ///< the given files and objects
+    std::string name;                       ///< name of the slot, as flag and as JSON key
+    std::string help;                       ///< help text
+    Role role = Role::input;                ///< input or output
+    Kind kind = Kind::text;                 ///< kind of the objects
+    bool needed = true;                     ///< true: the caller must give a file or object
+    bool repeated = false;                  ///< true: several files or objects may be given
+    bool is_positional = true;              ///< true: given by its position on the command line, not by its name
+    bool takes_words = false;               ///< true: several file names may follow the flag
+    bool may_be_new = false;                ///< true: an input that is updated and need not exist yet
+    Slot* updated = nullptr;                ///< for an output: the input slot that it updates; null: none
+    bool is_named = false;                  ///< true: files are given as NAME=FILE
+    bool takes_none = false;                ///< true: the word "none" stands for an absent file
+    bool reads_annotations_beside = false;  ///< for mesh files: true if NAME.ant.json beside NAME.ply is read too
+    std::vector<Source> sources;            ///< the given files and objects
 
     /// Declares that the slot need not be given.
     Slot& optional() { return needed = false, *this; }
@@ -143,7 +143,7 @@ public:
     Slot& many_or_none() { return repeated = takes_none = true, *this; }
 
     /// Declares that mesh files are read together with the annotation files of the same name.
-    Slot& with_annotations_beside() { return reads_beside = true, *this; }
+    Slot& with_annotations_beside() { return reads_annotations_beside = true, *this; }
 
     /// True if at least one file or object was given.
     explicit operator bool() const { return !sources.empty(); }

@@ -32,7 +32,7 @@ public:
     void list_options(OptionList& options) override;
 
     /// Declares the option --ascii, which selects text or binary encoding.
-    MeshOutput& with_encoding() { return encoded_ = true, *this; }
+    MeshOutput& with_ascii_option() { return encoded_ = true, *this; }
     [[nodiscard]] bool ascii() const { return ascii_; }  ///< true: the file is written as text
 
 private:

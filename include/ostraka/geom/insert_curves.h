@@ -33,6 +33,7 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
 /// For each face that curves traverse: the fraction of its area to the left of the curves; for faces in `rings` rings around the
 /// curves: 1 or 0. The list is sorted by face index, and the mesh is not changed. Pieces of curves that cross another piece
 /// inside a face are ignored. Cost: O(k log k) per face with k nodes.
-std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings = 0);
+std::vector<std::pair<Index, double>> left_area_fractions(const Mesh& mesh, const std::vector<SurfaceCurve>& curves,
+                                                          int rings = 0);
 
 }  // namespace ostraka

@@ -51,6 +51,6 @@ std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, 
 
 /// Changes the name of the unit of length ("": none) without changing any number. The units of measures change too, as do the
 /// units of descriptors that are computed from the coordinates or whose unit is derived from the old unit ("mm^2", "1/mm").
-void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& unit);
+void change_length_unit(const Mesh& mesh, AnnotationSet& set, const std::string& unit);
 
 }  // namespace ostraka

@@ -49,7 +49,7 @@ PolygonSoup read_polygons(const Path& file);
 struct TriangulatedSoup {
     TriangleSoup soup;
     /// For each triangle: index of its polygon; empty if every polygon is a triangle.
-    std::vector<Index> triangle_polygon;
+    std::vector<Index> polygon_of_triangle;
     MeshExtras extras;               ///< attributes per vertex and per triangle; corner_texture per triangle corner
     std::vector<std::string> notes;  ///< messages about polygons that were not kept
 };
@@ -62,7 +62,7 @@ struct MeshFile {
     Mesh mesh;          ///< the triangle mesh
     MeshExtras extras;  ///< attributes per vertex and per triangle
     /// For each triangle: index of its polygon; empty if every polygon is a triangle.
-    std::vector<Index> triangle_polygon;
+    std::vector<Index> polygon_of_triangle;
     std::vector<std::string> notes;  ///< messages about content of the file that was not kept
 };
 
@@ -90,7 +90,7 @@ struct WriteOptions {
     /// triangles.
     std::vector<std::vector<Index>> polygons{};
     /// For each polygon: index of the triangle that provides its colour, label and values.
-    std::vector<Index> polygon_triangle{};
+    std::vector<Index> triangle_of_polygon{};
 };
 
 /// Writes a mesh file atomically: OBJ, PLY, OFF, STL, GLB, .mesh or .vtu (the last two with tetrahedra), chosen by the file name

@@ -31,10 +31,10 @@ double closed_volume(const Mesh& mesh);
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// Size of the convex hull of points; zeros if the points are coplanar.
-struct HullSize {
+struct ConvexHullSize {
     double volume = 0, area = 0;  ///< volume and surface area of the hull
 };
 /// Volume and surface area of the convex hull of points.
-HullSize hull_size(const std::vector<Point>& points);
+ConvexHullSize convex_hull_size(const std::vector<Point>& points);
 
 }  // namespace ostraka

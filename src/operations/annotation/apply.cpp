@@ -67,7 +67,7 @@ struct AnnotationApply final : Operation {
     AnnotationSet from_labels(Context& context, const MeshFile& file) const {
         std::vector<std::int32_t> labels;
         if (recipe)
-            context.record([&] { labels = read_labels(recipe.path(), file.mesh.number_of_faces(), file.triangle_polygon); });
+            context.record([&] { labels = read_labels(recipe.path(), file.mesh.number_of_faces(), file.polygon_of_triangle); });
         else labels = labels_in(file);
         if (labels.empty())
             fail_input(mesh.file(), "has no labels",

@@ -100,7 +100,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         if (object_class) edited.object_class = *object_class;
         if (up) edited.up = direction();
         if (unit && *unit != edited.unit) {
-            rename_unit(surface, edited, *unit);
+            change_length_unit(surface, edited, *unit);
             notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
         }
         report.notes(notes);

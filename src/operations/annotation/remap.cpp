@@ -68,7 +68,7 @@ struct AnnotationRemap final : Operation {
         std::vector<std::int32_t> labels;
         std::vector<Index> faces;
         context.record([&] {
-            labels = read_labels(annotations.path(), count, source.triangle_polygon);
+            labels = read_labels(annotations.path(), count, source.polygon_of_triangle);
             faces = read_index_map(face_map.path(), "face", count, target.number_of_faces());
         });
         write_labels(output.path(), remap_labels(labels, faces, target.number_of_faces()));

@@ -24,7 +24,8 @@ struct ConformanceRun final : Conformance {
 
     void run(Context&, Report& report) override {
         const ConformanceKit loaded_kit = read();
-        const auto backend = lines ? lines_backend(command, time_limit) : command_backend(command, command_words, time_limit);
+        const auto backend =
+            lines ? json_lines_backend(command, time_limit) : command_backend(command, command_words, time_limit);
         run_cases(loaded_kit, *backend, joined(command, " "), false, report);
     }
 

@@ -20,7 +20,7 @@ struct MeasureClay final : Operation {
         up.declare(p, "direction perpendicular to the slices; by default the upward direction of the annotations, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, such as mm; by default the unit of the annotations");
         options.list_options(p.options);
-        for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
+        for (const Figure& figure : attribute_values({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }
 
@@ -36,7 +36,7 @@ struct MeasureClay final : Operation {
         const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(direction[0], direction[1], direction[2]));
         const ClayVolume clay = in_file(mesh.file(), [&] { return clay_volume(mesh->mesh, frame, options); });
         const double mesh_volume = closed_volume(mesh->mesh);
-        for (const Figure& figure : figures_of(clay)) {
+        for (const Figure& figure : attribute_values(clay)) {
             const bool is_known = !std::isnan(figure.value);
             report(figure.name, is_known ? JsonValue(figure.value) : JsonValue());
             report.people(figure.name, is_known ? number(figure.value) + unit_text(figure.unit) : "unknown");
@@ -52,7 +52,7 @@ struct MeasureClay final : Operation {
         double value;
         std::string unit;
     };
-    static std::vector<Figure> figures_of(const ClayVolume& clay) {
+    static std::vector<Figure> attribute_values(const ClayVolume& clay) {
         return {{"most clay", clay.maximum, "length^3"},
                 {"least clay", clay.minimum, "length^3"},
                 {"within the outer surface", clay.envelope, "length^3"},

@@ -12,7 +12,7 @@ namespace {
 struct MeshConvert final : Operation {
     void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; tetrahedra: .mesh, .vtu");
-        p.output("output", Kind::mesh, output.with_encoding(),
+        p.output("output", Kind::mesh, output.with_ascii_option(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle, the index of its source polygon");
         p.input_option("polygons-of", Kind::mesh, polygons_of,
@@ -33,7 +33,7 @@ struct MeshConvert final : Operation {
         context.notes("", triangles.notes);
         const std::size_t count = triangles.soup.triangles.size();
         if (map) {
-            std::vector<Index> origin = triangles.triangle_polygon;
+            std::vector<Index> origin = triangles.polygon_of_triangle;
             if (origin.empty())
                 for (Index t = 0; t < count; ++t) origin.push_back(t);
             map.write(
@@ -61,7 +61,7 @@ struct MeshConvert final : Operation {
                              soup.triangles.size()));
         Index last = no_index;
         for (Index t = 0; t < soup.triangles.size(); ++t) {
-            const Index polygon = triangulated.triangle_polygon.empty() ? t : triangulated.triangle_polygon[t];
+            const Index polygon = triangulated.polygon_of_triangle.empty() ? t : triangulated.polygon_of_triangle[t];
             const std::vector<Index> corners(polygon_corners.begin() + polygon_begin[polygon],
                                              polygon_corners.begin() + polygon_begin[polygon + 1]);
             for (const Index v : soup.triangles[t])
@@ -70,7 +70,7 @@ struct MeshConvert final : Operation {
             if (polygon == last) continue;
             last = polygon;
             writing.polygons.push_back(corners);
-            writing.polygon_triangle.push_back(t);
+            writing.triangle_of_polygon.push_back(t);
         }
         report.note(counted(writing.polygons.size(), "polygon") + " in place of the triangles");
     }

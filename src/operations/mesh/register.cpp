@@ -16,7 +16,8 @@ struct MeshRegister final : Operation {
         p.input("source", Kind::mesh, source, "mesh that is moved onto the target");
         p.input("target", Kind::mesh, target,
                 "mesh of the same object, in any unit and pose, at any resolution; it stays unchanged");
-        p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: the source registered onto the target").optional();
+        p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: the source registered onto the target")
+            .optional();
         p.output_option("matrix", Kind::pose, matrix,
                         "JSON file to write: the transformation of the source as the rows of a 4 x 4 matrix");
         options.list_options(p.options);

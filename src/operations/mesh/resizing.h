@@ -17,7 +17,7 @@ namespace ostraka {
 struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
-        p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
+        p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: .ply, .obj, .off, .stl, .glb");
         for (const std::string mesh : {"input", "output"})
             p.report.values(integer(mesh + ".vertices"), integer(mesh + ".faces"), number(mesh + ".area", "", "length^2"));
         p.report.people_table("", {"mesh", "vertices", "faces", "area"});

@@ -68,7 +68,7 @@ struct StudyMakeMoulds final : StudyMake {
         head.tag = "head";
         for (std::size_t f = 0; f < labels.size(); ++f)
             if (labels[f] < static_cast<std::int32_t>(HeadPart::stump)) head.faces.push_back(static_cast<Index>(f));
-        head.colour = fresh_colour({head_cast.mesh, set}, head);
+        head.colour = unused_colour({head_cast.mesh, set}, head);
         set.annotations.push_back(std::move(head));
         return set;
     }
