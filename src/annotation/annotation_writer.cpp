@@ -142,7 +142,7 @@ Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file,
     std::vector<RegionParts> parts(object.annotations.annotations.size());
     parallel_for(parts.size(), 1, [&](std::size_t i) {
         if (object.annotations.annotations[i].type == AnnotationType::region)
-                parts[i] = parts_of(object.annotations.annotations[i], object.mesh);
+            parts[i] = parts_of(object.annotations.annotations[i], object.mesh);
     });
     JsonValue list = json_list(object.annotations.annotations, allocator, [&](const Annotation& one) {
         return json_of(one, parts[static_cast<std::size_t>(&one - object.annotations.annotations.data())], allocator);

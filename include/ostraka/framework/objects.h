@@ -162,7 +162,7 @@ public:
     Context* context = nullptr;
 
     /// Adds the slot's own options to the options of the operation, such as --force-mesh for annotations.
-    virtual void list_options(OptionList& options) {}
+    virtual void list_options(OptionList& /*options*/) {}
     /// Throws Error (usage) if a file name is invalid for this kind of slot. The context calls `check` before any work starts.
     virtual void check() const {}
     /// True if the i-th source is a folder that receives several files.
