@@ -1,4 +1,4 @@
-// Interior of projected curves.
+// Computes the interior of projected curves.
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
@@ -8,13 +8,14 @@
 
 namespace ostraka {
 
-/// Computes the elements of annotations from their projected curves, and resolves intersecting outlines. The arguments must
-/// outlive this object.
+/// Computes the faces, vertices and edges of annotations from their projected curves, and resolves intersecting outlines. The
+/// arguments must outlive this object.
 class RegionSettling {
 public:
     RegionSettling(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options);
 
-    /// `outlines`: number of outlines of the region on the source.
+    /// Computes the elements of one annotation. `from`: annotation on the source; `outlines`: number of its outlines on the
+    /// source.
     void settle(const Annotation& from, std::size_t outlines, ProjectedAnnotation& projected) const;
 
 private:
@@ -26,7 +27,7 @@ private:
     const SurfaceSearch& search_;
     const Mesh& target_;
     const CorrespondenceOptions& options_;
-    double edge_, far_, min_cosine_;
+    double edge_, far_, min_cosine_;  ///< edge length of the target; search radius; cosine of the max angle between normals
 };
 
 }  // namespace ostraka
