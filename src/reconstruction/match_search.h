@@ -40,8 +40,8 @@ struct Slide {
 /// vertices on faces outside matched annotations.
 class MatchSearch {
 public:
-    /// `mesh` is the template. Its unit is `scale` times the unit of the placed fragments; all positions and lengths in calls and
-    /// results are in the template's unit. The search trees that fragments bring along are in the fragments' own coordinates.
+    /// `mesh` is the template, whose unit is `scale` times the unit of the placed fragments; all positions and lengths in calls
+    /// and results are in the template's unit. The search trees that fragments bring along are in the fragments' own coordinates.
     /// `Guides`: correspondences from landmarks alone, or also from points along matched lines and outlines.
     enum class Guides { landmarks, paths };
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,

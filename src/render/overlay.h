@@ -13,7 +13,7 @@ namespace ostraka::detail {
 
 /// Colours of the overlay, and scale of its lines and letters.
 struct Style {
-    double size = 1;  ///< pixels per nominal pixel; nominal pixels are those of a picture 900 pixels high
+    double size = 1;  ///< pixels per nominal pixel; in a picture 900 pixels high it is 1
     Rgb ink{45, 45, 48};
     Rgb background{255, 255, 255};
 };

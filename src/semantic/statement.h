@@ -81,7 +81,7 @@ struct Statement {
     std::optional<Reattachment> reattachment;  ///< features that are reattached to the deformed base
     bool follows = false;                      ///< true: `lower` must be called again after the shape has moved
     bool until_it_holds = false;               ///< true: `lower` is called again only until the constraint holds
-    /// true: not part of the solve as long as the edit and other constraints leave the constraint satisfied.
+    /// True: not part of the solve as long as the edit and other constraints leave the constraint satisfied.
     bool left_alone = false;
     bool resizes = false;  ///< true: the constraint concerns the size of its members
     bool hard = false;     ///< true: the constraint has to hold exactly

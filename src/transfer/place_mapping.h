@@ -36,7 +36,7 @@ public:
     [[nodiscard]] double far() const { return far_; }    ///< search radius, a length
     /// Cosine of the max angle between the normals of corresponding places.
     [[nodiscard]] double min_cosine() const { return min_cosine_; }
-    /// true: places correspond along the target's normals, since the target is the coarser mesh.
+    /// True: places correspond along the target's normals, since the target is the coarser mesh.
     [[nodiscard]] bool by_target_normals() const { return on_source_.has_value(); }
 
 private:

@@ -29,7 +29,7 @@ inline constexpr CommonFlag common_flags[]{{"json", false},   {"show", true},   
 
 /// Shells for which a completion script is generated.
 enum class Shell { bash, zsh, fish };
-/// Completion script of a shell for `ostraka`; it calls `ostraka --complete WORD...`.
+/// Completion script of a shell for the command `ostraka`; the script calls `ostraka --complete WORD...`.
 std::string completion_script(Shell shell);
 /// Completions of the last word of a command line; `words` are the words after `ostraka`. Completions are operation names, flags,
 /// choices, tags of the annotation file named by an earlier word, and files of the required kind. Never throws because of a

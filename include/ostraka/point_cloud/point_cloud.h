@@ -28,7 +28,7 @@ struct CloudOptions {
     double longest = 8;      ///< max edge length of the surface, in multiples of the point spacing
     double close_holes = 1;  ///< max size of a hole that is filled, as a share of the bounding box diagonal
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Estimates a unit normal for each point: the direction from a quadric through the point's neighbours (jets; Cazals and Pouget

@@ -16,7 +16,7 @@ struct ReassemblyOptions {
     int partners = 24;      ///< for each fragment, number of partners with the best quick fit that are registered in full
     int min_faces = 100;    ///< min number of faces of a fragment that is matched: a fragment with fewer shows no relief
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// All candidate poses of a pair of fragments.

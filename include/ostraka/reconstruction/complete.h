@@ -26,7 +26,7 @@ struct CompleteOptions {
     bool join = true;      ///< true: use the fragments' triangles; false: use the template's triangles everywhere
     double min_piece = 0.01;  ///< min area of a piece of a fragment that is used, as a share of the fragment's area
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reason why the triangles of a fragment could not be used.

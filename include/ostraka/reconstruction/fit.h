@@ -38,7 +38,7 @@ struct NonRigidOptions {
     double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;              ///< match lines and outlines by the position along the curve
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment registered to the template, with matches of its annotations.

@@ -15,7 +15,7 @@ struct FragmentFileOptions {
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment as read, and how it was obtained.

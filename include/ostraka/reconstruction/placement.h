@@ -29,7 +29,7 @@ struct PlacementOptions {
     double unit_ratio = 3;    ///< factor: a fragment whose own scale differs from the others' by more is in another unit
     double collinear = 0.03;  ///< landmarks are collinear if their second principal extent is at most this share of the first
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Distance of one landmark of a placed fragment from the template's landmark.

@@ -35,7 +35,7 @@ struct ReconstructOptions {
     double overlap = 20;  ///< max share of a fragment's outer surface that lies where another fragment is observed, per cent
     bool restore = true;  ///< solve the constraints for the unobserved part
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Kinds of evidence, in the order from cause to effect.

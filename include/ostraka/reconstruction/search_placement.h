@@ -16,7 +16,7 @@ struct SearchOptions {
     Search search = Search::automatic;  ///< which fragments are searched; automatic: those with fewer than three landmarks
     PoseSearchOptions poses;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Searches the poses of fragments with fewer than three landmarks (of all fragments, with "always") on the template and writes

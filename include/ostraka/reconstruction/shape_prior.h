@@ -28,7 +28,7 @@ struct PriorOptions {
     double search_radius = 0.1;  ///< max distance of a match, as a share of the template's diagonal
     double angle = 60;           ///< max angle between the normals of a match, degrees
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The most probable shape of the class.

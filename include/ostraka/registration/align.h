@@ -18,7 +18,7 @@ struct AlignOptions {
     int samples = 1000;   ///< number of points on each surface
     int iterations = 60;  ///< max number of iterations
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Precomputed data of a surface for `align`: points evenly spread over the surface, and a search tree for the nearest vertex.

@@ -20,7 +20,7 @@ struct SiftOptions {
     /// Min height of a further peak in the histogram of directions, as a share of the highest peak.
     double second_direction = 0.8;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A salient point with a direction in its tangent plane. A salient point with several directions yields several features.
@@ -59,7 +59,7 @@ struct FeatureMatch {
 };
 struct MatchOptions {
     double ratio = 0.8;  ///< max ratio of the smallest angle between descriptors to the second smallest; 1 accepts every match
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 /// For each feature of `a`, the feature of `b` whose descriptor has the smallest angle with its descriptor, if the match passes
 /// the ratio test.

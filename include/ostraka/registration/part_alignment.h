@@ -18,7 +18,7 @@ struct PartAlignmentOptions {
     int samples = 3000;          ///< number of points of the part, evenly spread, that are registered to the whole
     int iterations = 60;         ///< max number of iterations
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A point of the part and the corresponding point of the whole.

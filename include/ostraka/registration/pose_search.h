@@ -15,14 +15,14 @@ struct PoseSearchOptions {
     /// Range in which the scale of the whole is searched; if both are equal, the scale is known.
     double min_scale = 1, max_scale = 1;
     double tolerance = 0.02;      ///< max distance of a point of the part that lies on the whole, as a share of the part's size
-    double min_confidence = 0.5;  ///< min confidence of a decided pose; below it the pose is undecided
+    double min_confidence = 0.5;  ///< min confidence of a decided pose
     int points = 2000;            ///< number of points on the whole; points on the part have the same density
     int references = 120;         ///< number of reference points of the part
     int partners = 300;           ///< number of other points of the part that vote with each reference point
     int candidates = 10;          ///< number of poses that are refined on the whole's own faces
     std::uint64_t seed = 1;       ///< random seed
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A pose of the part on the whole.

@@ -25,9 +25,9 @@ struct SimilarityMap {
 };
 
 struct ProcrustesOptions {
-    bool scaling = false;     ///< true: scale all configurations to the same size
-    bool reflection = false;  ///< true: treat mirror images as the same shape
-    void describe(OptionList& visit);
+    bool scaling = false;              ///< true: scale all configurations to the same size
+    bool reflection = false;           ///< true: treat mirror images as the same shape
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The rotation and translation, and with `scaling` the scale, that map `from` to `to` with the least sum of squared distances,

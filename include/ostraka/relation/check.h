@@ -13,7 +13,7 @@ struct RelationOptions {
     double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
     double ratio = 10;       ///< tolerance of areas, shapes and attribute values: relative difference, per cent
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 enum class Verdict { holds, fails, unknown };

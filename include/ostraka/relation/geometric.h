@@ -10,8 +10,8 @@
 
 namespace ostraka {
 
-/// Measures relationships on one mesh. Data of a part (axis, samples, search tree) are computed once. Not thread-safe. Mesh and
-/// annotation set must outlive the meter.
+/// Measures relationships on one mesh. Data of a part (axis, samples, search tree) are computed once. The meter is not
+/// thread-safe. Mesh and annotation set must outlive the meter.
 class RelationMeter {
 public:
     RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options = {});

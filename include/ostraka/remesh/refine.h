@@ -16,7 +16,7 @@ struct RefineOptions {
     /// Position of new vertices, and which edges are split.
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RefineResult {

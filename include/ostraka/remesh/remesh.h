@@ -13,7 +13,7 @@ struct RemeshOptions {
     int iterations = 3;          ///< number of rounds of splitting, collapsing, flipping, smoothing and projecting
     double feature_angle = 0;    ///< edges whose face normals differ by more than this angle (degrees) are kept; 0: none
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RemeshResult {

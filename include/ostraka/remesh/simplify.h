@@ -22,7 +22,7 @@ struct SimplifyOptions {
     /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
     double border_weight = 1;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Edges and vertices of annotations: outlines and poly-lines as edges, annotated points as vertices.

@@ -40,10 +40,10 @@ struct RenderOptions {
     bool no_legend = false;            ///< omit the legend and the colour bar
     std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Throws Error (usage) for options that `render` would refuse. Call it before reading the meshes.
+/// Throws Error (usage) for options that `render` would refuse. Call this function before reading the meshes.
 void check_render_options(const RenderOptions& options);
 
 /// A name written beside an object; coordinates in pixels of the whole picture.

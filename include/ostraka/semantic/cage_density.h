@@ -9,7 +9,7 @@ namespace ostraka {
 /// Density of cage vertices as a function of position, from the nearest annotation (thesis, section 6.1.1). With `factors` (pairs
 /// of annotation id and factor) the density is the largest factor of the regions, lines and points within a twentieth of the
 /// mesh's diagonal. Without factors the density is 4 within this distance of an annotated point, a line, or the outline of a
-/// region other than the whole. Elsewhere it is 1. The result does not refer to the arguments.
+/// region other than the whole. Elsewhere the density is 1. The result does not refer to the arguments.
 CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set,
                                const std::vector<std::pair<int, double>>& factors = {});
 

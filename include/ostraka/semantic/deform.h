@@ -32,10 +32,10 @@ struct DeformOptions {
     /// Max number of constraints omitted, one at a time, to find conflicts if a constraint fails; 0: no search.
     int conflicts = 8;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Tolerances for the result of a deformation. They are tighter than the tolerances for relations of scans, since deviations of
+/// Tolerances for the result of a deformation, which are tighter than the tolerances for relations of scans, since deviations of
 /// edited shapes, such as a wobbling chair, are visible.
 inline RelationOptions deform_tolerances() {
     RelationOptions tolerances;
@@ -71,9 +71,9 @@ struct ConstraintConflict {
     std::vector<Deviation> deviations;  ///< by how much the omitted constraint deviates when the others hold
 };
 
-/// How closely a result follows the edit, over the vertices that the edit moves. Without a cage these are the handles; with a
-/// cage, the vertices of the parts that the edit names or, if the edit names cage vertices, the mesh vertices that it moves by at
-/// least half of the maximum displacement.
+/// How closely a result follows the edit, over the vertices that the edit moves. Without a cage the edit moves the handles; with
+/// a cage it moves the vertices of the parts that the edit names or, if the edit names cage vertices, the mesh vertices that it
+/// moves by at least half of the maximum displacement.
 struct EditFollowed {
     std::size_t vertices = 0;  ///< number of vertices that the edit moves
     double share = 1;          ///< 1 - (root mean square deviation) / (root mean square displacement by the edit); not below 0

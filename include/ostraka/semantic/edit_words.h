@@ -15,7 +15,7 @@ struct EditWords {
     std::vector<std::string> keep, level;  ///< keep: PART or PART MEASURE; level: PARTS
     /// True if any text is an edit, not a constraint.
     [[nodiscard]] bool is_edit() const { return stretch.size() + raise.size() + rotate.size() > 0; }
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The annotations that a text refers to, in the order of the set. For one word: the annotation with this id; otherwise the

@@ -11,12 +11,12 @@ struct ClassifyOptions {
     /// Whether an object with the template's triangles is used as given.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     bool attributes = false;  ///< true: attribute values out of range also reject the object
-    /// true: whether the template lies on the object is decided by max_off alone, not also by its distance from the members.
+    /// True: whether the template lies on the object is decided by max_off alone, not also by its distance from the members.
     bool strict = false;
     /// Min relative difference of the scores of two classes that are distinguished, as a share of the better score.
     double close = 0.05;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A quantity of the object compared with the range learnt from the members.
@@ -49,10 +49,10 @@ struct ClassAnswer {
     std::vector<QuantityCheck> checks;
     /// Indices of the failed checks that can reject: proportions, constraints and relations first, then by descending excess.
     std::vector<std::size_t> against;
-    /// Score of the class for the object; lower is better. It needs no thresholds: ten times the sum of both fit distances, the
-    /// unmatched and unexplained shares, stretch and bend, plus twice the absolute logarithms of compactness and geodesics
-    /// relative to the members' means. `decide` replaces this sum by the dissimilarity if all classes have one. The contribution
-    /// of the parts is added in both cases.
+    /// Score of the class for the object; lower is better. The score needs no thresholds: it is ten times the sum of both fit
+    /// distances, the unmatched and unexplained shares, stretch and bend, plus twice the absolute logarithms of compactness and
+    /// geodesics relative to the members' means. `decide` replaces this sum by the dissimilarity if all classes have one. The
+    /// contribution of the parts is added in both cases.
     double score = 0;
     double parts = 0;              ///< contribution of the parts to the score
     ShapeCoordinates coordinates;  ///< coordinates of the fitted template

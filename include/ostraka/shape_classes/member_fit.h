@@ -28,7 +28,7 @@ struct MemberFitOptions {
         fit.last_search_radius = 0.05;
     }
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A whole object, not a fragment.
@@ -66,8 +66,8 @@ struct MemberFit {
     std::optional<FitResiduals> residuals;  ///< empty for members in correspondence
     double contact_distance = 0;            ///< max distance between surfaces that lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
-    /// (inner_wall_faces). This inside is excluded from the residuals and from the measures of the whole shape. `outer` is the
-    /// object without the inside, closed where it was cut off; null if there is no inside.
+    /// (inner_wall_faces). The inside of the walls is excluded from the residuals and from the measures of the whole shape.
+    /// `outer` is the object without the inside, closed where it was cut off; null if there is no inside.
     double cavity = 0;
     std::shared_ptr<const Mesh> outer;
     /// `foreign`: regions of the object on which no part of the template lies; `missing`: regions of the fitted template that do

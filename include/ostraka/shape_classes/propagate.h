@@ -27,7 +27,7 @@ struct Propagated {
     std::vector<std::string> notes;  ///< messages on losses and changes, and on whether the template lies on the member
     std::size_t lost = 0;            ///< number of annotations of the template that are not on the member
     bool lies_on = true;             ///< true: FitResiduals::off is at most MemberFitOptions::max_off
-    /// true: all annotations were transferred reliably.
+    /// True: all annotations were transferred reliably.
     [[nodiscard]] bool complete() const { return fit.problem.empty() && lost == 0 && lies_on; }
 };
 

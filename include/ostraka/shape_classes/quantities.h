@@ -30,7 +30,7 @@ struct ClassQuantity {
     [[nodiscard]] std::string text() const;
 };
 
-/// The template of a class. The objects to which it refers must outlive it.
+/// The template of a class. The template refers to objects, which must outlive it.
 struct ClassTemplate {
     const Mesh& mesh;
     const AnnotationSet& set;

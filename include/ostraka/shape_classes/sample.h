@@ -15,7 +15,7 @@ struct SampleOptions {
     double edit = 0.2;  ///< edits: standard deviation of the logarithm of a part's stretch
     int attempts = 20;  ///< max number of draws per member
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A drawn member.

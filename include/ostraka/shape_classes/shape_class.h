@@ -23,7 +23,7 @@ struct LearnOptions {
     double unsure = 0.15;  ///< max share of members that are not recognised, if there are fewer than three out-of-class objects
     double accept = 0.05;  ///< max share of out-of-class objects that are accepted by all classes queried together
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The values of one quantity on the members, and the range accepted for other objects.
@@ -122,8 +122,9 @@ void learn_thresholds(ShapeClass& learnt);
 
 /// Sets the thresholds of classes that are queried together. The variance of a geometry quantity, or of the combined parts, is
 /// moderated by its variance in the other classes (`variance_prior`) if at least three classes have the quantity. The
-/// dissimilarity is computed again with these variances and with the dependence of quantities pooled over the classes. Its values
-/// on members and out-of-class objects are pooled too, and the classes share the rate at which out-of-class objects are accepted.
+/// dissimilarity is computed again with these variances and with the dependence of quantities pooled over the classes. The
+/// dissimilarities of members and out-of-class objects are pooled too, and the classes share the rate at which out-of-class
+/// objects are accepted.
 void moderate_thresholds(std::vector<ShapeClass>& classes);
 
 /// All quantities of single parts, combined into one residual of kind `part`: "sizes of the parts" or "places of the parts".

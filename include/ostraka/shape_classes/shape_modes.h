@@ -11,7 +11,7 @@ struct ModeOptions {
     int maximum = 1000;     ///< max number of modes
     double variance = 1.0;  ///< modes are kept until they explain this share of the variance
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Mean shape and modes of variation.

@@ -14,7 +14,7 @@ struct WholeShape {
     /// inside out.
     std::optional<double> compactness;
     /// Geodesic distances between points of the surface, relative to the square root of the area: mean, maximum, and standard
-    /// deviation divided by the mean. Bending the surface does not change them.
+    /// deviation divided by the mean. Bending the surface does not change these distances.
     std::optional<double> geodesic_mean, geodesic_max, geodesic_variation;
     /// Farthest-point sampling: geodesic distance of the second, fourth and sixth point from the points before, relative to the
     /// square root of the area. The first point is the point farthest from the centre.
@@ -23,7 +23,7 @@ struct WholeShape {
     /// by area, relative to the mean. Empty if the rays from a tenth of the surface or more leave the object without a hit.
     std::optional<double> thickness_mean, thickness_median, thickness_most;
     /// Volume of the object relative to the volume of its convex hull, and compactness of the hull; empty where compactness is.
-    /// Posture changes them.
+    /// Posture changes these values.
     std::optional<double> hull_share, hull_compactness;
     /// Surface integrals by face: mean curvature divided by the square root of the area (signed; 2 sqrt(pi) for a ball); the
     /// concave part of its absolute value; absolute Gaussian curvature divided by 4 pi (1 for convex shapes). Empty without a

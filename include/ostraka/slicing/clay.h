@@ -14,7 +14,7 @@ struct ClayOptions {
     /// Min wall thickness where the inside is not visible, in the mesh's unit; 0: derived from the visible walls.
     double wall = 0;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Volumes in the cubed unit of the mesh. NaN: unknown.

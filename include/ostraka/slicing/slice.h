@@ -45,12 +45,12 @@ struct Contour {
     double area = 0;       ///< signed area of a closed contour, positive if counter-clockwise; 0 for an open contour
     double gap = 0;        ///< distance between the ends of an open contour
     bool crosses = false;  ///< true: a closed contour that intersects another closed contour or itself
-    /// true: a closed contour that was reversed because its orientation contradicted its nesting (a wrongly oriented shell).
+    /// True: a closed contour that was reversed because its orientation contradicted its nesting (a wrongly oriented shell).
     bool turned = false;
 };
 
 /// Areas are reliable if intersecting contours affect at most this share of the outer contours' area; folds of scans stay below
-/// it.
+/// this share.
 inline constexpr double max_doubtful = 1e-3;
 
 /// Completeness and soundness of a slice's outline. The gap of an open contour is unknown: its ends are never joined. If the open
@@ -116,8 +116,8 @@ std::vector<double> slice_heights(double lowest, double highest, int count);
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing);
 
 /// Splits a slice into components: each outer contour with the holes directly in it, as a separate slice (an island in a hole is
-/// a component too; the completeness of a component is that of its closed contours). Open contours, and holes outside all outer
-/// contours, belong to no component.
+/// a component too; the completeness of a component is the completeness of its closed contours). Open contours, and holes outside
+/// all outer contours, belong to no component.
 std::vector<Slice> components(const Slice& slice);
 
 }  // namespace ostraka

@@ -66,7 +66,7 @@ struct TubeOptions {
     double similarity = 0.1;  ///< max root mean square distance of a cluster's slices from the centre of the cluster
     std::uint64_t seed = 1;   ///< random seed of the clustering
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The tubular part of an object.

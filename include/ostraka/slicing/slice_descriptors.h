@@ -39,7 +39,7 @@ struct SliceDescriptors {
     /// Mean squared distance of the outline from the sides of the MBR, divided by (M m / pi).
     double rectangular_variance = absent;
 
-    /// true: the numbers of components and holes and the Euler number are known; they are 0 if contours intersect.
+    /// True: the numbers of components and holes and the Euler number are known; they are 0 if contours intersect.
     bool counted = true;
     int components = 0, holes = 0;    ///< number of components, and of holes
     int euler_number = 0;             ///< components - holes

@@ -16,12 +16,12 @@ struct HardOptions {
     /// Max distance of a row of a satisfied hard constraint from its projection, as a share of the diagonal of the points.
     double tolerance = 1e-6;
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of a solve with hard constraints.
 struct HardSummary {
-    /// true: all hard constraints are satisfied to the tolerance; false: the points are those of the round with the smallest
+    /// True: all hard constraints are satisfied to the tolerance; false: the points are those of the round with the smallest
     /// violation.
     bool met = false;
     int rounds = 0;                 ///< number of rounds

@@ -45,8 +45,8 @@ struct AxisOnLine {
     static constexpr KindInfo kind{"AxisOnLine", 1};
     Eigen::Vector3d direction, point;  ///< direction and a point of the line
     std::vector<int> stations = {};    ///< for each point, its station, from 0 on; empty: a separate station for each point
-    /// For each point, the share (0 to 1) that counts for the next station; the rest counts for the point's own station. These
-    /// hat functions avoid waves of the length of a group. Empty: 0.
+    /// For each point, the share (0 to 1) that counts for the next station; the rest counts for the point's own station. The
+    /// shares form hat functions, which avoid waves of the length of a group. Empty: 0.
     std::vector<double> shares = {};
 };
 

@@ -24,7 +24,7 @@ struct SolveOptions {
     double residual = 0;
     int window = 5;  ///< number of previous steps used by Anderson acceleration; 0: no acceleration
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Why a solve stopped.
@@ -48,7 +48,7 @@ struct SolveSummary {
     StopReason stop = StopReason::iterations;
     SolveTimes times;
     int floating_parts = 0;  ///< number of connected sets of points without a fixed position, whose mean stays at rest
-    /// true: the system was still singular, and all points are attracted to the rest positions with the weight `regularisation`.
+    /// True: the system was still singular, and all points are attracted to the rest positions with the weight `regularisation`.
     bool regularised = false;
     double regularisation = 0;  ///< weight with which points are attracted to the rest positions; 0: none
     int updated_rows = 0;       ///< number of rows with changed weight, applied as a low-rank update of an older factorisation

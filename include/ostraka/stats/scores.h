@@ -58,16 +58,16 @@ struct Threshold {
     ConfusionScores scores;  ///< scores on the samples from which the threshold was chosen
     [[nodiscard]] bool positive(double x) const { return above ? x >= value : x <= value; }
 };
-/// The threshold with the largest F1. It lies midway between consecutive values (or is the min or max value if all values are
-/// classified as positive). Ties: the widest gap, then `above` before `below`, then the lowest threshold. Throws the errors of
-/// roc_curve.
+/// The threshold with the largest F1. The threshold lies midway between consecutive values (or is the min or max value if all
+/// values are classified as positive). Ties: the widest gap, then `above` before `below`, then the lowest threshold. Throws the
+/// errors of roc_curve.
 Threshold best_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side = Side::above);
 
 struct CrossValidationOptions {
-    int folds = 10;          ///< number of folds
-    int repeats = 10;        ///< number of repeats with other random folds
-    std::uint64_t seed = 1;  ///< random seed
-    void describe(OptionList& visit);
+    int folds = 10;                    ///< number of folds
+    int repeats = 10;                  ///< number of repeats with other random folds
+    std::uint64_t seed = 1;            ///< random seed
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Scores of a cross-validation.

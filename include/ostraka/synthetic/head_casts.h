@@ -25,12 +25,12 @@ struct CastOptions {
     std::uint64_t vertices = 10000;  ///< target number of vertices
     std::uint64_t seed = 1;          ///< random seed
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A cast with its random parameters.
 struct HeadCast {
-    Mesh mesh;  ///< closed except at the neck, where it was broken off from its body, and at a missing piece
+    Mesh mesh;  ///< closed except at the neck, where the head was broken off from its body, and at a missing piece
     std::vector<std::int32_t> face_labels;  ///< for each face, index of its part in head_part_names()
     double wear = 0, shrinkage = 0;         ///< wear and shrinkage as drawn for this cast
     bool beard = false, chunk = false;      ///< true: the cast has a beard; a piece is missing
@@ -50,7 +50,7 @@ struct MouldPopulationOptions {
     double difference = 1;   ///< variation between the archetypes of the moulds, see ArchetypeOptions
     std::uint64_t seed = 1;  ///< random seed
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Specification of one head of a population, before it is generated.

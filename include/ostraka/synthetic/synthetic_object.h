@@ -16,7 +16,7 @@ namespace ostraka {
 struct Member {
     SolidPointer solid;
     double blend = 0;  ///< width of the smooth union or difference, mm; 0: a crease
-    /// true: the solid is subtracted instead of added; the resulting walls belong to the nearest other member.
+    /// True: the solid is subtracted instead of added; the resulting walls belong to the nearest other member.
     bool carves = false;
     /// An interval of the solid's parameter that forms a part.
     struct Stretch {

@@ -36,7 +36,7 @@ struct TemplateOptions {
     bool allow_outside = false;  ///< true: parts may lie outside the template's folder
     bool force_mesh = false;     ///< true: accept annotations of another mesh if their indices and edges fit
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads the JSON file of a template without opening its parts. Throws Error (input) with the file, the JSON pointer and the
@@ -58,7 +58,7 @@ struct TemplateEntry {
 /// annotations.
 struct Template {
     TemplateFile file;
-    std::optional<MeshFile> mesh;  ///< empty: the mesh could not be read; likewise for the other parts
+    std::optional<MeshFile> mesh;  ///< empty: the mesh could not be read
     std::optional<AnnotationSet> annotations;
     std::optional<RelationGraph> graph;
     std::vector<std::optional<Mesh>> cages;  ///< one entry per part of role "cage"; empty: the cage could not be read

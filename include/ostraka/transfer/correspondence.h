@@ -19,7 +19,7 @@ struct CorrespondenceOptions {
     enum class Corner { projection, source } vertex = Corner::projection;
     /// Cosine of `max_angle`.
     [[nodiscard]] double min_cosine() const { return std::cos(max_angle * pi / 180); }
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// How a corresponding point was found.
@@ -34,17 +34,17 @@ struct Correspondence {
     CorrespondenceKind kind = CorrespondenceKind::none;
     SurfaceHit place;         ///< point on the target; place.distance is the distance to the source vertex
     Index vertex = no_index;  ///< corner of the hit face that corresponds to the vertex
-    /// true: the first candidate was rejected because it lay on another layer than the candidates of neighbouring vertices.
+    /// True: the first candidate was rejected because it lay on another layer than the candidates of neighbouring vertices.
     bool relocated = false;
 };
 
-/// Correspondences of these vertices of `source` on the target, in the order of `vertices`. Uses all threads. O(k log n) for k
+/// Correspondences of these vertices of `source` on the target, in the order of `vertices`. Runs on all threads. O(k log n) for k
 /// vertices and n target faces.
 std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices,
                                                  const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
 /// All candidate correspondences of a vertex, most likely first: hits of the normal line by distance, then the nearest compatible
-/// point. Used to choose another candidate if the first candidate lies on another layer.
+/// point. Another candidate is chosen if the first candidate lies on another layer.
 std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index vertex, const SurfaceSearch& target,
                                                       const CorrespondenceOptions& options = {});
 

@@ -12,7 +12,7 @@ namespace ostraka {
 /// the meshes are ignored.
 struct Misalignment {
     double distance = 0;  ///< distance in the given positions
-    /// true: the distance is far larger than between two resolutions of one surface, and a motion removes most of it.
+    /// True: the distance is far larger than between two resolutions of one surface, and a motion removes most of it.
     bool stands_out = false;
     double distance_left = 0;  ///< distance after that motion; valid, like the following members, if stands_out
     double rotation = 0;       ///< rotation of the target relative to the source, degrees

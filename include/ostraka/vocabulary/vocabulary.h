@@ -112,15 +112,15 @@ void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 /// other concepts, languages in which only some concepts have labels, rules that contradict each other if both apply.
 std::vector<Finding> examine(const Vocabulary& vocabulary);
 
-/// Queries on a vocabulary, which must have passed check_vocabulary and must outlive this object. Construction is linear. Not
-/// thread-safe: attribute names of queried concepts are cached.
+/// Queries on a vocabulary, which must have passed check_vocabulary and must outlive this object. Construction is linear. The
+/// search is not thread-safe: attribute names of queried concepts are cached.
 class VocabularySearch {
 public:
     explicit VocabularySearch(const Vocabulary& vocabulary);
 
     /// Indices of the concepts that a tag may mean: the concept whose id equals the tag exactly; otherwise the concepts that have
     /// the tag as a label in any language, ignoring case and blanks; otherwise the concepts of the tag without a number at its
-    /// end ("flower 3" means "flower"). Several if the tag is ambiguous, none if it is unknown.
+    /// end ("flower 3" means "flower"). Several concepts if the tag is ambiguous, none if the tag is unknown.
     [[nodiscard]] std::vector<std::size_t> concepts_of(const std::string& tag) const;
     /// The concept of a tag; nothing if the tag is unknown or ambiguous.
     [[nodiscard]] std::optional<std::size_t> concept_of(const std::string& tag) const;
@@ -167,7 +167,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 struct CheckVocabularyOptions {
     bool strict = false;  ///< true: quantities that are not in the vocabulary are defects
 
-    void describe(OptionList& visit);
+    void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Checks the tags and attributes of annotations. Defects: a tag that no concept or several concepts have, a qualitative
