@@ -21,8 +21,8 @@ std::string manual_page(const OperationEntry& entry);
 
 /// A flag that the command accepts for every operation.
 struct CommonFlag {
-    const char* name;
-    bool has_value;  ///< the flag is followed by a value
+    const char* name;  ///< name without leading dashes
+    bool has_value;    ///< the flag is followed by a value
 };
 inline constexpr CommonFlag common_flags[]{{"json", false},   {"show", true},   {"quiet", false},
                                            {"threads", true}, {"memory", true}, {"help", false}};
