@@ -41,10 +41,10 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
 double point_spacing(const std::vector<Point>& points);
 
 struct CloudSurface {
-    Mesh mesh;                     ///< its vertices are the points that belong to a face, in the order of the cloud
-    std::vector<Index> sources;    ///< for each vertex, index of its point in the cloud
-    std::size_t border_loops = 0;  ///< number of border loops that remain
-    std::vector<std::string> notes;
+    Mesh mesh;                       ///< its vertices are the points that belong to a face, in the order of the cloud
+    std::vector<Index> sources;      ///< for each vertex, index of its point in the cloud
+    std::size_t border_loops = 0;    ///< number of border loops that remain
+    std::vector<std::string> notes;  ///< remarks on the reconstruction
 };
 
 /// Surface reconstruction by advancing front (Cohen-Steiner and Da 2004). The surface is oriented by the normals (estimated if
