@@ -45,8 +45,8 @@ private:
     void close_loops();  ///< raises the log odds of edges that close loops
 
     const PreparedFragments& fragments_;
-    std::vector<PairResult> pairs_;
-    std::vector<PairEdge> edges_;
+    std::vector<PairResult> pairs_;  ///< the registered pairs
+    std::vector<PairEdge> edges_;    ///< the candidate poses of all pairs
     /// From two fragments, the lower index first, to the indices of their edges.
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> pair_edges_;
 };
