@@ -33,9 +33,9 @@ public:
 private:
     /// An edge of a curve.
     struct Segment {
-        int fragment = 0;       ///< index of the fragment
-        Index face = no_index;  ///< face of the fragment beside the edge
-        Eigen::Vector3d from, to;
+        int fragment = 0;                         ///< index of the fragment
+        Index face = no_index;                    ///< face of the fragment beside the edge
+        Eigen::Vector3d from, to;                 ///< end points of the edge
         bool from_ends = false, to_ends = false;  ///< whether the outer surface of the fragment ends at the end point
     };
     /// From two labels, the lower one first, to the edges where they meet.

@@ -70,7 +70,7 @@ struct NonRigidFit {
         double residual = 0;       ///< root mean square distance of the matches after the level
         int steps = 0;             ///< number of iterations of matching and solving
     };
-    std::vector<Level> levels;
+    std::vector<Level> levels;  ///< one record per level
     /// Computing times in seconds.
     double seconds_matching = 0, seconds_solving = 0, seconds_coarsening = 0;
 };

@@ -14,7 +14,7 @@ namespace ostraka {
 struct SearchOptions {
     enum class Search { automatic, always, never };
     Search search = Search::automatic;  ///< which fragments are searched; automatic: those with fewer than three landmarks
-    PoseSearchOptions poses;
+    PoseSearchOptions poses;            ///< options of each pose search
 
     void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
