@@ -46,7 +46,7 @@ private:
     double max_distance_, step_;
     int distances_ = 0;                ///< number of bins of distances
     std::vector<std::size_t> starts_;  ///< for each bin of features, index of its first entry
-    std::vector<Entry> entries_;
+    std::vector<Entry> entries_;       ///< pairs of points, ordered by bin of features
 };
 
 }  // namespace ostraka

@@ -43,8 +43,8 @@ struct Alignment {
     Motion motion;  ///< maps the first surface onto the second
     /// Root mean square distance of the kept pairs, in both directions, as a share of the mean size of the surfaces.
     double distance = 0;
-    double overlap = 0;  ///< share of the samples of both surfaces that have a pair
-    int iterations = 0;
+    double overlap = 0;    ///< share of the samples of both surfaces that have a pair
+    int iterations = 0;    ///< number of iterations
     bool settled = false;  ///< true: the last step changed nothing
 };
 

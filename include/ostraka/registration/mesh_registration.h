@@ -39,7 +39,7 @@ struct SurfaceAgreement {
 
 /// Result of `register_mesh`.
 struct MeshRegistration {
-    RegistrationVerdict verdict = RegistrationVerdict::different;
+    RegistrationVerdict verdict = RegistrationVerdict::different;  ///< whether the meshes show the same object
     Motion motion;               ///< maps the source onto the target; the best motion found, whatever the verdict
     SurfaceAgreement agreement;  ///< distances between the surfaces under `motion`
     double tolerance = 0;        ///< max distance of equal surfaces, in the target's unit

@@ -36,9 +36,9 @@ struct Feature {
 struct FeatureSet {
     /// Number of discs, bins of a histogram, and rows of `descriptors`.
     static constexpr int discs = 9, bins = 8, length = discs * 2 * bins;
-    std::vector<Feature> features;
-    Eigen::MatrixXf descriptors;  ///< one column of 144 rows per feature; zero for a disc that is mostly beyond the border
-    double size = 0;              ///< reference length for the scales
+    std::vector<Feature> features;  ///< features in the order of the columns of `descriptors`
+    Eigen::MatrixXf descriptors;    ///< one column of 144 rows per feature; zero for a disc that is mostly beyond the border
+    double size = 0;                ///< reference length for the scales
 };
 
 /// MeshSIFT features of a mesh (Smeets, Keustermans, Vandermeulen and Suetens, "meshSIFT: local surface features for 3D face

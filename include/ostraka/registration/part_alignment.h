@@ -23,16 +23,16 @@ struct PartAlignmentOptions {
 
 /// A point of the part and the corresponding point of the whole.
 struct Anchor {
-    Eigen::Vector3d of_part, of_whole;
+    Eigen::Vector3d of_part, of_whole;  ///< position on the part, and position on the whole
     bool operator==(const Anchor&) const = default;
 };
 
 /// Result of `align_part`.
 struct PartAlignment {
-    Motion pose;          ///< rigid motion from the part onto the whole
-    double residual = 0;  ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
-    double overlap = 0;   ///< share of the samples that have a pair
-    int iterations = 0;
+    Motion pose;           ///< rigid motion from the part onto the whole
+    double residual = 0;   ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
+    double overlap = 0;    ///< share of the samples that have a pair
+    int iterations = 0;    ///< number of iterations
     bool settled = false;  ///< true: the last step changed nothing
 };
 

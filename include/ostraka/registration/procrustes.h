@@ -21,7 +21,7 @@ struct SimilarityMap {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
     double sum_of_squares = 0;  ///< sum of the squared distances of the mapped landmarks from their targets
-    [[nodiscard]] Landmarks apply(const Landmarks& landmarks) const;
+    [[nodiscard]] Landmarks apply(const Landmarks& landmarks) const;  ///< maps each landmark
 };
 
 struct ProcrustesOptions {
@@ -45,7 +45,7 @@ struct GeneralisedProcrustes {
     Landmarks mean;
     std::vector<double> centroid_sizes;  ///< centroid size of each configuration before scaling
     double sum_of_squares = 0;           ///< sum of the squared distances of all aligned landmarks from the mean
-    int iterations = 0;
+    int iterations = 0;                  ///< number of iterations
     bool converged = false;  ///< true: the last iteration decreased the sum of squares by less than 1e-15 of the squared sizes
 };
 
