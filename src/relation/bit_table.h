@@ -41,8 +41,8 @@ public:
     }
 
 private:
-    std::size_t words_;
-    std::vector<std::uint64_t> bits_;
+    std::size_t words_;                ///< number of 64-bit words of a row
+    std::vector<std::uint64_t> bits_;  ///< words of all rows
 };
 
 }  // namespace ostraka::detail

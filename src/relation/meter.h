@@ -17,7 +17,7 @@ namespace detail {
 
 /// Thrown if a relationship cannot be determined; not an error, since other relationships may be determined.
 struct Unknown {
-    std::string text;
+    std::string text;  ///< why the relationship cannot be determined
 };
 
 /// The measured quantities of one relationship with the tolerances that apply.
@@ -34,10 +34,11 @@ public:
     void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.ratio, "%"); }
     [[nodiscard]] bool holds() const { return holds_; }  ///< whether all quantities are within their tolerances
 
-    const Relationship& stated;
-    RelationParameters& parameters;
+    const Relationship& stated;      ///< the relationship that is measured
+    RelationParameters& parameters;  ///< gets the measured quantities
 
 private:
+    /// Adds a quantity; a tolerance stated in the relationship overrides `tolerance`.
     void add(const std::string& quantity, double value, double tolerance, const std::string& unit);
 
     const RelationOptions& options_;
@@ -54,9 +55,9 @@ struct RelationMeter::State {
     RelationOptions options;
     double diagonal = 0;                ///< diagonal of the mesh
     std::map<int, detail::Part> parts;  ///< from the id of an annotation to its part
-    std::optional<Contacts> contacts;
-    bool contacts_left_out = false;  ///< true if the pairs with the shortest borders were omitted
-    std::list<int> recent;           ///< ids of the parts whose data are in memory, most recently used last
+    std::optional<Contacts> contacts;   ///< contacts of all pairs of regions; empty: not computed yet
+    bool contacts_left_out = false;     ///< true if the pairs with the shortest borders were omitted
+    std::list<int> recent;              ///< ids of the parts whose data are in memory, most recently used last
     std::unordered_map<int, std::list<int>::iterator> recent_place;  ///< from the id of a part to its position in `recent`
     std::size_t recent_faces = 0;                                    ///< total number of faces of the parts in `recent`
 

@@ -19,8 +19,8 @@ struct QueryReference {
 
 /// The annotated object on which a query is evaluated.
 struct QueriedObject {
-    const Mesh* mesh = nullptr;
-    const AnnotationSet* set = nullptr;
+    const Mesh* mesh = nullptr;              ///< mesh of the object
+    const AnnotationSet* set = nullptr;      ///< annotations of the object
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
     const Vocabulary* vocabulary = nullptr;  ///< vocabulary by which words and attribute names are compared; null: by spelling
     /// Returns the values that an attribute has in another object, in the form that `values_of` returns.
