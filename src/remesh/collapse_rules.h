@@ -40,8 +40,8 @@ private:
     [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;
 
     Marks& marks_;
-    bool protect_;
-    bool keep_ = true;
+    bool protect_;            ///< true: vertices of marked curves keep their positions
+    bool keep_ = true;        ///< true: collapses must preserve the curves
     bool any_ = false;        ///< whether any edge or vertex is marked
     bool broken_ = false;     ///< whether curves were merged
     bool recompute_ = false;  ///< whether the roles must be updated after the collapse

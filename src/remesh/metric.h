@@ -16,6 +16,7 @@ struct Frame {
     [[nodiscard]] Vector local(const Point& p) const { return (p - CGAL::ORIGIN - centre) / size; }
     [[nodiscard]] Point world(const Vector& x) const { return CGAL::ORIGIN + centre + size * x; }
 };
+/// The frame of a mesh.
 Frame make_frame(const Mesh& mesh);
 
 /// Marks of edges and vertices during the simplification; indices do not change before the garbage is collected.
@@ -27,7 +28,7 @@ struct Marks {
 /// Position of the vertex that remains after a collapse, and cost of the collapse.
 struct CollapsePlace {
     Vector position{0, 0, 0};  ///< position in the coordinates of the frame
-    double cost = 0;
+    double cost = 0;           ///< cost of the collapse
 };
 
 /// Cost of collapses by one method.

@@ -17,7 +17,7 @@ struct RemeshOptions {
 };
 
 struct RemeshResult {
-    Mesh mesh;
+    Mesh mesh;                      ///< the new mesh
     double target_edge_length = 0;  ///< edge length aimed at, in the mesh's unit
     std::size_t remeshed = 0;       ///< number of vertices before the final adjustment to the target number
     bool reached = false;           ///< true: the mesh has exactly the target number of vertices
