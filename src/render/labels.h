@@ -17,6 +17,7 @@ double label_column(Canvas& canvas, const Scene& scene, double pane_width, const
 std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera,
                                     const PixelBox& pane, double column, const Style& style);
 
+/// Draws labels with their leader lines.
 void draw_labels(Canvas& canvas, const std::vector<PaneLabel>& labels, const Style& style);
 
 }  // namespace ostraka::detail

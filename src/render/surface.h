@@ -25,8 +25,8 @@ public:
 
     /// Intersection of a ray with a triangle.
     struct Hit {
-        Index triangle = no_index;
-        Eigen::Vector3d weights;  ///< barycentric coordinates
+        Index triangle = no_index;  ///< index of the triangle
+        Eigen::Vector3d weights;    ///< barycentric coordinates
         Eigen::Vector3d point;
     };
 
@@ -60,9 +60,9 @@ public:
     [[nodiscard]] const std::array<double, 3>& middle() const { return middle_; }
 
 private:
-    void measure_box(const Scene& scene);
-    void build_tree();
-    void gather_faces_around_points();
+    void measure_box(const Scene& scene);  ///< sets middle_ and unit_length_
+    void build_tree();                     ///< builds the search tree
+    void gather_faces_around_points();     ///< sets around_begin_ and around_
 
     const std::vector<std::array<Index, 3>>& triangles_;
     std::vector<Index> used_;  ///< indices of the points that are used by a triangle (all points if there are no triangles)
