@@ -34,14 +34,14 @@ std::string to_string(SherdUse use);
 
 /// Contribution of a sherd to the template, and its position on the template.
 struct SherdOnProfile {
-    std::string name;
-    SherdUse use = SherdUse::used;
-    std::string reason;  ///< what a partly used sherd does not contribute, or why a sherd is left out; empty: used
-    std::string remedy;  ///< how to make the sherd usable, if possible
-    Axis axis;           ///< axis estimated from the sherd alone
-    double lean = 0;     ///< angle between the sherd's axis and the common axis, degrees
-    double aside = 0;    ///< distance between the sherd's axis and the common axis at the sherd's centroid
-    double weight = 0;   ///< share of the information on the common axis that comes from the sherd, 0 to 1
+    std::string name;               ///< name of the sherd
+    SherdUse use = SherdUse::used;  ///< which data of the sherd are used
+    std::string reason;             ///< what a partly used sherd does not contribute, or why a sherd is left out; empty: used
+    std::string remedy;             ///< how to make the sherd usable, if possible
+    Axis axis;                      ///< axis estimated from the sherd alone
+    double lean = 0;                ///< angle between the sherd's axis and the common axis, degrees
+    double aside = 0;               ///< distance between the sherd's axis and the common axis at the sherd's centroid
+    double weight = 0;              ///< share of the information on the common axis that comes from the sherd, 0 to 1
     /// Deviation of the sherd's axis from the common axis, in standard deviations of the axis and of the layout.
     double disagreement = 0;
     double on_template = 0;  ///< share of the sherd's area (without known fractures) that lies on the template
@@ -63,7 +63,7 @@ struct RevolutionTemplate {
     Mesh mesh;                           ///< closed, oriented outwards, in the coordinates of the sherds
     AnnotationSet annotations;           ///< regions, lines and points of the vessel, and its axis
     std::vector<SherdOnProfile> sherds;  ///< contribution of each sherd
-    std::vector<std::string> notes;
+    std::vector<std::string> notes;      ///< remarks on the construction
 };
 
 /// Builds a template from sherds in their original relative positions in the vessel (all in one coordinate system), or from a
