@@ -12,12 +12,13 @@ namespace ostraka {
 
 /// A scalar field on a mesh: one value per vertex or face; NaN where there is no value.
 struct ScalarMap {
-    std::vector<double> values;
-    bool on_faces = false;  ///< true: one value per face; false: one per vertex
+    std::vector<double> values;  ///< one value per vertex or face
+    bool on_faces = false;       ///< true: one value per face; false: one per vertex
 };
 
 /// Closed interval from `above` to `below`.
 struct ScalarRange {
+    /// Lower and upper bound; infinite: no bound.
     double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();
     [[nodiscard]] bool contains(double x) const { return above <= x && x <= below; }
 };
