@@ -80,21 +80,21 @@ struct None {
 /// The part keeps its shape: exactly, up to its size, or seated on the deformed base as a rigid detail.
 struct KeepShape {
     explicit KeepShape(const ParameterReader& read);
-    enum class Mode { rigid, similar, seat } mode;
-    double bend = 0;  ///< for seated parts: max bending onto the base
+    enum class Mode { rigid, similar, seat } mode;  ///< rigid: exact shape; similar: up to size; seat: seated on the base
+    double bend = 0;                                ///< for seated parts: max bending onto the base
 };
 /// Parts stay on one level.
 struct SameLevel {
     explicit SameLevel(const ParameterReader& read);
-    std::optional<Vector3d> up;  ///< upward direction; empty: the upward direction of the annotations
-    enum class Shapes { keep, similar, free, seat } shapes;
+    std::optional<Vector3d> up;                              ///< upward direction; empty: the upward direction of the annotations
+    enum class Shapes { keep, similar, free, seat } shapes;  ///< whether the parts keep their shape
     /// The point of a part whose height counts.
     enum class Reference { mean, vertex, base } reference;
     enum class Heights { rest, equal };
     /// Heights that parts keep: at rest, or equal; empty: at rest if the heights at rest are nearly equal.
     std::optional<Heights> heights;
     double bend = 0;  ///< for seated parts: max bending onto the base
-    Leader leader;
+    Leader leader;    ///< the part that the others follow
 };
 /// A part continues the axis of another part.
 struct StructuralContinuity {
@@ -106,24 +106,24 @@ enum class SizeMode { stretch, scale };
 /// Two measures have a ratio in a range.
 struct Proportion {
     explicit Proportion(const ParameterReader& read);
-    MeasureName first, second;
+    MeasureName first, second;      ///< measures of the first and of the second part
     std::optional<Interval> range;  ///< range of the ratio; empty: the ratio at rest
-    SizeMode mode;
-    Leader leader;
+    SizeMode mode;                  ///< how a part changes with its measure
+    Leader leader;                  ///< the part that the other follows
 };
 /// A measure stays in a range.
 struct KeepMeasure {
     explicit KeepMeasure(const ParameterReader& read);
-    MeasureName measure;
+    MeasureName measure;            ///< name of the measure
     std::optional<Interval> range;  ///< range of the measure; empty: the value at rest
-    SizeMode mode;
+    SizeMode mode;                  ///< how the part changes with its measure
 };
 /// A measure is equal on all parts.
 struct SameMeasure {
     explicit SameMeasure(const ParameterReader& read);
-    MeasureName measure;
-    SizeMode mode;
-    Leader leader;
+    MeasureName measure;  ///< name of the measure
+    SizeMode mode;        ///< how a part changes with its measure
+    Leader leader;        ///< the part that the others follow
 };
 /// Parts are mirror-symmetric.
 struct MirrorSymmetry {
@@ -139,7 +139,7 @@ struct Upward {
 /// Parameters of part similarity and same length.
 struct Alike {
     explicit Alike(const ParameterReader& read) : leader(read) {}
-    Leader leader;
+    Leader leader;  ///< the part that the others follow
 };
 /// The axis of a part keeps its angle to the upward direction.
 struct KeepDirection {

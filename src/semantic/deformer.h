@@ -37,8 +37,8 @@ void add_displacements(const Mesh& mesh, double weight, const Points& shape, con
 struct Outcome {
     Points points, cage;  ///< positions of the mesh's vertices, and of the cage's
     SolveSummary summary;
-    int rounds = 0, passes = 0;
-    bool solved = false;  ///< true: there was something to solve
+    int rounds = 0, passes = 0;  ///< number of rounds and passes
+    bool solved = false;         ///< true: there was something to solve
     /// Residuals of one constraint.
     struct Residuals {
         std::vector<double> of_low_level;                ///< residual of each low-level constraint
@@ -82,7 +82,7 @@ public:
 
     /// Positions of the mesh's vertices.
     struct Solved {
-        Points edited, points;
+        Points edited, points;  ///< positions after the edit, and after solving
     };
     /// Positions after the edit, and after solving, without a verdict.
     Solved solve_only(const Edit& edit);
@@ -95,13 +95,13 @@ public:
 
 private:
     // The verdict: deformer_verdict.cpp
-    void add_surface(DeformResult& result) const;
+    void add_surface(DeformResult& result) const;  ///< adds the defects of the surface
     /// Vertices that the edit and the violated constraints were expected to change.
     [[nodiscard]] semantic::Expected expected(const DeformResult& result) const;
     static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
-    DeformResult finish(DeformResult result);
-    static std::string name_of(const ConstraintReport& report);
-    void report(DeformResult& result, const Outcome& outcome) const;
+    DeformResult finish(DeformResult result);                         ///< adds the verdict
+    static std::string name_of(const ConstraintReport& report);       ///< name of a constraint for messages
+    void report(DeformResult& result, const Outcome& outcome) const;  ///< adds the outcome of each constraint
     /// Why constraint i cannot be satisfied because its measure contradicts another constraint; empty: no contradiction.
     [[nodiscard]] std::string contradiction(const DeformResult& result, std::size_t i) const;
     /// Omits each constraint in turn, failing constraints first, and records which others then hold.
@@ -176,12 +176,12 @@ private:
     const DeformOptions& options_;
     const RelationOptions& tolerances_;
     std::string where_, graph_where_;
-    Points rest_;                   ///< positions of the mesh's vertices at rest
-    EditState last_;                ///< state after the last step of the edit
-    std::vector<bool> asked_;       ///< for each vertex, whether the edit moves it; empty: no distinction
-    bool is_under_way_ = false;     ///< true: handles are being dragged
-    bool neighbours_give_ = false;  ///< see let_neighbours_give
-    Mesh edited_mesh_;
+    Points rest_;                                       ///< positions of the mesh's vertices at rest
+    EditState last_;                                    ///< state after the last step of the edit
+    std::vector<bool> asked_;                           ///< for each vertex, whether the edit moves it; empty: no distinction
+    bool is_under_way_ = false;                         ///< true: handles are being dragged
+    bool neighbours_give_ = false;                      ///< see let_neighbours_give
+    Mesh edited_mesh_;                                  ///< the mesh after the edit
     Points edited_;                                     ///< positions of the mesh's vertices after the edit
     std::vector<semantic::Statement> statements_;       ///< for each constraint in the report, its interpretation
     std::deque<Relationship> resized_levels_;           ///< copies of relationships to which statements refer

@@ -30,7 +30,7 @@ public:
         Points shape;          ///< target shape, up to a motion
         bool holds_others;  ///< true: the part contains other parts with their own factors, so that it must be allowed to deform
     };
-    [[nodiscard]] std::vector<Copy> copies() const;
+    [[nodiscard]] std::vector<Copy> copies() const;  ///< stretched copy of each part
     /// The linear map that stretches the surface around a vertex; the identity for vertices outside all parts.
     [[nodiscard]] const Eigen::Matrix3d& around(Index vertex) const;
     /// Vertices at joints that stay fixed: the anchors of parts that no other part contains.

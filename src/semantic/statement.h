@@ -34,9 +34,9 @@ struct State {
 
 /// How well a relationship holds on a shape.
 struct Measured {
-    Verdict verdict = Verdict::unknown;
-    std::vector<Deviation> deviations;
-    std::string text;
+    Verdict verdict = Verdict::unknown;  ///< whether the relationship holds
+    std::vector<Deviation> deviations;   ///< measured deviations
+    std::string text;                    ///< explanation of the verdict
 };
 
 /// True if all measured deviations are within their tolerances, even if the verdict is unknown.
@@ -67,7 +67,7 @@ struct Statement {
     /// Creates low-level constraints: target shapes are taken from the state `edited`, parts that serve as references from the
     /// state `now`. Empty if there is nothing to solve.
     using Lowering = std::function<Constraints(const State& edited, const State& now)>;
-    Lowering lower;
+    Lowering lower;    ///< creates the low-level constraints
     Lowering support;  ///< creates constraints that help the surface to follow, which are never hard; may be empty
     std::function<Measured(const State& deformed)> measure;  ///< measures how well the relationship holds
     /// Moves the part to its expected position in the initial state of the solve, so that the part is not dragged to that
@@ -87,9 +87,9 @@ struct Statement {
     bool hard = false;     ///< true: the constraint has to hold exactly
     /// A required angle (radians) between the axis of an annotation and a direction, or the axis of another annotation.
     struct Direction {
-        int annotation = 0;  ///< id of the annotation
-        Eigen::Vector3d direction;
-        double angle = 0;
+        int annotation = 0;         ///< id of the annotation
+        Eigen::Vector3d direction;  ///< required direction, a unit vector
+        double angle = 0;           ///< required angle, radians
         /// Id of the annotation whose axis is the reference; `direction` is then this axis at rest.
         std::optional<int> reference = {};
     };

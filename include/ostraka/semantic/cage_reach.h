@@ -42,7 +42,7 @@ std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const Relation
 
 /// A cage made for the constraints of a graph.
 struct CageForConstraints {
-    CageResult made;
+    CageResult made;  ///< the cage, and remarks on its construction
     /// For each constraint, how closely the cage can satisfy it, with mean value coordinates.
     std::vector<ConstraintReach> reach;
 };

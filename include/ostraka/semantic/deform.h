@@ -26,9 +26,9 @@ struct DeformOptions {
     double followed = 0.9;  ///< min share of the edit that an acceptable result follows, 0 to 1
     /// Max distortion of a part that was not meant to change, in an acceptable result, as a share of the mesh's diagonal.
     double distortion = 0.005;
-    SolveOptions solve;
-    int rounds = 100;  ///< max number of rounds in which hard constraints are enforced
-    int passes = 5;    ///< max number of passes that update constraints on axes and measures of other parts
+    SolveOptions solve;  ///< options of the solver
+    int rounds = 100;    ///< max number of rounds in which hard constraints are enforced
+    int passes = 5;      ///< max number of passes that update constraints on axes and measures of other parts
     /// Max number of constraints omitted, one at a time, to find conflicts if a constraint fails; 0: no search.
     int conflicts = 8;
 
@@ -51,7 +51,7 @@ struct ConstraintReport {
     std::string type, text;        ///< type of the constraint; why it is left out, or how it is violated
     bool used = false;             ///< true: the constraint was part of the solve
     bool hard = false;             ///< true: the constraint has to hold exactly, not by weight
-    double weight = 1;
+    double weight = 1;             ///< weight of a soft constraint
     Verdict before = Verdict::unknown, verdict = Verdict::unknown;  ///< verdict on the edited shape, and after solving
     std::vector<Deviation> deviations;                              ///< deviations after solving, each with unit and tolerance
     std::vector<double> before_values;                              ///< values of the same quantities on the edited shape
@@ -83,7 +83,7 @@ struct EditFollowed {
     /// diagonal.
     struct Moved {
         int annotation = 0;  ///< id of the annotation
-        std::string tag;
+        std::string tag;     ///< tag of the annotation
         double share = 0;    ///< mean displacement
         double largest = 0;  ///< max displacement of a vertex
     };
@@ -94,7 +94,7 @@ struct EditFollowed {
 /// A part that changed its shape although neither the edit nor a violated constraint was meant to change the part.
 struct DistortedPart {
     int annotation = 0;  ///< id of the annotation
-    std::string tag;
+    std::string tag;     ///< tag of the annotation
     /// Distance of the part's vertices from the best rigid motion of the edited part: root mean square and maximum, in the mesh's
     /// unit.
     double distance = 0, largest = 0;
@@ -116,10 +116,10 @@ struct SurfaceChange {
 
 /// Result of a deformation.
 struct DeformResult {
-    std::vector<Point> points;  ///< positions of the mesh's vertices
-    std::vector<Point> edited;  ///< positions of the mesh's vertices after the edit alone
-    EditFollowed followed;      ///< how closely the result follows the edit
-    SurfaceChange surface;
+    std::vector<Point> points;                  ///< positions of the mesh's vertices
+    std::vector<Point> edited;                  ///< positions of the mesh's vertices after the edit alone
+    EditFollowed followed;                      ///< how closely the result follows the edit
+    SurfaceChange surface;                      ///< defects of the surface
     std::vector<DistortedPart> distorted;       ///< distorted parts, the most distorted first
     std::vector<Point> cage;                    ///< positions of the cage's vertices after solving; empty without a cage
     std::vector<ConstraintReport> constraints;  ///< outcome of each constraint
@@ -133,8 +133,8 @@ struct DeformResult {
     bool acceptable = true;
     std::vector<std::string> objections;  ///< why the result is not acceptable
     int passes = 0;  ///< number of passes until the parts that serve as references of constraints did not move
-    std::vector<ConstraintConflict> conflicts;
-    std::vector<std::size_t> selected;  ///< for each step of the edit, number of handles that the step selected
+    std::vector<ConstraintConflict> conflicts;  ///< constraints that contradict each other
+    std::vector<std::size_t> selected;          ///< for each step of the edit, number of handles that the step selected
     /// Number of constraints that were not omitted in the search for conflicts, because of the limit `conflicts`.
     std::size_t untried = 0;
 };

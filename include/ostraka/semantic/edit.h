@@ -18,7 +18,7 @@ struct EditStep {
     using AnnotationName = std::variant<int, std::string>;
     /// Selects the vertices of annotations, or the cage vertices that influence them.
     struct Annotations {
-        std::vector<AnnotationName> names;
+        std::vector<AnnotationName> names;  ///< ids or tags of the annotations
     };
     /// Selects vertices of the mesh, or the cage vertices that influence them.
     struct MeshVertices {
@@ -30,7 +30,7 @@ struct EditStep {
     };
     /// Selects the handles within an axis-parallel box.
     struct Box {
-        Eigen::Vector3d min, max;
+        Eigen::Vector3d min, max;  ///< opposite corners of the box
     };
     /// Selects all handles.
     struct All {};
@@ -47,7 +47,7 @@ struct EditStep {
 
     /// Moves the handles by a vector.
     struct Translate {
-        Eigen::Vector3d by;
+        Eigen::Vector3d by;  ///< displacement
     };
     struct Rotate {
         Eigen::Vector3d axis;                        ///< unit vector
@@ -56,13 +56,13 @@ struct EditStep {
     };
     /// Scales the handles about a centre.
     struct Scale {
-        double factor;
+        double factor;                               ///< scale factor
         std::optional<Eigen::Vector3d> centre = {};  ///< empty: the mean of the handles
     };
     /// Stretches the handles along a direction.
     struct Stretch {
-        Eigen::Vector3d direction;  ///< unit vector
-        double factor;
+        Eigen::Vector3d direction;                              ///< unit vector
+        double factor;                                          ///< stretch factor
         struct Base {};                                         ///< the lowest handle along the direction
         struct Middle {};                                       ///< the mean of the handles
         std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< the position that stays in place
@@ -77,7 +77,7 @@ struct EditStep {
 
 /// A sequence of steps.
 struct Edit {
-    std::vector<EditStep> steps;
+    std::vector<EditStep> steps;  ///< steps in the order of execution
 };
 
 /// Reads an edit from JSON. Throws Error (input) that names the step: schema violated, no selection or several selections, no

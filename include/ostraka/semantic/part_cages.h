@@ -14,7 +14,7 @@ std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet&
 
 /// A cage around a part.
 struct PartCage {
-    CageResult made;
+    CageResult made;  ///< the cage, and remarks on its construction
     CageCheck check;  ///< result of checking the cage against the part, cut out and closed
 };
 
