@@ -30,7 +30,7 @@ std::optional<double> own_disagreement(const ClassTemplate& class_template, cons
 /// Deviation of a list of values from expected values: root mean square of ln(value / expected) over the pairs where both exist
 /// and are positive.
 struct PartsDeviation {
-    double off = 0;
+    double off = 0;                    ///< root mean square deviation
     std::size_t count = 0, worst = 0;  ///< number of such pairs; index in the list of the pair that deviates most
 };
 PartsDeviation parts_deviation(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected);

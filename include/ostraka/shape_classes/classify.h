@@ -7,7 +7,7 @@
 namespace ostraka {
 
 struct ClassifyOptions {
-    MemberFitOptions fit;
+    MemberFitOptions fit;  ///< options for registering the template to the object
     /// Whether an object with the template's triangles is used as given.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     bool attributes = false;  ///< true: attribute values out of range also reject the object
@@ -37,16 +37,16 @@ std::string to_string(Membership membership);
 
 /// Result of comparing an object with one class.
 struct ClassAnswer {
-    std::string name;  ///< name of the class
-    Membership verdict = Membership::undecided;
-    std::string undecided;  ///< why the verdict is undecided; empty for other verdicts
-    MemberFit fit;          ///< registration of the class's template to the object
+    std::string name;                            ///< name of the class
+    Membership verdict = Membership::undecided;  ///< whether the object belongs to the class
+    std::string undecided;                       ///< why the verdict is undecided; empty for other verdicts
+    MemberFit fit;                               ///< registration of the class's template to the object
     std::string off;      ///< message that the template does not lie on the object, which is then not a member; empty if it does
     double most_off = 0;  ///< max value of FitResiduals::off without this message
     /// True: more than half of both surfaces is off (uninformative_fit), which rejects the object whatever the other checks say.
     bool hopeless = false;
-    std::optional<double> unlike;  ///< dissimilarity to the members (dissimilarity.h); empty: unknown
-    std::vector<QuantityCheck> checks;
+    std::optional<double> unlike;       ///< dissimilarity to the members (dissimilarity.h); empty: unknown
+    std::vector<QuantityCheck> checks;  ///< comparison of each quantity with its range
     /// Indices of the failed checks that can reject: proportions, constraints and relations first, then by descending excess.
     std::vector<std::size_t> against;
     /// Score of the class for the object; lower is better. The score needs no thresholds: it is ten times the sum of both fit
@@ -72,8 +72,8 @@ struct Classification {
     std::vector<ClassAnswer> answers;  ///< one answer per class, in the given order
     int best = -1;                     ///< index of the class to which the object belongs; -1: none
     int nearest = -1;                  ///< index of the class with the best score, whether the object belongs to it or not
-    Membership verdict = Membership::undecided;
-    std::string text;     ///< the result as a sentence
+    Membership verdict = Membership::undecided;  ///< whether the object belongs to a class
+    std::string text;                            ///< the result as a sentence
     std::string problem;  ///< why there are no answers: the object could not be read or measured; empty if there are answers
 };
 

@@ -13,7 +13,7 @@ namespace ostraka {
 /// towards the identity with the number of quantities as weight. A missing quantity counts as the mean. The dissimilarity is 0
 /// for an object equal to the mean and near 1 for members.
 struct Dissimilarity {
-    double value = 0;
+    double value = 0;       ///< the dissimilarity
     std::size_t count = 0;  ///< number of quantities with a value
     std::size_t worst = 0;  ///< index in `ranges` of the quantity that deviates most, before decorrelation
     double off = 0;         ///< signed deviation of that quantity, in standard deviations

@@ -19,8 +19,8 @@ std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_templa
 
 /// A threshold of the operation `fit`, learnt from the class.
 struct FragmentThreshold {
-    std::string option;  ///< "residual", "scale-tolerance" or "slack"
-    double value = 0;
+    std::string option;       ///< "residual", "scale-tolerance" or "slack"
+    double value = 0;         ///< value of the option
     std::size_t members = 0;  ///< number of members from which the threshold was learnt
 };
 /// The learnt thresholds for which at least three members have values.

@@ -11,8 +11,8 @@ bool is_landmark_file(const Path& file);
 
 /// A template that consists of landmarks: one vertex per landmark, no faces.
 struct LandmarkTemplate {
-    std::vector<std::string> names;  ///< name of each landmark
-    Mesh mesh;
+    std::vector<std::string> names;                                           ///< name of each landmark
+    Mesh mesh;                                                                ///< one vertex per landmark, no faces
     std::string unit;                                                         ///< unit of the coordinates
     AnnotationSet set;                                                        ///< empty
     RelationGraph graph;                                                      ///< empty

@@ -19,8 +19,8 @@ ClassTemplate class_template(const Template& package);
 
 /// A learnt class with its template package or its landmark template.
 struct ClassWithTemplate {
-    ShapeClass learnt;
-    Template package;
+    ShapeClass learnt;                          ///< the learnt class
+    Template package;                           ///< the template package of the class; without a mesh for landmark classes
     std::optional<LandmarkTemplate> landmarks;  ///< landmark template; empty: the class has a template with a mesh
     /// Template of the class; refers to this object.
     [[nodiscard]] ClassTemplate known() const { return landmarks ? landmarks->known() : class_template(package); }

@@ -58,11 +58,11 @@ enum class CorrespondenceChoice { automatic, given, fitted };
 
 /// Registration of a template to an object.
 struct MemberFit {
-    std::vector<Point> points;  ///< positions of the template's vertices on the object
-    double scale = 1;           ///< scale of the template
-    std::string placed_by;      ///< how the template was registered: by "correspondence", "landmarks" or "surface"
-    std::string problem;        ///< why the template is not fitted, with the remedy; empty if it is fitted
-    std::vector<std::string> notes;
+    std::vector<Point> points;              ///< positions of the template's vertices on the object
+    double scale = 1;                       ///< scale of the template
+    std::string placed_by;                  ///< how the template was registered: by "correspondence", "landmarks" or "surface"
+    std::string problem;                    ///< why the template is not fitted, with the remedy; empty if it is fitted
+    std::vector<std::string> notes;         ///< remarks on the registration
     std::optional<FitResiduals> residuals;  ///< empty for members in correspondence
     double contact_distance = 0;            ///< max distance between surfaces that lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine

@@ -7,10 +7,10 @@
 namespace ostraka {
 
 struct PropagateOptions {
-    MemberFitOptions fit;
+    MemberFitOptions fit;  ///< options for registering the template to the member
     /// Whether a member with the template's triangles is used as given.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
-    TransferOptions transfer;
+    TransferOptions transfer;  ///< options for transferring annotations
     PropagateOptions() {
         transfer.correspondence.max_distance = 0.05;
         transfer.overlap = false;

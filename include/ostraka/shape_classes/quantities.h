@@ -16,13 +16,13 @@ QuantityKind quantity_kind(const std::string& word);
 
 /// A quantity of a member, with its value.
 struct ClassQuantity {
-    QuantityKind kind = QuantityKind::geometry;
-    int id = -1;                       ///< id of the relationship, or of the annotation of an attribute; -1: none
-    std::string name;                  ///< "little finger / ring finger", "height", "distance" ...
-    std::string subject;               ///< type of the relationship, or tag of the annotation
-    std::string unit = {};             ///< empty for shares and ratios
-    bool one_sided = false;            ///< true: a residual, for which smaller is never worse
-    std::optional<double> value = {};  ///< empty: the quantity cannot be measured
+    QuantityKind kind = QuantityKind::geometry;  ///< kind of quantity
+    int id = -1;                                 ///< id of the relationship, or of the annotation of an attribute; -1: none
+    std::string name;                            ///< "little finger / ring finger", "height", "distance" ...
+    std::string subject;                         ///< type of the relationship, or tag of the annotation
+    std::string unit = {};                       ///< empty for shares and ratios
+    bool one_sided = false;                      ///< true: a residual, for which smaller is never worse
+    std::optional<double> value = {};            ///< empty: the quantity cannot be measured
 
     /// Text that identifies the same quantity on another member.
     [[nodiscard]] std::string key() const;
@@ -32,9 +32,9 @@ struct ClassQuantity {
 
 /// The template of a class. The template refers to objects, which must outlive it.
 struct ClassTemplate {
-    const Mesh& mesh;
-    const AnnotationSet& set;
-    const RelationGraph& graph;
+    const Mesh& mesh;            ///< mesh of the template
+    const AnnotationSet& set;    ///< annotations of the template
+    const RelationGraph& graph;  ///< relationships between the annotations
 };
 
 /// Moves the points (one per vertex) to the coordinate system of the template by rotation and translation and, without `sizes`,

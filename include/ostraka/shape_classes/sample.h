@@ -28,9 +28,9 @@ struct ClassSample {
 
 /// Result of `sample_class`.
 struct Sampling {
-    std::vector<ClassSample> samples;
-    std::size_t tried = 0;           ///< number of draws
-    std::size_t by_constraints = 0;  ///< number of draws rejected because a constraint does not hold after restoring
+    std::vector<ClassSample> samples;  ///< the accepted draws
+    std::size_t tried = 0;             ///< number of draws
+    std::size_t by_constraints = 0;    ///< number of draws rejected because a constraint does not hold after restoring
     /// Number of draws rejected because a proportion, relation or distance is outside the accepted range.
     std::size_t by_ranges = 0;
     std::size_t by_intersections = 0;  ///< number of draws rejected because faces intersect that do not intersect on the template

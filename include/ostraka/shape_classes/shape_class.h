@@ -13,8 +13,8 @@
 namespace ostraka {
 
 struct LearnOptions {
-    MemberFitOptions fit;
-    ModeOptions modes;
+    MemberFitOptions fit;  ///< options for registering the template to members
+    ModeOptions modes;     ///< options of the mean shape and the modes
     /// Whether members with the template's triangles are used as given.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
     /// Max share of members that all thresholds together reject, if the quantities are normal or log-normal.
@@ -47,9 +47,9 @@ struct LearntRange {
 
 /// A member from which the class was learnt.
 struct ClassMember {
-    std::string name, placed_by;  ///< placed_by: as in MemberFit
-    double scale = 1;             ///< scale of the template
-    std::vector<std::string> notes;
+    std::string name, placed_by;     ///< placed_by: as in MemberFit
+    double scale = 1;                ///< scale of the template
+    std::vector<std::string> notes;  ///< remarks on the member
 };
 
 /// Cross products of the members' deviations from the means of their classes, for pairs of quantities.
@@ -61,14 +61,14 @@ struct Dependence {
 
 /// A learnt class.
 struct ShapeClass {
-    std::string name;
-    std::string template_file;  ///< file name in the folder of the class file
-    bool sizes = false;         ///< true: size is part of the shape
-    std::vector<ClassMember> members;
-    std::vector<LearntRange> ranges;     ///< one range per quantity
-    std::vector<LearntRange> fragments;  ///< ranges of the quantities for the fragment thresholds (fragment_thresholds.h)
-    std::string topology;                ///< topology_checksum of the template's mesh
-    ShapeModes modes;
+    std::string name;                     ///< name of the class
+    std::string template_file;            ///< file name in the folder of the class file
+    bool sizes = false;                   ///< true: size is part of the shape
+    std::vector<ClassMember> members;     ///< members from which the class was learnt
+    std::vector<LearntRange> ranges;      ///< one range per quantity
+    std::vector<LearntRange> fragments;   ///< ranges of the quantities for the fragment thresholds (fragment_thresholds.h)
+    std::string topology;                 ///< topology_checksum of the template's mesh
+    ShapeModes modes;                     ///< mean shape and modes of variation
     std::vector<std::string> strangers;   ///< names of the out-of-class objects
     double unsure = 0.15, accept = 0.05;  ///< from LearnOptions
     /// Max value of FitResiduals::off for members; empty if the members are in correspondence.
@@ -84,7 +84,7 @@ struct ShapeClass {
     /// Whether thresholds were learnt, which needs at least three members: two members do not determine a standard deviation
     /// (Student's distribution with one degree of freedom has no mean).
     [[nodiscard]] bool has_thresholds() const { return members.size() >= min_members; }
-    static constexpr std::size_t min_members = 3;
+    static constexpr std::size_t min_members = 3;  ///< min number of members for thresholds
 };
 
 /// Registers the template to `member`: by correspondence if `correspondence` allows, otherwise by a fit.
@@ -93,8 +93,8 @@ MemberFit fit_by_method(const ClassTemplate& class_template, const WholeObject& 
 
 /// Quantities of one member, from which a class is learnt.
 struct LearntMember {
-    std::string name;  ///< name of the member
-    MemberFit fit;
+    std::string name;                       ///< name of the member
+    MemberFit fit;                          ///< registration of the template to the member
     std::vector<ClassQuantity> quantities;  ///< quantities of the member, except those relative to other members
     std::vector<ClassQuantity> fragments;   ///< quantities of the member's pieces (fragment_quantities)
 };
@@ -129,9 +129,9 @@ void moderate_thresholds(std::vector<ShapeClass>& classes);
 
 /// All quantities of single parts, combined into one residual of kind `part`: "sizes of the parts" or "places of the parts".
 struct CombinedParts {
-    ClassQuantity quantity;
-    std::size_t worst = 0;  ///< index of the range that deviates most
-    double expected = 0;    ///< expected value of the quantity that deviates most
+    ClassQuantity quantity;  ///< the combined residual
+    std::size_t worst = 0;   ///< index of the range that deviates most
+    double expected = 0;     ///< expected value of the quantity that deviates most
 };
 /// Combines the deviations of the parts' quantities. `values` and `expected`: value and expected value for each range.
 std::vector<CombinedParts> combined_parts(const std::vector<LearntRange>& ranges,

@@ -19,7 +19,7 @@ SampleMoments moments_of(std::span<const double> values);
 
 /// Interval that contains one more value of the same distribution at a given rate.
 struct PredictionInterval {
-    double low = 0, high = 0;
+    double low = 0, high = 0;  ///< bounds of the interval
 };
 
 /// Interval that contains one more value of the same normal distribution except at the rate `reject` (both sides together; with

@@ -31,7 +31,7 @@ struct WholeShape {
     std::optional<double> curvature, concave, saddles;
     /// Spectrum of the surface by `laplace_spectrum`: twelve values, or empty.
     std::vector<double> spectrum;
-    static constexpr int spectrum_size = 12;
+    static constexpr int spectrum_size = 12;  ///< number of values in the spectrum
 };
 
 /// Measures a whole surface. Geodesics start from 8 sources, chosen by farthest-point sampling, on a copy simplified to 1500
