@@ -29,7 +29,7 @@ Crossings find_crossings(std::vector<Contour>& contours, double tolerance);
 
 /// The circle on which the open contours lie.
 struct OpenArc {
-    ArcFit fit;
+    ArcFit fit;  ///< the fitted circle
     /// True: fitted to contours that run counter-clockwise around their own circle; false: there are no such contours.
     bool outside = false;
 };

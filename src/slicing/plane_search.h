@@ -20,8 +20,8 @@ public:
 
 private:
     using Box = Eigen::AlignedBox3d;
-    static constexpr std::size_t leaf = 8;  ///< number of faces per leaf
-    [[nodiscard]] static Box box_of(const Mesh& mesh, Index face);
+    static constexpr std::size_t leaf = 8;                          ///< number of faces per leaf
+    [[nodiscard]] static Box box_of(const Mesh& mesh, Index face);  ///< bounding box of a face
     /// Calls `visit(face)` for the faces in the leaves for which `enter(box)` is true at every level of the tree.
     template <class Enter, class Visit>
     void each_face(const Enter& enter, const Visit& visit) const;

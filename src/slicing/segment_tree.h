@@ -59,7 +59,7 @@ private:
         if (std::max(left, right) < best) search(second, p, best, nearest);
     }
 
-    PlaneSegments segments_;
+    PlaneSegments segments_;  ///< the segments of the curves, in order
     std::size_t leaves_ = 1;  ///< number of leaves, a power of two
     std::vector<Box> boxes_;  ///< box of each node; the children of node i are 2 i and 2 i + 1
 };

@@ -13,10 +13,10 @@ class Strips {
 public:
     /// An edge from `a` to `b`.
     struct Edge {
-        Eigen::Vector2d a, b;
-        int contour;        ///< index of the contour
-        std::size_t place;  ///< index of `a` among the points of the contour
-        bool last;          ///< true: the edge closes the contour
+        Eigen::Vector2d a, b;  ///< end points
+        int contour;           ///< index of the contour
+        std::size_t place;     ///< index of `a` among the points of the contour
+        bool last;             ///< true: the edge closes the contour
     };
 
     explicit Strips(const std::vector<Contour>& contours) {
@@ -130,7 +130,7 @@ private:
         return std::minmax(strip(edge.a.y()), strip(edge.b.y()));
     }
 
-    std::vector<Edge> edges_;
+    std::vector<Edge> edges_;         ///< edges of all closed contours
     std::vector<std::size_t> first_;  ///< for each strip, index of its first entry in entries_
     std::vector<Index> entries_;      ///< indices of the edges that intersect each strip
     double low_ = 0, high_ = 0;       ///< lowest and highest y coordinate

@@ -19,7 +19,7 @@ struct ClayOptions {
 
 /// Volumes in the cubed unit of the mesh. NaN: unknown.
 struct ClayVolume {
-    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< value of unknown volumes and lengths (NaN)
     double maximum = 0;  ///< volume if regions that were not scanned are clay; unknown if no slice has an outline
     /// Volume if regions that were not scanned are hollow except for a wall; unknown if no wall is visible or given.
     double minimum = unknown;

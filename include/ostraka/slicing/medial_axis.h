@@ -15,9 +15,9 @@ struct MedialAxis {
     };
     /// The medial axis pruned to one level of detail.
     struct Level {
-        double residue = 0;  ///< min chord residue of the kept edges
-        double length = 0;   ///< total length of the branches
-        std::vector<Branch> branches;
+        double residue = 0;            ///< min chord residue of the kept edges
+        double length = 0;             ///< total length of the branches
+        std::vector<Branch> branches;  ///< branches of the axis
     };
     /// One level per requested residue; the branches at a larger residue are a subset of those at a smaller one.
     std::vector<Level> levels;

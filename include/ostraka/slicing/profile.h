@@ -18,7 +18,7 @@ struct Profile {
     double low = 0, high = 0;  ///< lowest and highest height of the object
     /// A bend of the outer profile.
     struct Edge {
-        double height, radius;
+        double height, radius;  ///< position of the bend: height, and distance from the axis
     };
     std::vector<Edge> edges;  ///< places where the outer profile of a surface of revolution bends by more than 25 degrees
     /// True: the object is a surface of revolution: half of 24 slices are closed and have a relative roundness (fitted circle)

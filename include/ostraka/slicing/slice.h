@@ -41,10 +41,10 @@ struct Contour {
     int parent = -1;
     int depth = 0;             ///< number of closed contours that contain this contour
     std::vector<Index> faces;  ///< faces[i] contains the segment from points[i] to the next point
-    double length = 0;
-    double area = 0;       ///< signed area of a closed contour, positive if counter-clockwise; 0 for an open contour
-    double gap = 0;        ///< distance between the ends of an open contour
-    bool crosses = false;  ///< true: a closed contour that intersects another closed contour or itself
+    double length = 0;         ///< length of the contour
+    double area = 0;           ///< signed area of a closed contour, positive if counter-clockwise; 0 for an open contour
+    double gap = 0;            ///< distance between the ends of an open contour
+    bool crosses = false;      ///< true: a closed contour that intersects another closed contour or itself
     /// True: a closed contour that was reversed because its orientation contradicted its nesting (a wrongly oriented shell).
     bool turned = false;
 };
@@ -79,14 +79,14 @@ struct Completeness {
 
 /// The contours at one height: closed contours by decreasing area, then open contours by decreasing length.
 struct Slice {
-    double height = 0;
+    double height = 0;  ///< height of the plane above the frame's origin
     std::vector<Contour> contours;
     Completeness completeness;  ///< all values 1 for a slice without contours, although it encloses nothing
 };
 
 /// Slices of a mesh by parallel planes.
 struct SliceStack {
-    SliceFrame frame;
+    SliceFrame frame;           ///< frame of all slices
     std::vector<Slice> slices;  ///< one slice per height, in the given order
     bool reversed = false;      ///< true: the mesh is closed and inside out, and all contours were reversed
 };

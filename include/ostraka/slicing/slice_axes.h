@@ -44,8 +44,8 @@ Straightness straightness(const std::vector<Point>& barycentres, const std::vect
 /// main hole in this outline. A slice qualifies if it has no other outer contour or hole larger than a fiftieth of the main ones,
 /// as handles and feet have, and no intersecting contours.
 struct ThicknessHomogeneity {
-    static constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-    std::size_t slices = 0;  ///< number of slices that qualify
+    static constexpr double absent = std::numeric_limits<double>::quiet_NaN();  ///< value of absent results (NaN)
+    std::size_t slices = 0;                                                     ///< number of slices that qualify
     std::size_t beside = 0;  ///< number of slices excluded because of handles or other parts beside or within the wall
     double mean = absent;    ///< median of the slices' mean wall thickness, in the mesh's unit
     /// Median over the slices of the coefficient of variation (standard deviation / mean) of the thickness around the slice.
@@ -56,6 +56,7 @@ struct ThicknessHomogeneity {
     /// Coefficient of variation of the thickness over all qualifying slices together, with equal weights.
     double overall = absent;
 };
+/// Measures the evenness of the wall over these slices.
 ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices);
 
 struct TubeOptions {

@@ -18,7 +18,7 @@ namespace ostraka {
 
 /// Descriptors of one slice; NaN: absent.
 struct SliceDescriptors {
-    static constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double absent = std::numeric_limits<double>::quiet_NaN();  ///< value of absent descriptors (NaN)
 
     double area = absent;                                ///< A, area of the material; unit squared
     double perimeter = absent;                           ///< P, length of the material's boundary including holes; unit

@@ -13,10 +13,10 @@ namespace ostraka {
 
 /// Slices of an object, each with a frame; parallel slices have the same frame.
 struct SlicedObject {
-    bool parallel = true;            ///< true: slices by parallel planes; false: slices across a curve
-    bool reversed = false;           ///< true: the mesh is closed and inside out, and all contours were reversed
-    std::vector<SliceFrame> frames;  ///< frame of each slice
-    std::vector<Slice> slices;
+    bool parallel = true;                            ///< true: slices by parallel planes; false: slices across a curve
+    bool reversed = false;                           ///< true: the mesh is closed and inside out, and all contours were reversed
+    std::vector<SliceFrame> frames;                  ///< frame of each slice
+    std::vector<Slice> slices;                       ///< slices in the planes of their frames
     std::vector<SliceDescriptors> descriptors = {};  ///< descriptors of each slice
     std::vector<MedialAxis> medial = {};             ///< medial axis of each slice; empty: not computed
     std::vector<Point> curve;                        ///< the curve across which the object was sliced; empty for parallel slices
