@@ -24,12 +24,13 @@ struct Unknowns {
     std::vector<int> point;              ///< for each unknown that is a point, the index of the point
     std::vector<std::size_t> first_row;  ///< for each constraint, its first row; followed by the number of rows
     int count = 0;                       ///< number of unknowns: points and means
-    RowMatrix rows;
+    RowMatrix rows;                      ///< rows of all constraints over the unknowns
     [[nodiscard]] std::size_t rows_of(std::size_t constraint) const { return first_row[constraint + 1] - first_row[constraint]; }
 };
 /// Numbers the unknowns of the constraints; `points`: number of points.
 Unknowns number_unknowns(std::span<const std::unique_ptr<Constraint>> constraints, Eigen::Index points);
 
+/// The transposed matrix.
 RowMatrix transposed(const RowMatrix& matrix, int columns);
 
 /// Lower triangle of the sum of w_r b_r b_r^T over the rows b_r with weights w_r, with all diagonal entries present; `columns`:

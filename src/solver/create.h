@@ -11,10 +11,10 @@ using kinds::Interval;
 /// Arguments from which a constraint of any kind is created. `rest` holds the rest positions of the constraint's own points, in
 /// the order of `ids`.
 struct ConstraintArguments {
-    std::string_view kind;
-    std::vector<int> ids;
-    double weight;
-    Points rest;
+    std::string_view kind;  ///< name of the kind
+    std::vector<int> ids;   ///< indices of the constrained points in the shape
+    double weight;          ///< weight of the constraint
+    Points rest;            ///< rest positions of the constrained points, in the order of `ids`
 
     /// Throws Error (usage) that names the kind, with the problem and the remedy.
     [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) const;

@@ -31,9 +31,9 @@ private:
     /// Computes M x.
     [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& x) const;
 
-    int unknowns_;
-    RowMatrix rows_;  ///< rows of M
-    std::vector<Equation> equations_;
+    int unknowns_;                                                        ///< number of unknowns
+    RowMatrix rows_;                                                      ///< rows of M
+    std::vector<Equation> equations_;                                     ///< equations of all added constraints
     Eigen::MatrixXd influence_;                                           ///< A^-1 M^T, one column per row of M
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> complement_;  ///< factorisation of the dense system
 };

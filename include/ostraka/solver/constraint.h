@@ -55,7 +55,7 @@ public:
     };
     /// A linear projection: P(r_i) = of_rows r_i + of_reference q_i.
     struct LinearProjection {
-        Eigen::Matrix3d of_rows, of_reference;
+        Eigen::Matrix3d of_rows, of_reference;  ///< matrices that multiply the row and its reference point
     };
 
     virtual ~Constraint() = default;
@@ -79,8 +79,8 @@ public:
     /// Prescribed components of rows: the components along `directions` (orthonormal rows) are equal to `values`, which has one
     /// column for each row of B. The projection sets these components and leaves the others unchanged.
     struct Components {
-        Eigen::Matrix<double, Eigen::Dynamic, 3> directions;
-        Eigen::MatrixXd values;
+        Eigen::Matrix<double, Eigen::Dynamic, 3> directions;  ///< the prescribed directions, one per row
+        Eigen::MatrixXd values;  ///< prescribed component along each direction (rows) for each row of B (columns)
     };
     /// The prescribed components, if the projection only sets components; empty for other projections.
     [[nodiscard]] virtual std::optional<Components> given_components() const { return {}; }
@@ -117,8 +117,8 @@ protected:
 
 private:
     std::string_view kind_;  ///< refers to static storage
-    std::vector<int> ids_;
-    double weight_ = 1;
+    std::vector<int> ids_;   ///< indices of the constrained points in the shape
+    double weight_ = 1;      ///< weight of the constraint in the solver's objective
 };
 
 }  // namespace ostraka

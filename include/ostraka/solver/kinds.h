@@ -14,7 +14,7 @@ namespace ostraka::kinds {
 
 /// The name of a kind, as in files and messages, and the number of points that a constraint of this kind has.
 struct KindInfo {
-    std::string_view name;
+    std::string_view name;           ///< name of the kind
     int min_points, max_points = 0;  ///< min and max number of points; max_points 0: any number
 };
 
@@ -22,7 +22,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Interval of admissible values. `max` may be infinite.
 struct Interval {
-    double min, max;
+    double min, max;  ///< bounds of the interval
     [[nodiscard]] double clamp(double value) const { return value < min ? min : (value > max ? max : value); }
 };
 

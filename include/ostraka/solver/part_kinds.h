@@ -85,7 +85,7 @@ struct MirrorSymmetry {
 /// Rows: the point and its partner.
 struct MirrorInTriangles {
     static constexpr KindInfo kind{"MirrorInTriangles", 4};
-    MirrorPlane plane;
+    MirrorPlane plane;                ///< plane of reflection
     std::vector<double> barycentric;  ///< for each group, three barycentric coordinates of the partner
     /// For each group, the mirrored point minus its partner, a difference that is preserved; empty: zero.
     std::optional<Points> discrepancies = {};

@@ -45,8 +45,8 @@ struct SolveSummary {
     std::vector<double> seconds;    ///< for each value of phi, the time since the start of the iterations
     /// Number of accelerated steps, and of those rejected because they increased the objective.
     int accelerated = 0, refused = 0;
-    StopReason stop = StopReason::iterations;
-    SolveTimes times;
+    StopReason stop = StopReason::iterations;  ///< why the solve stopped
+    SolveTimes times;                          ///< computing times
     int floating_parts = 0;  ///< number of connected sets of points without a fixed position, whose mean stays at rest
     /// True: the system was still singular, and all points are attracted to the rest positions with the weight `regularisation`.
     bool regularised = false;
@@ -98,8 +98,8 @@ protected:
     /// Called after the target of a constraint was changed.
     virtual void target_changed(std::size_t constraint) = 0;
 
-    std::vector<std::unique_ptr<Constraint>> constraints_;
-    double diagonal_;          ///< diagonal of the points at rest
+    std::vector<std::unique_ptr<Constraint>> constraints_;  ///< all constraints, in the order given
+    double diagonal_;                                       ///< diagonal of the points at rest
     double rounding_ = 0;      ///< differences of phi below this value are rounding errors; set by initialize()
     double total_weight_ = 0;  ///< sum over all constraints of weight times number of rows; set by initialize()
     SolveSummary setup_;       ///< summary of initialize()
