@@ -38,8 +38,8 @@ class BoostedTrees {
 public:
     /// A decision or leaf of a tree. A sample goes left if its feature is at most the threshold, otherwise right.
     struct Node {
-        int feature = -1;  ///< index of the feature; -1: a leaf
-        float threshold = 0;
+        int feature = -1;         ///< index of the feature; -1: a leaf
+        float threshold = 0;      ///< max value of the feature that goes left
         int left = 0, right = 0;  ///< indices of the children in the tree; unused in a leaf
         float value = 0;          ///< contribution of a leaf to the log odds
     };
@@ -48,7 +48,7 @@ public:
 
     [[nodiscard]] double log_odds(std::span<const float> features) const;  ///< estimated log odds of a sample
 
-    [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;
+    [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;  ///< the model as JSON, which from_json reads
     /// Reads a model with `columns` features. Throws Error (input) if the value is not such a model or uses a feature index
     /// outside `columns`.
     static BoostedTrees from_json(const JsonValue& value, std::size_t columns);

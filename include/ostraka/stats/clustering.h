@@ -31,8 +31,8 @@ struct Merge {
 
 /// A tree of clusters: n - 1 merges by increasing height.
 struct Linkage {
-    int samples = 0;  ///< number of samples
-    std::vector<Merge> merges;
+    int samples = 0;            ///< number of samples
+    std::vector<Merge> merges;  ///< merges by increasing height
 };
 
 /// How the distance of two clusters follows from the distances between their members: mean (UPGMA, Sokal and Michener 1958),

@@ -22,8 +22,8 @@ struct PrincipalComponents {
     Eigen::MatrixXd scores;      ///< one row per sample, one column per component
     Eigen::MatrixXd directions;  ///< one unit column per component
     Eigen::VectorXd variances;   ///< variance of each component, divisor n - 1 (0 for a single sample)
-    Eigen::RowVectorXd mean;
-    double total_variance = 0;  ///< sum of the variances over all directions
+    Eigen::RowVectorXd mean;     ///< mean of the samples
+    double total_variance = 0;   ///< sum of the variances over all directions
 };
 /// Principal components of the rows of `samples` for at most `dimensions` directions. Throws Error (input) for no sample or
 /// values that are not finite, Error (usage) for dimensions below 1.

@@ -25,7 +25,7 @@ double normal_quantile(double p);
 
 /// A confidence interval.
 struct Interval {
-    double low = 0, high = 0;
+    double low = 0, high = 0;  ///< bounds of the interval
 };
 
 /// Confidence interval of the standard deviation of a population that need not be normal (Bonett 2006), from the kurtosis about a

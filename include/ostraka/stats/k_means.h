@@ -58,7 +58,7 @@ struct ClusterCountOptions {
 struct ClusterCount {
     /// Criteria for one number of clusters.
     struct Row {
-        int clusters = 0;
+        int clusters = 0;       ///< number of clusters
         double cost = 0;        ///< k-means cost
         double silhouette = 0;  ///< mean silhouette of the samples; 0 for one cluster
         double gap = 0;  ///< gap statistic: expected logarithm of the cost for data without clusters minus the observed logarithm

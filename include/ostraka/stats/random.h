@@ -13,7 +13,7 @@ namespace ostraka {
 /// order of draws does not matter.
 class Random {
 public:
-    explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
+    explicit Random(std::uint64_t seed, std::uint64_t stream = 0);  ///< a stream of random numbers for this seed
 
     /// 64 random bits.
     std::uint64_t bits() { return engine_(); }

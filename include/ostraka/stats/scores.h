@@ -16,7 +16,7 @@ double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int
 
 /// Confusion matrix of a binary classification, and scores computed from the matrix.
 struct ConfusionScores {
-    std::size_t true_positive = 0, false_positive = 0, false_negative = 0, true_negative = 0;
+    std::size_t true_positive = 0, false_positive = 0, false_negative = 0, true_negative = 0;  ///< number of samples of each kind
 
     [[nodiscard]] std::size_t count() const { return true_positive + false_positive + false_negative + true_negative; }
     /// Share of the samples classified as positive that are positive: TP / (TP + FP); 0 if nothing is classified as positive.
@@ -53,7 +53,7 @@ enum class Side { above, below, either };
 
 /// A threshold that classifies values.
 struct Threshold {
-    double value = 0;
+    double value = 0;        ///< value of the threshold
     bool above = true;       ///< true: values of at least `value` are positive; false: values of at most `value` are
     ConfusionScores scores;  ///< scores on the samples from which the threshold was chosen
     [[nodiscard]] bool positive(double x) const { return above ? x >= value : x <= value; }
