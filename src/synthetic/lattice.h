@@ -12,7 +12,7 @@ namespace ostraka::shapes {
 struct Lattice {
     Eigen::Matrix3d rotation;
     Eigen::Vector3d origin;
-    double cube;
+    double cube;  ///< edge length of the cubes
 };
 
 /// A triangle soup: points and triangles, counter-clockwise seen from outside.
@@ -21,7 +21,7 @@ struct Triangles {
     std::vector<std::array<Index, 3>> faces;
 };
 
-double area(const Triangles& mesh);
+double area(const Triangles& mesh);  ///< total area of the triangles
 
 /// Number of vertices on a surface of unit area for a lattice of cubes with edge length 1: the mean number of lattice edges that
 /// intersect a unit of area (8 edges of length sqrt(3)/2 and 6 of length 1 per cube, each with half its length in projection).

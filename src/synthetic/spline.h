@@ -75,7 +75,7 @@ public:
 
 private:
     [[nodiscard]] double step(std::size_t i) const { return knots_[i + 1] - knots_[i]; }
-    std::vector<double> knots_;
+    std::vector<double> knots_;        ///< parameter of each point
     std::vector<Vec> points_, bends_;  ///< bends_: second derivatives at the knots
 };
 

@@ -57,8 +57,8 @@ struct MouldPopulationOptions {
 struct PlannedHead {
     std::string name;   ///< head-001, head-002 ...
     std::string mould;  ///< mould-1, mould-2 ...; for hand-formed heads "hand" and the hat
-    HeadShape shape;
-    CastOptions cast;
+    HeadShape shape;    ///< archetype of the mould
+    CastOptions cast;   ///< options of the cast
 };
 /// Plans a population: heads are assigned to the moulds cyclically and named in random order, so that their names carry no
 /// information.

@@ -18,8 +18,8 @@ std::vector<std::string> head_part_names();
 
 /// Proportions of a head 44 mm high, in mm; x points forward, y to the head's left, z up.
 struct HeadShape {
-    enum class Hat { none, pointed, truncated, turban } hat = Hat::none;
-    bool long_hair = false;
+    enum class Hat { none, pointed, truncated, turban } hat = Hat::none;  ///< shape of the hat
+    bool long_hair = false;                                               ///< true: long hair behind the ears; false: short hair
     double skull_width = 13, skull_depth = 15, skull_height = 16;
     double jaw_width = 10.2, face_length = 15.5, face_depth = 10.5;
     double chin_width = 4.4, chin_forward = 0, chin_height = 5;
@@ -39,11 +39,11 @@ struct HeadShape {
     struct Bump {
         double y, z, radius, height;
     };
-    std::vector<Bump> bumps;
+    std::vector<Bump> bumps;  ///< accidental bumps on the front
 };
 
 struct ArchetypeOptions {
-    bool long_hair = false;
+    bool long_hair = false;  ///< true: long hair behind the ears; false: short hair
     bool hand_made = false;  ///< true: freely formed, with a hat; proportions vary 1.6 times as much
     double difference = 1;   ///< variation between archetypes; 1: standard deviation of proportions of about 8 %
     std::uint64_t seed = 1;  ///< random seed
@@ -56,7 +56,7 @@ HeadShape head_archetype(const ArchetypeOptions& options);
 /// Hand-formed features of one cast: the back of the head, a beard, dents.
 struct HandWork {
     double back_depth = 0, back_width = 0;  ///< mm added to the skull behind the area that the mould shapes
-    bool beard = false;
+    bool beard = false;                     ///< true: a beard is added
     double beard_width = 6, beard_length = 7, beard_forward = 2, beard_skew = 0;
     /// A dent on the front, at (y, z), mm.
     struct Dent {

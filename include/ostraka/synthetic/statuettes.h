@@ -16,8 +16,8 @@ namespace ostraka {
 /// One statuette. Lengths are in millimetres; z is up, the base lies at z = 0, the face looks along +x. The tube is the body
 /// between base and shoulders; the radius of the tube is 0.33 base diameters.
 struct StatuetteParameters {
-    enum class Technique { wheel, hand } technique = Technique::wheel;
-    double height = 200, base_diameter = 58, arm_length = 82, head_height = 44;
+    enum class Technique { wheel, hand } technique = Technique::wheel;           ///< how the body was made
+    double height = 200, base_diameter = 58, arm_length = 82, head_height = 44;  ///< sizes, mm
     /// The tube's radius is r (1 + ovality cos 2(a - direction)) at the angle a; the maximum is along `direction`.
     double ovality = 0;
     double ovality_drift = 0;  ///< rotation of the ovality's direction from base to shoulders, degrees
@@ -33,8 +33,8 @@ struct StatuetteParameters {
     int holes = 0;           ///< number of patches of the body that are missing in the scan
     double hole_radius = 5;  ///< radius of the missing patches, mm
     enum class Pose { forward, offering, raised, down } pose = Pose::forward;  ///< arm pose; offering: the hands hold a bowl
-    enum class Hat { cone, cap, none } hat = Hat::cone;
-    bool beard = false;
+    enum class Hat { cone, cap, none } hat = Hat::cone;                        ///< shape of the hat
+    bool beard = false;                                                        ///< true: the head has a beard
     std::uint64_t seed = 1;          ///< random seed of wave phases, noise, holes and mesh lattice
     std::uint64_t vertices = 10000;  ///< target number of vertices
 
@@ -43,14 +43,14 @@ struct StatuetteParameters {
 
 /// A named landmark on the surface.
 struct StatuetteLandmark {
-    std::string name;
+    std::string name;         ///< name of the landmark
     Index vertex = no_index;  ///< nearest vertex of the mesh
     SurfacePoint place;       ///< position in a face
 };
 
 /// A generated statuette with its ground truth.
 struct Statuette {
-    StatuetteParameters parameters;
+    StatuetteParameters parameters;                         ///< parameters of the statuette
     std::vector<std::string> parts;                         ///< names of the parts
     std::vector<std::array<std::uint8_t, 3>> part_colours;  ///< red, green, blue of each part
     Mesh mesh;  ///< oriented, manifold, connected; closed unless a part of the surface is missing in the scan
@@ -74,7 +74,7 @@ struct TechniqueLevel {
 };
 /// Parameters of both techniques at one level of difficulty.
 struct StatuetteLevel {
-    TechniqueLevel wheel, hand;
+    TechniqueLevel wheel, hand;  ///< parameters of wheel-thrown and of hand-built statuettes
     double spread;  ///< standard deviation of the natural logarithm of each parameter; parameters are drawn independently
 };
 /// Parameters of the techniques at a level from 1 (large difference) to 5 (small difference). Throws Error (usage) for other
@@ -102,7 +102,7 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
 
 /// Options of wheel-thrown statuettes with a common size factor and individual factors, and with some sizes in fixed proportion.
 struct ProportionedOptions {
-    int objects = 40;
+    int objects = 40;  ///< number of statuettes
     /// Names of the sizes that are in fixed proportion to each other, from `size_names`.
     std::vector<std::string> fixed{"arm length", "base diameter"};
     bool none = false;  ///< true: no size is in fixed proportion
@@ -111,6 +111,7 @@ struct ProportionedOptions {
     double size_deviation = 0.12, ratio_deviation = 0.15, planted_deviation = 0.03, scan_noise = 0.05;
     std::uint64_t seed = 1, vertices = 10000;
 
+    /// Names of the four sizes.
     static constexpr std::array<const char*, 4> size_names{"total height", "base diameter", "arm length", "head height"};
     /// Whether this size is in fixed proportion to other sizes.
     [[nodiscard]] bool is_fixed(const std::string& size) const;

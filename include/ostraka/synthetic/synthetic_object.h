@@ -14,8 +14,8 @@ namespace ostraka {
 
 /// A solid of an object, blended with the previously added solids.
 struct Member {
-    SolidPointer solid;
-    double blend = 0;  ///< width of the smooth union or difference, mm; 0: a crease
+    SolidPointer solid;  ///< the solid
+    double blend = 0;    ///< width of the smooth union or difference, mm; 0: a crease
     /// True: the solid is subtracted instead of added; the resulting walls belong to the nearest other member.
     bool carves = false;
     /// An interval of the solid's parameter that forms a part.
@@ -30,31 +30,31 @@ struct Member {
 /// petal_depth cos(petals angle)), the surface is raised by up to `height`.
 struct Relief {
     Eigen::Vector3d centre, axis;
-    double radius, height, petal_depth;
-    int petals, part;
+    double radius, height, petal_depth;  ///< base radius of the petal curve, height of the relief, and depth of the petals
+    int petals, part;                    ///< number of petals, and index of the flower's part
 };
 
 /// Changes the part `from` to the part `to` where the function `side` is negative.
 struct Cut {
-    int from, to;
-    std::function<double(const Eigen::Vector3d&)> side;
+    int from, to;                                        ///< indices of the parts
+    std::function<double(const Eigen::Vector3d&)> side;  ///< negative where the part changes
 };
 
 /// An object composed of implicit solids, with its ground truth.
 class SyntheticObject {
 public:
-    std::string name, object_class, description;
-    std::string unit = "mm";
+    std::string name, object_class, description;  ///< name of the object, name of its class, and a sentence about it
+    std::string unit = "mm";                      ///< unit of lengths
     std::vector<std::string> parts;  ///< names of the parts; the index is the label; each part is one connected patch
     std::vector<std::array<std::uint8_t, 3>> part_colours;  ///< red, green, blue of each part
-    int genus = 0;
-    std::size_t minimum_vertices = 300;  ///< min number of vertices that represents the shape
+    int genus = 0;                                          ///< number of handles (holes) of the surface
+    std::size_t minimum_vertices = 300;                     ///< min number of vertices that represents the shape
     /// Thinnest wall or gap, mm: a coarser lattice would tear or bridge it.
     double thinnest = std::numeric_limits<double>::infinity();
     std::optional<double> exact_area, exact_volume;  ///< area and volume, if a formula is known
     std::vector<Member> members;                     ///< solids in the order in which they are blended
-    std::vector<Relief> reliefs;
-    std::vector<Cut> cuts;
+    std::vector<Relief> reliefs;                     ///< flowers in low relief
+    std::vector<Cut> cuts;                           ///< cuts that divide parts
 
     /// Implicit function of the object, negative inside, and its gradient. Away from the surface the value is a lower bound of
     /// the distance up to `slack`; close to the surface the function is continuously differentiable.
@@ -81,6 +81,7 @@ public:
     void finish();
 
 private:
+    /// Function of one member, and its gradient.
     [[nodiscard]] Sample member_sample(std::size_t member, const Eigen::Vector3d& p) const;
     std::vector<Eigen::AlignedBox3d> boxes_;  ///< bounding box of each member
     Eigen::AlignedBox3d box_;
