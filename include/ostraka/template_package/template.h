@@ -25,7 +25,7 @@ const std::vector<std::string>& template_roles();
 /// Content of a template's JSON file (*.template.json): one mesh, any number of cages and coordinates, and at most one part of
 /// each other role.
 struct TemplateFile {
-    std::string object_class, unit;
+    std::string object_class, unit;           ///< class of the objects, and unit of the mesh
     std::optional<std::array<double, 3>> up;  ///< upward direction; empty: not stated
     std::vector<PackagedFile> contents;       ///< parts of the template
 
@@ -45,7 +45,7 @@ struct TemplateOptions {
 TemplateFile read_template(const Path& file, const TemplateOptions& options = {});
 TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
                                 const TemplateOptions& options = {});
-Json template_to_json(const TemplateFile& file, const Provenance& provenance);
+Json template_to_json(const TemplateFile& file, const Provenance& provenance);  ///< content of the JSON file of a template
 
 /// Description of one part of a template, for reports.
 struct TemplateEntry {
@@ -57,15 +57,15 @@ struct TemplateEntry {
 /// A template with all parts that could be read. The unit, upward direction and class of the template replace those of the
 /// annotations.
 struct Template {
-    TemplateFile file;
-    std::optional<MeshFile> mesh;  ///< empty: the mesh could not be read
-    std::optional<AnnotationSet> annotations;
-    std::optional<RelationGraph> graph;
-    std::vector<std::optional<Mesh>> cages;  ///< one entry per part of role "cage"; empty: the cage could not be read
-    std::optional<Vocabulary> vocabulary;
-    std::optional<ClassRules> rules;
-    std::vector<Finding> findings;       ///< defects and remarks; `where` is the file name of the part
-    std::vector<TemplateEntry> entries;  ///< description of each part
+    TemplateFile file;                         ///< content of the template's JSON file
+    std::optional<MeshFile> mesh;              ///< empty: the mesh could not be read
+    std::optional<AnnotationSet> annotations;  ///< empty: none, or not readable
+    std::optional<RelationGraph> graph;        ///< empty: none, or not readable
+    std::vector<std::optional<Mesh>> cages;    ///< one entry per part of role "cage"; empty: the cage could not be read
+    std::optional<Vocabulary> vocabulary;      ///< empty: none, or not readable
+    std::optional<ClassRules> rules;           ///< rules of the class; empty: none, or not readable
+    std::vector<Finding> findings;             ///< defects and remarks; `where` is the file name of the part
+    std::vector<TemplateEntry> entries;        ///< description of each part
 
     [[nodiscard]] bool sound() const;  ///< true: there is no defect
 };
