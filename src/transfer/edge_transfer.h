@@ -16,7 +16,7 @@ void add_note(std::string& note, const std::string& text);
 struct MovedAnnotation {
     const Annotation* from;  ///< annotation of the source
     Annotation to;           ///< annotation of the target
-    TransferScore score;
+    TransferScore score;     ///< accuracy of the transfer
     bool by_curves = false;  ///< true: the annotation is projected by its curves
 };
 
@@ -43,13 +43,13 @@ public:
     [[nodiscard]] RegionTransfer& regions() { return regions_; }
 
 private:
-    void begin(std::size_t i);
-    void trace(std::size_t i);
-    void insert();
+    void begin(std::size_t i);  ///< starts the transfer of annotation i
+    void trace(std::size_t i);  ///< traces the paths of annotation i
+    void insert();              ///< inserts the traced curves into the target
     [[nodiscard]] TracedPath walked(const SourcePath& vertex_path, const std::vector<PathTracer::Step>& steps,
                                     PathSearch& paths) const;
-    void finish_line(std::size_t i);
-    void finish_region(std::size_t i, const std::vector<bool>& selected);
+    void finish_line(std::size_t i);                                       ///< completes a transferred line
+    void finish_region(std::size_t i, const std::vector<bool>& selected);  ///< completes a transferred region
     template <class Body>
     void for_each_annotation(const Body& body) const;
 

@@ -20,9 +20,9 @@ public:
 
     /// A region as a union of parts.
     struct Choice {
-        std::vector<bool> parts;  ///< for each part, whether it belongs to the region
-        bool crossing = false;    ///< true: a part reached from the left of the outline's edges also lies on their right
-        double area = 0, perimeter = 0;
+        std::vector<bool> parts;         ///< for each part, whether it belongs to the region
+        bool crossing = false;           ///< true: a part reached from the left of the outline's edges also lies on their right
+        double area = 0, perimeter = 0;  ///< sums over the parts of the region
     };
     /// The region to the left of directed edges, all of which must be walls: the parts reached from the left without crossing any
     /// of the edges. Edges traversed in both directions are not boundaries.
@@ -32,8 +32,8 @@ public:
     [[nodiscard]] std::vector<bool> faces(const Choice& choice) const;
 
 private:
-    void number(const std::vector<Edge>& walls);
-    void measure();
+    void number(const std::vector<Edge>& walls);    ///< assigns each face to a part
+    void measure();                                 ///< computes areas and border lengths of the parts
     [[nodiscard]] Index part_at(Halfedge h) const;  ///< part of the face to the left of the halfedge
 
     /// Adjacency of a part with another part.

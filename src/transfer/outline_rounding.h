@@ -13,7 +13,7 @@ namespace ostraka {
 struct SharedFace {
     Index face;
     std::size_t region;  ///< index of the annotation
-    double share;
+    double share;        ///< share of the face's area inside the region
 };
 
 /// Assigns faces that the exact outlines of regions cross to either side.

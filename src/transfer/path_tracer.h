@@ -56,8 +56,10 @@ private:
     /// Path between two target vertices, at most `limit` long, searched from the lower to the higher index so that both
     /// directions agree.
     const std::vector<Index>& path(Index a, Index b, double limit);
+    /// Max length of the path between two corresponding vertices.
     [[nodiscard]] double limit(const Correspondence& a, const Correspondence& b, double source_length) const;
-    [[nodiscard]] double longest_edge(Index face) const;
+    [[nodiscard]] double longest_edge(Index face) const;  ///< length of the face's longest edge
+    /// Connects two target vertices by an edge path.
     std::vector<Index> connect(Index a, Index b, double longest, TransferScore& score, const std::vector<bool>* used);
 
     const Mesh& source_;

@@ -42,7 +42,8 @@ public:
 private:
     /// Moves a place (barycentric weights) in a nearly degenerate face to the longest edge of the face.
     [[nodiscard]] std::array<double, 3> on_longest_edge(Index face, std::array<double, 3> weights) const;
-    [[nodiscard]] bool is_mutual(const MappedPlace& mapped) const;
+    [[nodiscard]] bool is_mutual(const MappedPlace& mapped) const;  ///< whether the mapping is invertible at the place
+    /// Place of the target whose interpolated normal passes through p.
     [[nodiscard]] std::optional<SurfaceHit> along_target_normal(const Point& p, const Vector& normal) const;
     [[nodiscard]] std::optional<SurfaceHit> hit_in(Index face, const std::array<double, 3>& weights, const Point& p,
                                                    const Vector& normal) const;
@@ -50,7 +51,7 @@ private:
     const Mesh& source_;
     const SurfaceSearch& search_;
     const Mesh& target_;
-    double edge_, far_, min_cosine_;
+    double edge_, far_, min_cosine_;  ///< edge length of the target; search radius; cosine of the max angle between normals
     std::optional<SurfaceSearch> on_source_;  ///< search tree of the source, if the target is the coarser mesh
 };
 

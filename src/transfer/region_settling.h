@@ -19,8 +19,11 @@ public:
     void settle(const Annotation& from, std::size_t outlines, ProjectedAnnotation& projected) const;
 
 private:
+    /// Components of the target that lie completely in the region.
     [[nodiscard]] std::vector<Index> whole_components(const Annotation& from) const;
+    /// Computes the interior of a region whose outlines intersect.
     void untangle(const Annotation& from, double expected, std::size_t outlines, ProjectedAnnotation& projected) const;
+    /// Whether the area of the projected region agrees with the expected area.
     [[nodiscard]] bool is_plausible(double area, double expected) const;
 
     const Mesh& source_;

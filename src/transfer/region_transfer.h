@@ -49,11 +49,11 @@ public:
 private:
     /// The outlines of a region on the target.
     struct Traced {
-        std::vector<Halfedge> edges;
-        double length = 0;
+        std::vector<Halfedge> edges;           ///< halfedges of the outline, with the region to the left
+        double length = 0;                     ///< total length of the outline
         std::size_t pieces = 0, vanished = 0;  ///< number of connected pieces of the outline, and number of those that vanished
     };
-    [[nodiscard]] Traced edges_of(const std::vector<TracedPath>& paths) const;
+    [[nodiscard]] Traced edges_of(const std::vector<TracedPath>& paths) const;  ///< outline edges of the traced paths
 
     const Mesh& source_;
     const AnnotationSet& set_;

@@ -27,8 +27,8 @@ public:
     [[nodiscard]] const CurveFilling& filling() const { return filling_; }
 
 private:
-    CurveFilling filling_;
-    CutFaces cut_;
+    CurveFilling filling_;  ///< faces inside, outside and cut by the outline
+    CutFaces cut_;          ///< parts of the faces that the outline cuts
 };
 
 /// The elements of a region on its mesh.
@@ -42,7 +42,7 @@ RegionArea region_area(const Mesh& mesh, const Annotation& annotation);
 
 /// A region on source and target, whose overlap is to be measured.
 struct OverlapQuestion {
-    RegionArea source, target;
+    RegionArea source, target;                         ///< the region on both meshes
     std::function<bool(const SurfaceHit&)> in_target;  ///< true for places on the target that lie in the target region
     TransferScore* score;                              ///< gets overlap and wrong_side; the areas are already set
 };
@@ -63,6 +63,7 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
 
 /// The outline of a region, the segments of a line, or points as segments of length zero.
 Segments segments_of(const Mesh& mesh, const Annotation& annotation);
+/// Total length of the segments.
 double length_of(const Segments& segments);
 
 }  // namespace ostraka

@@ -27,14 +27,14 @@ public:
 
     /// Current state of the mesh and its data. Measures and known descriptors of the annotations are recomputed after each step.
     Mesh mesh;
-    MeshExtras extras;
-    std::optional<AnnotationSet> annotations;
-    std::vector<std::string> notes;
+    MeshExtras extras;                         ///< colours, labels and texture coordinates
+    std::optional<AnnotationSet> annotations;  ///< annotations of the mesh; empty: none
+    std::vector<std::string> notes;            ///< remarks on data that could not be preserved
 
     /// Size of the mesh.
     struct Totals {
         std::size_t vertices = 0, faces = 0;
-        double area = 0;
+        double area = 0;  ///< surface area
     };
     /// Size of the mesh at construction, and now.
     Totals before, after;
@@ -46,10 +46,10 @@ public:
     };
     /// Change of an annotation since construction.
     struct Change {
-        int id = 0;  ///< id of the annotation
-        std::string tag;
+        int id = 0;                                    ///< id of the annotation
+        std::string tag;                               ///< tag of the annotation
         AnnotationType type = AnnotationType::region;  ///< type at construction
-        Size before, after;
+        Size before, after;                            ///< size at construction, and now
         bool degenerate = false;  ///< true: the annotation has another type now, for example because a region lost all its faces
         std::string note;         ///< "lost", or a description of the change; empty: no remark
     };

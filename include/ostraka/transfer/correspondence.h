@@ -31,7 +31,7 @@ enum class CorrespondenceKind {
 
 /// The point on the target that corresponds to a vertex of the source.
 struct Correspondence {
-    CorrespondenceKind kind = CorrespondenceKind::none;
+    CorrespondenceKind kind = CorrespondenceKind::none;  ///< how the point was found
     SurfaceHit place;         ///< point on the target; place.distance is the distance to the source vertex
     Index vertex = no_index;  ///< corner of the hit face that corresponds to the vertex
     /// True: the first candidate was rejected because it lay on another layer than the candidates of neighbouring vertices.
@@ -55,6 +55,7 @@ struct Agreement {
     double rotation = 0;  ///< angle between the principal axes, degrees; 0 if the axes are not distinct
     std::string problem;  ///< the difference, its amount and the remedy, as text; empty if the meshes agree
 };
+/// Compares size, position and orientation of two meshes.
 Agreement compare_alignment(const Mesh& source, const Mesh& target);
 
 }  // namespace ostraka

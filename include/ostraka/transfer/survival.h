@@ -9,7 +9,7 @@
 namespace ostraka {
 
 struct SurvivalOptions {
-    TransferOptions transfer;
+    TransferOptions transfer;          ///< options for the transfer to each resolution
     double ratio = 0.7;                ///< number of vertices of each resolution relative to the previous one
     double area_error = 0.25;          ///< max relative change of the area of a region that survives
     std::uint64_t minimum = 20;        ///< min number of vertices tried
@@ -18,8 +18,8 @@ struct SurvivalOptions {
 
 /// How far the resolution can be reduced before an annotation is lost.
 struct Survival {
-    int id = 0;
-    std::string tag;
+    int id = 0;                ///< id of the annotation
+    std::string tag;           ///< tag of the annotation
     std::size_t vertices = 0;  ///< number of vertices of the smallest tested resolution down to which the annotation was kept
     /// What happened to the annotation at the next resolution; empty if it survived all; a remark if no resolution could be
     /// tested.

@@ -14,7 +14,7 @@
 namespace ostraka {
 
 struct TransferOptions {
-    CorrespondenceOptions correspondence;
+    CorrespondenceOptions correspondence;       ///< options for finding corresponding points
     PathMetric metric = PathMetric::euclidean;  ///< quantity that paths between corresponding vertices minimise
     /// How spikes of an outline are treated: removed, avoided while tracing, or kept.
     enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
@@ -38,13 +38,14 @@ std::string to_string(TransferOutcome outcome);
 
 /// Accuracy of the transfer of one annotation.
 struct TransferScore {
-    int id = 0;  ///< id of the annotation
-    std::string tag;
+    int id = 0;       ///< id of the annotation
+    std::string tag;  ///< tag of the annotation
+    /// Types before and after the transfer.
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    TransferOutcome outcome = TransferOutcome::kept;
-    std::string note;                             ///< further remarks
-    double source_area = 0, target_area = 0;      ///< areas of regions
-    double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
+    TransferOutcome outcome = TransferOutcome::kept;  ///< whether the annotation was kept
+    std::string note;                                 ///< further remarks
+    double source_area = 0, target_area = 0;          ///< areas of regions
+    double source_length = 0, target_length = 0;      ///< perimeter of regions, length of lines
     /// Two-sided Hausdorff distance between the outlines (lines, points); empty if one of them is empty.
     std::optional<double> hausdorff;
     std::optional<double> overlap;  ///< intersection over union of the areas; empty: not measured
@@ -63,7 +64,7 @@ struct TransferScore {
 struct Distortions {
     double area, perimeter, perimeter_by_area, area_by_perimeter, circularity, mean;
 };
-Distortions distortions(const TransferScore& score);
+Distortions distortions(const TransferScore& score);  ///< distortions of the region that the score describes
 
 /// Computing times of a transfer.
 struct TransferTimes {
@@ -75,7 +76,7 @@ struct TransferResult {
     AnnotationSet annotations;              ///< annotations on the target, or on `refined->mesh`
     std::vector<TransferScore> scores;      ///< one score per annotation of the source, in the order of the source
     std::optional<InsertedCurves> refined;  ///< the refined target, with options.refine; otherwise empty
-    TransferTimes times;
+    TransferTimes times;                    ///< computing times
 };
 
 /// Transfers all annotations. Points are transferred to the corresponding vertices; poly-lines and outlines become edge paths
