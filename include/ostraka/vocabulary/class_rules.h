@@ -14,13 +14,13 @@ struct Subject {
 
 /// Requires a number of annotations.
 struct CountRule {
-    Subject subject;
+    Subject subject;              ///< the annotations that are counted
     std::optional<int> min, max;  ///< min and max number of annotations; empty: no bound
 };
 
 /// Requires an attribute of every annotation.
 struct AttributeRule {
-    Subject subject;
+    Subject subject;                  ///< the annotations that must have the attribute
     std::string name;                 ///< name of the attribute
     std::vector<std::string> values;  ///< allowed values of a qualitative attribute; empty: any value
     std::optional<double> min, max;   ///< range of a quantitative attribute, in `unit`
@@ -29,7 +29,7 @@ struct AttributeRule {
 
 /// Requires a relationship of every annotation.
 struct RelationRule {
-    Subject subject;
+    Subject subject;                                             ///< the annotations that must have the relationship
     std::vector<std::string> types;                              ///< types of relationship, any of which satisfies the rule
     Subject to;                                                  ///< the annotations with which the relationship is required
     enum class Place { any, first, second } place = Place::any;  ///< position of the subject in a directed relationship
@@ -37,7 +37,7 @@ struct RelationRule {
 
 /// A rule of one of the three kinds; the other two kinds are empty.
 struct ClassRule {
-    std::string id, note;
+    std::string id, note;  ///< id of the rule, and a remark
     std::optional<CountRule> count;
     std::optional<AttributeRule> attribute;
     std::optional<RelationRule> relation;
@@ -45,20 +45,21 @@ struct ClassRule {
 
 /// Rules of a class of objects.
 struct ClassRules {
-    std::string object_class;  ///< name of the class
-    std::vector<ClassRule> rules;
+    std::string object_class;      ///< name of the class
+    std::vector<ClassRule> rules;  ///< the rules
     /// True if any rule concerns relationships.
     [[nodiscard]] bool uses_relations() const;
 };
 
 /// Reads a rules file (*.rules.json). Throws Error (input) that names the file, the JSON pointer and the remedy.
 ClassRules read_class_rules(const Path& file);
+/// Reads rules from JSON, with the checks of read_class_rules.
 ClassRules class_rules_from_json(const JsonValue& document, const std::string& where);
 
 /// A relationship between annotations, to which rules are applied. Types are compared ignoring case; "containment" is [container,
 /// contained] and treated as transitive.
 struct RelationFact {
-    std::string type;
+    std::string type;              ///< type of the relationship
     bool directed = false;         ///< true: the first annotation is the subject
     std::vector<int> annotations;  ///< ids of the annotations
 };

@@ -7,10 +7,10 @@ namespace ostraka {
 
 /// An attribute that a rule added to an annotation.
 struct Inference {
-    int annotation = 0;  ///< id of the annotation
-    std::string attribute, value;
-    std::string rule;  ///< id of the first rule that derived the attribute
-    std::string why;   ///< the rule and its inputs, as text
+    int annotation = 0;            ///< id of the annotation
+    std::string attribute, value;  ///< name and value of the attribute
+    std::string rule;              ///< id of the first rule that derived the attribute
+    std::string why;               ///< the rule and its inputs, as text
 };
 
 /// Result of applying inference rules.

@@ -13,11 +13,13 @@ bool is_skos(const Path& file);
 /// are dropped. Accesses neither the network nor other files. Throws Error (input) with file, line and reason, also for
 /// everything that read_vocabulary rejects.
 Vocabulary read_skos(const Path& file, const std::string& scheme = {});
+/// Reads a vocabulary from SKOS text, with the checks of read_skos.
 Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme = {});
 
 /// Writes a vocabulary completely, so that reading the file returns the same vocabulary. The same vocabulary gives the same
 /// bytes.
 void write_skos(const Path& file, const Vocabulary& vocabulary);
+/// SKOS text of a vocabulary, in RDF/XML or Turtle.
 std::string vocabulary_to_skos(const Vocabulary& vocabulary, bool rdf_xml, const std::string& where);
 
 }  // namespace ostraka

@@ -21,14 +21,14 @@ using Labels = std::map<std::string, std::string>;
 /// An allowed value of a qualitative attribute.
 struct Term {
     std::string name;  ///< value as stored in annotation files; labels are accepted as well
-    Labels labels;
+    Labels labels;     ///< names in several languages
 };
 
 /// An attribute that annotations of a concept may have.
 struct AllowedAttribute {
-    std::string name;
-    Labels labels;
-    Labels definition;
+    std::string name;                ///< name of the attribute
+    Labels labels;                   ///< names in several languages
+    Labels definition;               ///< definition in several languages
     std::vector<Term> values;        ///< allowed values of a qualitative attribute; empty: any text
     std::optional<double> min, max;  ///< range of a quantitative attribute, in `unit`
     std::string unit;                ///< unit of the range
@@ -48,15 +48,15 @@ struct ForeignStatement {
 
 /// A concept that a tag may name.
 struct Concept {
-    std::string id;
-    std::string uri;  ///< empty: the vocabulary's URI followed by the id
-    Labels labels;
+    std::string id;                                                ///< id of the concept within the vocabulary
+    std::string uri;                                               ///< empty: the vocabulary's URI followed by the id
+    Labels labels;                                                 ///< names in several languages
     std::map<std::string, std::vector<std::string>> alternatives;  ///< from a language to the alternative labels
     std::vector<std::string> broader;                              ///< ids of the broader concepts
     std::vector<std::string> part_of;                              ///< ids of the concepts of which this concept is a part
-    Labels definition;
-    std::vector<AllowedAttribute> attributes;  ///< attributes that annotations of the concept may have
-    std::vector<ForeignStatement> others;      ///< statements that are not interpreted
+    Labels definition;                                             ///< definition in several languages
+    std::vector<AllowedAttribute> attributes;                      ///< attributes that annotations of the concept may have
+    std::vector<ForeignStatement> others;                          ///< statements that are not interpreted
 };
 
 /// An operand of a condition: an attribute of the annotation itself, or of the only annotation of another concept.
@@ -78,30 +78,31 @@ struct Condition {
 
 /// A rule that infers a qualitative attribute of annotations of a concept if all conditions hold (thesis, section 2.2.3).
 struct InferenceRule {
-    std::string id;
-    std::string note;
-    std::string concept_id;  ///< concept of the annotations, including narrower concepts; empty: any annotation
-    std::vector<Condition> conditions;
-    std::string attribute, value;  ///< name and value of the inferred attribute
+    std::string id;                     ///< id of the rule
+    std::string note;                   ///< remark on the rule
+    std::string concept_id;             ///< concept of the annotations, including narrower concepts; empty: any annotation
+    std::vector<Condition> conditions;  ///< conditions, all of which must hold
+    std::string attribute, value;       ///< name and value of the inferred attribute
 };
 
 /// A controlled vocabulary.
 struct Vocabulary {
-    std::string uri;
-    Labels title;
+    std::string uri;                           ///< URI of the vocabulary; empty: none
+    Labels title;                              ///< title in several languages
     std::vector<AllowedAttribute> attributes;  ///< attributes that every concept may have
-    std::vector<Concept> concepts;
-    std::vector<InferenceRule> rules;
-    std::vector<ForeignStatement> others;  ///< statements that are not interpreted
-    std::vector<std::string> notes;        ///< remarks from reading a file; not written
+    std::vector<Concept> concepts;             ///< the concepts
+    std::vector<InferenceRule> rules;          ///< rules that infer attributes
+    std::vector<ForeignStatement> others;      ///< statements that are not interpreted
+    std::vector<std::string> notes;            ///< remarks from reading a file; not written
 };
 
 /// Reads a vocabulary file (*.vocabulary.json; doc/vocabularies.md). Throws Error (input) that names the file, the JSON pointer
 /// and the remedy, for a file that does not match its schema, duplicate concept ids, a missing broader concept, a cycle of
 /// broader concepts, a duplicate attribute, a range with min above max, a rule that refers to something not in the vocabulary.
 Vocabulary read_vocabulary(const Path& file);
+/// Reads a vocabulary from JSON, with the checks of read_vocabulary.
 Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& where);
-Json vocabulary_to_json(const Vocabulary& vocabulary);
+Json vocabulary_to_json(const Vocabulary& vocabulary);  ///< the vocabulary as a JSON document
 /// Writes a vocabulary after the checks that `read_vocabulary` performs. Reading and writing again gives the same bytes.
 void write_vocabulary(const Path& file, const Vocabulary& vocabulary);
 /// Performs the checks of `read_vocabulary` on a vocabulary in memory; `where` names the vocabulary in errors. Linear in the size
