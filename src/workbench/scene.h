@@ -27,13 +27,13 @@ std::vector<Path> files_for(const Session& session, bool deformed);
 class Scene {
 public:
     explicit Scene(const std::vector<std::string>& known_keys) : known_keys_(known_keys.begin(), known_keys.end()) {}
-    void add(const ShownShape& shape);
+    void add(const ShownShape& shape);  ///< adds an object to the content
     /// Adds the tables of the report of an operation; `file`: the report file.
     void add_report(const Path& file, const std::string& operation);
     [[nodiscard]] Page::Content content(const std::string& made_how) const { return page_.content(made_how); }
 
 private:
-    std::set<std::string> known_keys_;
+    std::set<std::string> known_keys_;  ///< keys of the shapes that the page already has
     Page page_{"Ostraka"};
 };
 

@@ -11,7 +11,7 @@ namespace ostraka {
 
 /// An object of the session: a mesh with its associated files. File names are relative to the session's folder, with '/'.
 struct SessionObject {
-    std::string name;
+    std::string name;  ///< name of the object
     /// From the name of a part to its file: "mesh", "annotations", "graph", "cage", "coordinates", "recipe"; during a deformation
     /// also "edit", "deformed", "deformed cage" and "... annotations".
     std::map<std::string, std::string> parts;
@@ -21,19 +21,19 @@ struct SessionObject {
 
 /// A file written by a step that is not part of an object: a table, a drawing, a map.
 struct SessionFile {
-    std::string name, kind, file;
-    std::string object;  ///< name of the object that the file describes; empty: none
+    std::string name, kind, file;  ///< display name, kind of content, and file name
+    std::string object;            ///< name of the object that the file describes; empty: none
 };
 
 /// The state of a session after a step. Files are never modified: each step writes new files.
 struct SessionState {
-    std::vector<SessionObject> objects;
-    std::size_t active = 0;  ///< index of the active object
-    std::vector<SessionFile> files;
+    std::vector<SessionObject> objects;  ///< objects that are open
+    std::size_t active = 0;              ///< index of the active object
+    std::vector<SessionFile> files;      ///< other files written by the steps
     /// The active object; null: there is none.
     [[nodiscard]] const SessionObject* object() const { return active < objects.size() ? &objects[active] : nullptr; }
 };
-JsonValue to_json(const SessionState& state, JsonAllocator& allocator);
+JsonValue to_json(const SessionState& state, JsonAllocator& allocator);  ///< JSON of a state, as the page receives it
 
 /// A step of a session.
 struct SessionStep {
@@ -100,17 +100,23 @@ public:
 
 private:
     struct Settings;
-    [[nodiscard]] std::string relative(const Path& file) const;
+    [[nodiscard]] std::string relative(const Path& file) const;  ///< path relative to the session's folder
+    /// How a study refers to a file: as the output of the step that wrote it, or by its name.
     [[nodiscard]] std::string reference(const std::string& file) const;
+    /// File for an input of a request.
     [[nodiscard]] Path resolved(const JsonValue& value, const Slot& input, const std::string& step, Settings& settings) const;
+    /// Provides a mesh and its annotations under matching names, so that both are read together.
     [[nodiscard]] Path with_beside(const SessionObject& object, const std::string& step, Settings& settings) const;
+    /// Chooses the file names of the requested outputs.
     void name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const;
+    /// Adds the outputs of a call to the state after the step.
     void take_outputs(const Call& call, const JsonValue& request, const Settings& settings, SessionStep& step) const;
+    /// Adds the meshes in an output folder as objects, with their annotations.
     void take_folder(const std::string& folder, SessionState& state) const;
-    [[nodiscard]] std::string next_name() const;
-    void add(SessionStep step);
-    void write() const;
-    void read();
+    [[nodiscard]] std::string next_name() const;  ///< name of the next step
+    void add(SessionStep step);                   ///< appends a step after the steps in effect, and writes the session
+    void write() const;                           ///< writes the session file and the study file
+    void read();                                  ///< reads the session file
     /// Throws Error (input) unless the numbers of the steps ascend.
     void check_numbers() const;
     /// Throws Error (input) if a file named by the step lies outside the session and the root.
@@ -121,7 +127,7 @@ private:
     void check_folders() const;
     /// Removes files of steps that were never recorded, since their process was killed.
     void sweep() const;
-    void lock();
+    void lock();  ///< locks the folder; throws Error (input) if another process uses it
 
     Path folder_, root_;
     std::vector<SessionStep> steps_;

@@ -45,26 +45,30 @@ private:
     /// From the word in "do" to the function that answers the request.
     static const std::map<std::string, Answer>& answers();
 
-    [[nodiscard]] std::unique_ptr<Context> fresh_context();
+    [[nodiscard]] std::unique_ptr<Context> fresh_context();  ///< context with the memory limit
 
-    void hello(const JsonValue& request, Json& result, std::string& bytes);
-    void scene(const JsonValue& request, Json& result, std::string& bytes);
-    void select(const JsonValue& request, Json& result, std::string& bytes);
-    void run(const JsonValue& request, Json& result, std::string& bytes);
-    void handles(const JsonValue& request, Json& result, std::string& bytes);
+    void hello(const JsonValue& request, Json& result, std::string& bytes);    ///< version, operations, and state of the session
+    void scene(const JsonValue& request, Json& result, std::string& bytes);    ///< shapes and tables to show
+    void select(const JsonValue& request, Json& result, std::string& bytes);   ///< elements that a selection expression selects
+    void run(const JsonValue& request, Json& result, std::string& bytes);      ///< runs an operation
+    void handles(const JsonValue& request, Json& result, std::string& bytes);  ///< cage vertices that influence an annotation
+    /// For each cage vertex, the annotations that it influences.
     void parts(const JsonValue& request, Json& result, std::string& bytes);
-    void reach(const JsonValue& request, Json& result, std::string& bytes);
+    void reach(const JsonValue& request, Json& result, std::string& bytes);  ///< constraints that the cage cannot satisfy
+    /// Influence of cage vertices on each mesh vertex.
     void influence(const JsonValue& request, Json& result, std::string& bytes);
-    void grab(const JsonValue& request, Json& result, std::string& bytes);
+    void grab(const JsonValue& request, Json& result, std::string& bytes);  ///< starts a drag of cage vertices
+    /// Surface for the current positions of the dragged vertices.
     void drag(const JsonValue& request, Json& result, std::string& bytes);
-    void file(const JsonValue& request, Json& result, std::string& bytes);
+    void file(const JsonValue& request, Json& result, std::string& bytes);  ///< content of a file of the session
 
-    [[nodiscard]] JsonValue words(JsonAllocator& allocator) const;
-    void add_session(Json& result) const;
+    [[nodiscard]] JsonValue words(JsonAllocator& allocator) const;  ///< labels of the concepts of all vocabularies, by language
+    void add_session(Json& result) const;                           ///< adds the state of the session to a result
+    /// Mesh, annotations, graph and cage of an object.
     std::shared_ptr<const Shape> shape_of(const SessionObject& object, bool deformed);
-    [[nodiscard]] Path located(const std::string& file) const;
-    std::shared_ptr<const MeshFile> mesh_of(const std::string& file);
-    Deformation& deformation();
+    [[nodiscard]] Path located(const std::string& file) const;         ///< path of a file of the session
+    std::shared_ptr<const MeshFile> mesh_of(const std::string& file);  ///< mesh read from a file, from the cache if unchanged
+    Deformation& deformation();                                        ///< data for deforming the active object
 
     Session session_;
     double memory_limit_;
