@@ -18,8 +18,8 @@ public:
     [[nodiscard]] bool waited() const { return waited_; }  ///< whether another process held the lock
 
 private:
-    int descriptor_;  ///< file descriptor that holds the lock
-    bool waited_ = false;
+    int descriptor_;       ///< file descriptor that holds the lock
+    bool waited_ = false;  ///< true: another process held the lock
 };
 
 /// Removes the content of a folder but keeps the folder itself, which is locked.

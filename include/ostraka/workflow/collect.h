@@ -12,8 +12,8 @@ void check_collected(const StudyPlan& plan);
 
 /// A table of a study; it keeps the values of its cells, for plots.
 struct StudyTable {
-    std::string name, title, note;
-    std::vector<std::string> columns;
+    std::string name, title, note;         ///< name of the files, title, and remark below the table
+    std::vector<std::string> columns;      ///< titles of the columns
     std::vector<std::vector<Json>> cells;  ///< cells of each row; null: empty cell
     std::vector<int> digits;               ///< for each column, number of significant digits
     std::vector<bool> percent;             ///< for each column, whether values are shown in per cent

@@ -18,7 +18,7 @@ struct RunRequest {
     bool quick = false;                  ///< true: a quick run
     std::vector<std::string> set, only;  ///< options "set" and "only" of the run
 };
-Json run_request_to_json(const RunRequest& request);
+Json run_request_to_json(const RunRequest& request);  ///< the request as JSON
 /// Reads the request of a run. Throws Error (input) if the folder is not a run folder.
 RunRequest read_run_request(const Path& folder);
 

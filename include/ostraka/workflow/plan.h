@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-inline constexpr std::size_t no_instance = std::numeric_limits<std::size_t>::max();
+inline constexpr std::size_t no_instance = std::numeric_limits<std::size_t>::max();  ///< index of no instance
 
 /// An input of an instance: a file, or an output of another instance.
 struct StudyInput {
@@ -27,8 +27,8 @@ struct StudyInstance {
     std::vector<std::size_t> values;
     std::string label;  ///< values of the parameters, such as "vertices=5000,seed=1"; empty if the step has one instance
     Path folder;        ///< relative to the run folder: steps/NAME or steps/NAME/LABEL
-    std::shared_ptr<const Json> options;  ///< options of the operation
-    std::vector<StudyInput> inputs;
+    std::shared_ptr<const Json> options;         ///< options of the operation
+    std::vector<StudyInput> inputs;              ///< inputs of the operation or program
     std::map<std::string, std::string> outputs;  ///< from the name of a requested output to its file name
     std::set<std::string> kept;                  ///< names of the outputs that are written to files
     std::vector<std::string> program;  ///< words of a command; words for inputs and for the folder are filled in at run time
@@ -60,11 +60,12 @@ public:
     /// Indices of the instances of a step, in the order of their parameter values.
     [[nodiscard]] std::vector<std::size_t> instances_of(std::size_t step) const;
 
-    Study study;
+    Study study;                           ///< the study that was expanded
     std::vector<StudyInstance> instances;  ///< sorted so that each instance follows the instances that it needs
 
 private:
-    void add_step(std::size_t step);
+    void add_step(std::size_t step);  ///< adds the instances of a step
+    /// An instance of a step; `values`: value index per parameter.
     StudyInstance make_instance(std::size_t step, const std::vector<std::size_t>& values);
     /// The text with references replaced by values.
     std::string filled(const StudyText& text, const StudyInstance& instance) const;
@@ -77,13 +78,16 @@ private:
     [[nodiscard]] Path input_file(const std::string& name, const std::string& place, Kind kind) const;
     void add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,
                     const std::string& place, const std::string& label);
+    /// Throws Error (input) if a program's word names a path outside the permitted folders.
     void check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const;
-    void check_counts(const StudyInstance& instance);
+    void check_counts(const StudyInstance& instance);  ///< throws Error (input) if the instances have too many inputs
+    /// Marks an output of an instance as requested; `keep`: it is written to a file.
     void request_output(std::size_t instance, const std::string& output, bool keep);
+    /// Instance of a step with the parameter values of `user`.
     [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& user) const;
-    void make_outputs(StudyInstance& instance);
-    void check(const StudyInstance& instance) const;
-    void check_outputs() const;
+    void make_outputs(StudyInstance& instance);       ///< chooses the file names of the requested outputs
+    void check(const StudyInstance& instance) const;  ///< checks the call of an instance
+    void check_outputs() const;                       ///< checks that requested outputs do not overwrite each other
 
     /// For each step, from the value indices to the index of the instance.
     std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;

@@ -59,7 +59,7 @@ public:
 
 private:
     struct Entry {
-        std::string sha256;
+        std::string sha256;              ///< checksum of the file
         std::optional<FileStamp> stamp;  ///< properties of the file when it was read; empty: not known
         bool differs = false;            ///< another reader found different content
     };
@@ -70,6 +70,7 @@ private:
 /// Reads FOLDER/record.json; empty if the file is missing, damaged or of another version. Throws Error (input) if an output named
 /// in the record would lie outside the folder.
 std::optional<StudyRecord> read_record(const Path& folder);
+/// Writes FOLDER/record.json of an instance.
 void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance& instance, const StudyRecord& record);
 
 /// Dependencies of the result of an instance, given the records of the instances that it needs. `program_folder`: folder of the

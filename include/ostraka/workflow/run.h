@@ -26,10 +26,10 @@ enum class InstanceState {
 std::string to_string(InstanceState state);
 
 struct InstanceResult {
-    InstanceState state = InstanceState::left_out;
-    std::string why;      ///< why the instance was or would be run
-    std::string problem;  ///< error message, if failed or skipped
-    StudyRecord record;   ///< record of the instance, if done or unchanged
+    InstanceState state = InstanceState::left_out;  ///< state after the run
+    std::string why;                                ///< why the instance was or would be run
+    std::string problem;                            ///< error message, if failed or skipped
+    StudyRecord record;                             ///< record of the instance, if done or unchanged
 };
 
 /// Throws Error (input) if a run folder, which may come from elsewhere, holds records or links that lead out of the folder.

@@ -20,30 +20,30 @@ struct StudyText {
     std::vector<std::variant<std::string, StudyReference>> parts;  ///< plain texts and references, in order
     /// The reference, if the text consists of exactly one reference; otherwise null.
     [[nodiscard]] const StudyReference* single() const;
-    [[nodiscard]] std::vector<StudyReference> references() const;
+    [[nodiscard]] std::vector<StudyReference> references() const;  ///< all references in the text
 };
 /// Parses a text with references. Throws Error (input) if "${" is not followed by a name and "}".
 StudyText study_text(const std::string& text, const std::string& where);
 
 /// One value of a parameter: its members by name, with "" for the value itself. Members are texts, numbers or booleans.
 struct ParameterValue {
-    std::map<std::string, std::shared_ptr<const Json>> members;
+    std::map<std::string, std::shared_ptr<const Json>> members;            ///< from the name of a member to its value
     std::string label;                                                     ///< text for the value in tables and folder names
     [[nodiscard]] const JsonValue* find(const std::string& member) const;  ///< value of a member; null: no such member
 };
 /// A parameter of a study with its values.
 struct StudyParameter {
-    std::string name;
-    std::vector<ParameterValue> values;
-    bool by_caller = false;  ///< true: the values come from the caller, not from the study file
-    bool varies = false;     ///< true: given as a list, a range or files, so that steps run once per value
+    std::string name;                    ///< name of the parameter
+    std::vector<ParameterValue> values;  ///< values for which steps run
+    bool by_caller = false;              ///< true: the values come from the caller, not from the study file
+    bool varies = false;                 ///< true: given as a list, a range or files, so that steps run once per value
 };
 
 /// An input or option of a step, as in the study file.
 struct StudySetting {
-    std::string name;  ///< name of the input or option
-    const JsonValue* value = nullptr;
-    std::string place;  ///< JSON pointer of the setting
+    std::string name;                  ///< name of the input or option
+    const JsonValue* value = nullptr;  ///< JSON value of the setting
+    std::string place;                 ///< JSON pointer of the setting
 };
 
 /// A step of a study.
@@ -62,18 +62,19 @@ struct StudyStep {
 
 /// A study, read from its file.
 struct Study {
-    Path file, folder;
+    Path file, folder;            ///< path of the study file, and folder to which names are relative
     bool allow_programs = false;  ///< true: steps may start external programs
     /// Folders and files from which inputs may be read: those of the study, and those that the caller permits.
     std::vector<Path> readable;
     std::string sha256;                    ///< SHA-256 of the study file
     std::shared_ptr<const Json> document;  ///< JSON document of the study file
-    std::string title;
+    std::string title;                     ///< title of the study
     std::vector<StudyParameter> parameters;
     std::vector<StudyStep> steps;  ///< sorted so that each step follows the steps that it needs
 
     /// The parameter with this name; null: there is none.
     [[nodiscard]] const StudyParameter* parameter(const std::string& name) const;
+    /// Index of the parameter with this name; the number of parameters if there is none.
     [[nodiscard]] std::size_t parameter_index(const std::string& name) const;
     /// Index of the step with this name; the number of steps if there is none.
     [[nodiscard]] std::size_t step(const std::string& name) const;
