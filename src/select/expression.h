@@ -142,7 +142,7 @@ private:
     const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use
     /// Interval of a threshold, in the values of the map.
     ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
-    /// Faces of a segment of similar thickness.
+    /// Faces of the chosen segments of similar thickness.
     std::vector<bool> segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     /// Whether a growth is given by a distance instead of a number of rings.
     bool by_distance(const JsonValue& value, const std::string& at) const;
