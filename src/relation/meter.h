@@ -29,8 +29,10 @@ public:
     void add_length(const std::string& quantity, double value) { add(quantity, value, options_.distance * diagonal_, unit_); }
     /// Adds the height by which a part lies on the wrong side of a contact; the tolerance is 0.
     void add_height_below_0(double value) { add("height", value, 0, unit_); }
+    /// Adds an angle between axes.
     void add_angle(double degrees) { add("angle", degrees, options_.angle, "degree"); }
-    void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }
+    void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }  ///< adds the tilt of a contact
+    /// Adds a relative difference.
     void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.ratio, "%"); }
     [[nodiscard]] bool holds() const { return holds_; }  ///< whether all quantities are within their tolerances
 

@@ -26,7 +26,7 @@ struct Cloud {
         Vector3d point, normal;
         double rms = 0, spread = 0;  ///< root mean square distance; middle standard deviation
     };
-    [[nodiscard]] Plane plane() const;
+    [[nodiscard]] Plane plane() const;  ///< least-squares plane
 };
 
 /// The straight axis of a part, or the reason why there is none.

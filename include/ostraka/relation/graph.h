@@ -65,6 +65,7 @@ struct RelationParameters {
     std::optional<PointAndDirection> plane, axis;  ///< mirror plane or common plane, and common axis; empty: not applicable
     std::optional<std::array<double, 3>> up;       ///< upward direction; empty if the relationship does not depend on one
     std::string attribute;                         ///< name of the attribute with equal values, for "equal attributes"
+    /// Whether nothing was measured.
     [[nodiscard]] bool empty() const { return deviations.empty() && !plane && !axis && !up && attribute.empty(); }
 };
 
