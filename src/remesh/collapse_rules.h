@@ -36,8 +36,8 @@ public:
     void after_collapse(const Mesh& mesh, Vertex kept);
 
 private:
-    enum Role : std::uint8_t { free, on_curve, fixed };  ///< relation of a vertex to the marked curves
-    [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;
+    enum Role : std::uint8_t { free, on_curve, fixed };         ///< relation of a vertex to the marked curves
+    [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;  ///< relation of a vertex to the marked curves
 
     Marks& marks_;
     bool protect_;            ///< true: vertices of marked curves keep their positions

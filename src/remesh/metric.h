@@ -13,7 +13,9 @@ namespace ostraka {
 struct Frame {
     Vector centre{0, 0, 0};  ///< centre of the bounding box
     double size = 1;         ///< diagonal of the bounding box
+    /// Coordinates of a point in the frame.
     [[nodiscard]] Vector local(const Point& p) const { return (p - CGAL::ORIGIN - centre) / size; }
+    /// Point of the mesh for coordinates in the frame.
     [[nodiscard]] Point world(const Vector& x) const { return CGAL::ORIGIN + centre + size * x; }
 };
 /// The frame of a mesh.
@@ -45,8 +47,10 @@ public:
     [[nodiscard]] virtual bool reaches_second_ring() const = 0;
 };
 
+/// Cost by quadric error metrics (Garland and Heckbert 1997).
 std::unique_ptr<CollapseMetric> make_quadric_metric(const Mesh& mesh, const Frame& frame, const Marks& marks,
                                                     const SimplifyOptions& options);
+/// Cost by Lindstrom and Turk (1998).
 std::unique_ptr<CollapseMetric> make_lindstrom_turk_metric(const Frame& frame);
 
 }  // namespace ostraka

@@ -34,6 +34,7 @@ struct Quadric {
         c += q.c;
         return *this;
     }
+    /// Value of the function at x.
     [[nodiscard]] double operator()(const Vector& x) const {
         const Vector Ax(xx * x.x() + xy * x.y() + xz * x.z(), xy * x.x() + yy * x.y() + yz * x.z(),
                         xz * x.x() + yz * x.y() + zz * x.z());

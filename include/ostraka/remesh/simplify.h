@@ -36,7 +36,9 @@ struct MarkedParts {
 class CollapseVisitor {
 public:
     virtual ~CollapseVisitor() = default;
+    /// Called before vertex `removed` is merged into vertex `kept`.
     virtual void merge_vertices(Mesh& /*mesh*/, Vertex /*kept*/, Vertex /*removed*/) {}
+    /// Called before edge `removed` is merged into edge `kept`.
     virtual void merge_edges(Mesh& /*mesh*/, Edge /*kept*/, Edge /*removed*/) {}
 };
 
