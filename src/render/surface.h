@@ -46,9 +46,11 @@ public:
     /// The normal at the corner `vertex` of a face whose normal is `normal`; requires a surface constructed with `smooth`.
     [[nodiscard]] Eigen::Vector3f corner_normal(Index vertex, const Eigen::Vector3f& normal, float crease_cosine) const;
 
+    /// Position in the surface's coordinates.
     [[nodiscard]] Eigen::Vector3d point(Index index) const { return points_[index].cast<double>(); }
+    /// Indices of the triangle's points.
     [[nodiscard]] const std::array<Index, 3>& corners(Index triangle) const { return triangles_[triangle]; }
-    [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
+    [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }  ///< number of triangles
     /// Indices of the points that are used by a triangle.
     [[nodiscard]] const std::vector<Index>& used_points() const { return used_; }
 

@@ -21,6 +21,7 @@ struct Picture {
     int width = 0, height = 0;        ///< pixels
     std::vector<std::uint32_t> argb;  ///< pixels, row by row
 
+    /// Pixel in this column and row.
     [[nodiscard]] std::uint32_t at(int column, int row) const {
         return argb[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
     }
