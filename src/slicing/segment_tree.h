@@ -39,6 +39,7 @@ private:
             return (low - p).cwiseMax(p - high).cwiseMax(0).squaredNorm();
         }
     };
+    /// Squared distance from p to segment i.
     [[nodiscard]] double squared(const Eigen::Vector2d& p, std::size_t i) const {
         const auto& [a, b] = segments_[i];
         const Eigen::Vector2d along = b - a;
@@ -46,6 +47,7 @@ private:
         const double t = length > 0 ? std::clamp(along.dot(p - a) / length, 0.0, 1.0) : 0;
         return (a + t * along - p).squaredNorm();
     }
+    /// Searches the subtree of a node for a segment nearer than `best`, a squared distance.
     void search(std::size_t node, const Eigen::Vector2d& p, double& best, std::size_t& nearest) const {
         if (node >= leaves_) {
             const std::size_t first = (node - leaves_) * leaf;

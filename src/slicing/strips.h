@@ -116,16 +116,19 @@ public:
     }
 
 private:
+    /// Whether two edges are consecutive edges of a contour.
     static bool are_neighbours(const Edge& e, const Edge& f) {
         if (e.contour != f.contour) return false;
         const auto [low, high] = std::minmax(e.place, f.place);
         return high == low + 1 || (low == 0 && (e.place == high ? e : f).last);
     }
+    /// Index of the strip at height y.
     [[nodiscard]] std::size_t strip(double y) const {
         if (!(high_ > low_)) return 0;
         const double position = (y - low_) / (high_ - low_) * double(strips_);
         return static_cast<std::size_t>(std::clamp(position, 0.0, double(strips_ - 1)));
     }
+    /// Lowest and highest strip that the edge intersects.
     [[nodiscard]] std::pair<std::size_t, std::size_t> range(const Edge& edge) const {
         return std::minmax(strip(edge.a.y()), strip(edge.b.y()));
     }

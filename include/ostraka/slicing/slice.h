@@ -24,8 +24,10 @@ struct SliceFrame {
     Point origin{0, 0, 0};
     Vector u{1, 0, 0}, v{0, 1, 0}, normal{0, 0, 1};
 
-    [[nodiscard]] double height(const Point& p) const { return normal * (p - origin); }
+    [[nodiscard]] double height(const Point& p) const { return normal * (p - origin); }  ///< height of a point
+    /// Coordinates (x, y) of a point along u and v.
     [[nodiscard]] Eigen::Vector2d place(const Point& p) const { return {u * (p - origin), v * (p - origin)}; }
+    /// The point with coordinates (x, y) at a height.
     [[nodiscard]] Point point(const Eigen::Vector2d& at, double height) const {
         return origin + (at.x() * u + at.y() * v + height * normal);
     }

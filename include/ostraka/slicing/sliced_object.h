@@ -27,6 +27,7 @@ struct SlicedObject {
     [[nodiscard]] std::vector<Point> centres() const;
     /// Whether any slice has contours.
     [[nodiscard]] bool met() const;
+    /// The slices as a stack, for parallel slices.
     [[nodiscard]] SliceStack stack() const { return {frames.empty() ? SliceFrame{} : frames[0], slices, reversed}; }
     [[nodiscard]] std::vector<double> sorted_heights() const;  ///< heights of the slices, ascending
 };
