@@ -10,7 +10,7 @@ namespace ostraka::solver {
 /// Accelerates the iteration x -> G(x).
 class Anderson {
 public:
-    explicit Anderson(int window) : window_(window) {}
+    explicit Anderson(int window) : window_(window) {}  ///< `window`: max number of previous steps used
     /// Computes the next iterate from the current iterate x and g = G(x).
     void next(const Points& x, const Points& g, Points& accelerated);
 

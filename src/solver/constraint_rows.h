@@ -15,7 +15,7 @@ struct RowMatrix {
     std::vector<std::size_t> begin{0};  ///< for each row, index of its first entry; followed by the number of entries
     std::vector<int> unknown;           ///< for each entry, the index of its unknown
     std::vector<double> value;          ///< for each entry, its coefficient
-    [[nodiscard]] std::size_t rows() const { return begin.size() - 1; }
+    [[nodiscard]] std::size_t rows() const { return begin.size() - 1; }  ///< number of rows
 };
 
 /// Unknowns of the sparse system, and the rows over them.
@@ -25,6 +25,7 @@ struct Unknowns {
     std::vector<std::size_t> first_row;  ///< for each constraint, its first row; followed by the number of rows
     int count = 0;                       ///< number of unknowns: points and means
     RowMatrix rows;                      ///< rows of all constraints over the unknowns
+    /// Number of rows of a constraint.
     [[nodiscard]] std::size_t rows_of(std::size_t constraint) const { return first_row[constraint + 1] - first_row[constraint]; }
 };
 /// Numbers the unknowns of the constraints; `points`: number of points.

@@ -66,8 +66,8 @@ public:
     [[nodiscard]] std::string_view kind() const { return kind_; }
     /// Indices of the constrained points in the shape.
     [[nodiscard]] const std::vector<int>& ids() const { return ids_; }
-    [[nodiscard]] double weight() const { return weight_; }
-    [[nodiscard]] const Map& map() const { return map_; }
+    [[nodiscard]] double weight() const { return weight_; }  ///< weight in the solver's objective
+    [[nodiscard]] const Map& map() const { return map_; }    ///< the matrix B
     /// Changes the weight. Throws Error (usage) unless the weight is finite and not negative. For a constraint in a solver use
     /// Solver::set_weight, which also updates the solver's matrices.
     void set_weight(double weight);

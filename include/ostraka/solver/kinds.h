@@ -23,6 +23,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Interval of admissible values. `max` may be infinite.
 struct Interval {
     double min, max;  ///< bounds of the interval
+    /// The value of the interval nearest to `value`.
     [[nodiscard]] double clamp(double value) const { return value < min ? min : (value > max ? max : value); }
 };
 
