@@ -15,7 +15,9 @@ struct FeatureTable {
     std::size_t columns = 0;    ///< number of features
     std::vector<float> values;  ///< features of all samples
 
+    /// Number of samples.
     [[nodiscard]] std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }
+    /// Features of sample r.
     [[nodiscard]] std::span<const float> row(std::size_t r) const { return {values.data() + r * columns, columns}; }
     /// Appends the features of a sample. Throws Error (usage) for a row of a different length.
     void add(std::span<const float> row);

@@ -19,12 +19,13 @@ public:
     std::uint64_t bits() { return engine_(); }
     /// Uniformly distributed number in [0, 1), a multiple of 2^-53.
     double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+    /// Uniformly distributed number in [low, high).
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
     /// Uniformly distributed integer from 0 to count - 1; count > 0.
     std::size_t below(std::size_t count);
     /// Normally distributed number with mean 0 and standard deviation 1 (Box and Muller 1958).
     double normal();
-    double normal(double mean, double deviation) { return mean + deviation * normal(); }
+    double normal(double mean, double deviation) { return mean + deviation * normal(); }  ///< normally distributed number
 
     template <class Value>
     void shuffle(std::vector<Value>& values) {

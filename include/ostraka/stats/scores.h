@@ -18,6 +18,7 @@ double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int
 struct ConfusionScores {
     std::size_t true_positive = 0, false_positive = 0, false_negative = 0, true_negative = 0;  ///< number of samples of each kind
 
+    /// Number of samples.
     [[nodiscard]] std::size_t count() const { return true_positive + false_positive + false_negative + true_negative; }
     /// Share of the samples classified as positive that are positive: TP / (TP + FP); 0 if nothing is classified as positive.
     [[nodiscard]] double precision() const;
@@ -56,6 +57,7 @@ struct Threshold {
     double value = 0;        ///< value of the threshold
     bool above = true;       ///< true: values of at least `value` are positive; false: values of at most `value` are
     ConfusionScores scores;  ///< scores on the samples from which the threshold was chosen
+    /// Whether the threshold classifies the value x as positive.
     [[nodiscard]] bool positive(double x) const { return above ? x >= value : x <= value; }
 };
 /// The threshold with the largest F1. The threshold lies midway between consecutive values (or is the min or max value if all
