@@ -52,6 +52,7 @@ public:
         for (std::size_t i = n - 1; i-- > 0;) bends_[i] = (bends_[i] - above[i] * bends_[i + 1]) / diagonal[i];
     }
 
+    /// Value and derivatives at a parameter.
     [[nodiscard]] State at(double t) const {
         const auto next = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, t);
         const auto i = static_cast<std::size_t>(next - knots_.begin()) - 1;
@@ -61,7 +62,7 @@ public:
             (points_[i + 1] - points_[i]) / h + ((1 - 3 * a * a) * bends_[i] + (3 * b * b - 1) * bends_[i + 1]) * (h / 6),
             a * bends_[i] + b * bends_[i + 1]};
     }
-    [[nodiscard]] double length() const { return knots_.back(); }
+    [[nodiscard]] double length() const { return knots_.back(); }  ///< last parameter, the chord length of the points
 
     /// Parameters of samples from start to end, `per_piece` samples in each piece.
     [[nodiscard]] std::vector<double> samples(int per_piece) const {
@@ -74,8 +75,8 @@ public:
     }
 
 private:
-    [[nodiscard]] double step(std::size_t i) const { return knots_[i + 1] - knots_[i]; }
-    std::vector<double> knots_;        ///< parameter of each point
+    [[nodiscard]] double step(std::size_t i) const { return knots_[i + 1] - knots_[i]; }  ///< length of piece i
+    std::vector<double> knots_;                                                           ///< parameter of each point
     std::vector<Vec> points_, bends_;  ///< bends_: second derivatives at the knots
 };
 

@@ -37,9 +37,9 @@ public:
     /// Points along the outside of the arm, evenly spaced from the joint to the hand, and the tip of the hand unless the hand is
     /// in a bowl.
     [[nodiscard]] std::vector<Eigen::Vector3d> outside(int pieces) const;
-    [[nodiscard]] double outside_length() const;  ///< length along the outside, from the joint to the tip
-    [[nodiscard]] double side() const { return side_; }
-    std::vector<Bead> beads;  ///< balls along the arm
+    [[nodiscard]] double outside_length() const;         ///< length along the outside, from the joint to the tip
+    [[nodiscard]] double side() const { return side_; }  ///< -1: right, 1: left
+    std::vector<Bead> beads;                             ///< balls along the arm
 
 private:
     double side_;  ///< -1: right, 1: left

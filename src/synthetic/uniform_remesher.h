@@ -10,11 +10,11 @@ class HalfedgeTable {
 public:
     explicit HalfedgeTable(const Triangles& mesh);
 
-    static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
-    static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
-    [[nodiscard]] Index opposite(Index h) const { return opposite_[h]; }
-    [[nodiscard]] Index origin(Index h) const { return origin_[h]; }
-    [[nodiscard]] Index target(Index h) const { return origin_[next(h)]; }
+    static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }       ///< next halfedge of the face
+    static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }   ///< previous halfedge of the face
+    [[nodiscard]] Index opposite(Index h) const { return opposite_[h]; }    ///< opposite halfedge
+    [[nodiscard]] Index origin(Index h) const { return origin_[h]; }        ///< vertex at which the halfedge starts
+    [[nodiscard]] Index target(Index h) const { return origin_[next(h)]; }  ///< vertex at which the halfedge ends
     /// A halfedge that leaves the vertex; no_index: the vertex was removed.
     [[nodiscard]] Index outgoing(Index v) const { return outgoing_[v]; }
     [[nodiscard]] bool alive(Index h) const { return origin_[h] != no_index; }  ///< false: the halfedge was removed

@@ -59,8 +59,9 @@ public:
     /// Implicit function of the object, negative inside, and its gradient. Away from the surface the value is a lower bound of
     /// the distance up to `slack`; close to the surface the function is continuously differentiable.
     [[nodiscard]] Sample sample(const Eigen::Vector3d& p) const;
+    /// Value of the implicit function at p.
     [[nodiscard]] double value(const Point& p) const { return sample({p.x(), p.y(), p.z()}).value; }
-    [[nodiscard]] Vector gradient(const Point& p) const;
+    [[nodiscard]] Vector gradient(const Point& p) const;  ///< gradient of the implicit function at p
 
     /// Max displacement of the surface by reliefs.
     [[nodiscard]] double slack() const;
