@@ -43,6 +43,7 @@ struct TemplateOptions {
 /// remedy for: a repeated role, a name that is absolute or leads out of the folder (also through links) unless allowed, a
 /// checksum of a file that is not a part.
 TemplateFile read_template(const Path& file, const TemplateOptions& options = {});
+/// Reads the JSON document of a template in `folder`, with the checks of read_template; `where` names the file in errors.
 TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
                                 const TemplateOptions& options = {});
 Json template_to_json(const TemplateFile& file, const Provenance& provenance);  ///< content of the JSON file of a template
