@@ -40,12 +40,13 @@ public:
     [[nodiscard]] std::optional<InsertedCurves>& refined() { return refined_; }
     /// The mesh to which the annotations are transferred: the target, or the refined target.
     [[nodiscard]] const Mesh& mesh() const { return refined_ ? refined_->mesh : target_; }
-    [[nodiscard]] RegionTransfer& regions() { return regions_; }
+    [[nodiscard]] RegionTransfer& regions() { return regions_; }  ///< computes the faces of regions
 
 private:
     void begin(std::size_t i);  ///< starts the transfer of annotation i
     void trace(std::size_t i);  ///< traces the paths of annotation i
     void insert();              ///< inserts the traced curves into the target
+    /// The path along the curves inserted into the target.
     [[nodiscard]] TracedPath walked(const SourcePath& vertex_path, const std::vector<PathTracer::Step>& steps,
                                     PathSearch& paths) const;
     void finish_line(std::size_t i);                                       ///< completes a transferred line

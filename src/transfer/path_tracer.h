@@ -50,7 +50,7 @@ public:
         bool backwards;     ///< true: the curve is traversed backwards
     };
     std::vector<Step> trace_curves(const SourcePath& vertex_path, TransferScore& score);
-    [[nodiscard]] const std::vector<SurfaceCurve>& curves() const { return curves_; }
+    [[nodiscard]] const std::vector<SurfaceCurve>& curves() const { return curves_; }  ///< all curves traced so far
 
 private:
     /// Path between two target vertices, at most `limit` long, searched from the lower to the higher index so that both

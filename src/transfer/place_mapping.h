@@ -45,6 +45,7 @@ private:
     [[nodiscard]] bool is_mutual(const MappedPlace& mapped) const;  ///< whether the mapping is invertible at the place
     /// Place of the target whose interpolated normal passes through p.
     [[nodiscard]] std::optional<SurfaceHit> along_target_normal(const Point& p, const Vector& normal) const;
+    /// The place of a face with these weights, if it is near p and its normal is compatible; otherwise empty.
     [[nodiscard]] std::optional<SurfaceHit> hit_in(Index face, const std::array<double, 3>& weights, const Point& p,
                                                    const Vector& normal) const;
 

@@ -70,7 +70,7 @@ private:
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
     /// Elements to be preserved; `pins`: true to mark the pins of measures as well.
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
-    [[nodiscard]] Size size_of(const Annotation& annotation) const;
+    [[nodiscard]] Size size_of(const Annotation& annotation) const;  ///< current size of an annotation
 
     std::shared_ptr<const Curved> curved_;
 };
