@@ -21,6 +21,7 @@ inline const std::string ostraka_ns = "urn:ostraka:ns#";
 /// URI of a vocabulary that states no URI.
 inline const std::string default_scheme = "urn:ostraka:vocabulary";
 
+/// Whether the extension of the file name is one of RDF/XML; otherwise the file is Turtle.
 inline bool is_rdf_xml(const Path& file) {
     const std::string ending = extension(file);
     return ending == ".rdf" || ending == ".owl" || ending == ".xml";
@@ -32,6 +33,7 @@ inline std::string namespace_of(const std::string& scheme) {
     return uri.ends_with('#') || uri.ends_with('/') ? uri : uri + "#";
 }
 
+/// The text with percent-encoded characters decoded.
 inline std::string percent_decoded(const std::string& text) {
     const auto digit = [](char c) {
         return c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;

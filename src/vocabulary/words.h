@@ -20,10 +20,12 @@ inline std::vector<std::string> names_in(const JsonValue& object, const char* me
     return names;
 }
 
+/// A number as text, with 9 significant digits.
 inline std::string text_of(double value) { return digits(value, 9); }
 
-inline std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
+inline std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }  ///< the text in single quotes
 
+/// Name of an annotation for messages: "'tag' (id 3)".
 inline std::string annotation_name(const Annotation& annotation) {
     return fmt::format("{} (id {})", in_quotes(annotation.tag), annotation.id);
 }

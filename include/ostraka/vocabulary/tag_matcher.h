@@ -12,7 +12,7 @@ namespace ostraka {
 /// Comparison by spelling ignores case, blanks and a number at the end of the tag ("flower 3" means "flower"). Thread-safe.
 class TagMatcher {
 public:
-    explicit TagMatcher(const Vocabulary* vocabulary = nullptr);
+    explicit TagMatcher(const Vocabulary* vocabulary = nullptr);  ///< null: tags are compared by spelling
 
     /// True if the tag means the word.
     [[nodiscard]] bool means(const std::string& tag, const std::string& word) const;
