@@ -30,6 +30,7 @@ public:
     void add(const ShownShape& shape);  ///< adds an object to the content
     /// Adds the tables of the report of an operation; `file`: the report file.
     void add_report(const Path& file, const std::string& operation);
+    /// The content; `made_how`: provenance.
     [[nodiscard]] Page::Content content(const std::string& made_how) const { return page_.content(made_how); }
 
 private:

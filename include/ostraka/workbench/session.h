@@ -60,11 +60,11 @@ public:
 
     /// State after the last step in effect.
     [[nodiscard]] const SessionState& state() const;
-    [[nodiscard]] const std::vector<SessionStep>& steps() const { return steps_; }
+    [[nodiscard]] const std::vector<SessionStep>& steps() const { return steps_; }  ///< all steps, including undone ones
     /// Number of steps in effect; later steps in `steps` have been undone.
     [[nodiscard]] std::size_t place() const { return place_; }
-    [[nodiscard]] const Path& folder() const { return folder_; }
-    [[nodiscard]] const Path& root() const { return root_; }
+    [[nodiscard]] const Path& folder() const { return folder_; }  ///< folder of the session
+    [[nodiscard]] const Path& root() const { return root_; }  ///< folder from which files are opened, and to which they are saved
 
     /// Names of the meshes and templates that can be opened, relative to the root.
     [[nodiscard]] std::vector<std::string> openable() const;
