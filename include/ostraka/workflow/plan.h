@@ -69,13 +69,16 @@ private:
     StudyInstance make_instance(std::size_t step, const std::vector<std::size_t>& values);
     /// The text with references replaced by values.
     std::string filled(const StudyText& text, const StudyInstance& instance) const;
+    /// Sets an option of an instance to the value of a setting.
     void set_value(StudyInstance& instance, const StudySetting& setting, const JsonValue& value, const std::string& place,
                    const Call& call, JsonValue& options, JsonAllocator& allocator);
+    /// Sets an input of an instance to the value of a setting.
     void set_slot(StudyInstance& instance, const StudySetting& setting, const JsonValue& setting_value, const std::string& place,
                   const Slot& slot);
     /// Path of an input file, whose name is relative to the study's folder. Throws Error (input) unless the file can be read and
     /// has an extension of the kind.
     [[nodiscard]] Path input_file(const std::string& name, const std::string& place, Kind kind) const;
+    /// Adds the output of another instance as an input of an instance.
     void add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,
                     const std::string& place, const std::string& label);
     /// Throws Error (input) if a program's word names a path outside the permitted folders.
