@@ -23,12 +23,12 @@ public:
     /// From now on solves for the vertices of a cage instead of the mesh; `weights` (one row per vertex of the mesh) must outlive
     /// the fitter.
     void use_cage(const CageWeights& weights, const Points& cage);
-    [[nodiscard]] const Points& cage() const { return cage_; }
+    [[nodiscard]] const Points& cage() const { return cage_; }  ///< current positions of the cage's vertices
 
     /// Sets the current positions of the mesh's vertices.
     void start_at(Points points) { current_ = std::move(points); }
-    [[nodiscard]] const Points& rest() const { return rest_; }
-    [[nodiscard]] const Points& current() const { return current_; }
+    [[nodiscard]] const Points& rest() const { return rest_; }        ///< positions of the mesh's vertices at rest
+    [[nodiscard]] const Points& current() const { return current_; }  ///< current positions of the mesh's vertices
 
     /// Smoothing length of a level; `diagonal`: diagonal of the template.
     static double smoothing(const NonRigidOptions& options, int level, double diagonal);

@@ -33,6 +33,7 @@ private:
     };
     /// Whether the face of the halfedge is in the patch.
     [[nodiscard]] bool keeps(Halfedge h) const;
+    /// Whether the halfedge is on the border of the patch, with the patch to its left.
     [[nodiscard]] bool is_border(Halfedge h) const { return keeps(h) && !keeps(mesh_.opposite(h)); }
     /// Restores simple borders; `stack`: vertices at which the faces of the patch may form several fans.
     void regularise(std::vector<Vertex> stack);
