@@ -11,9 +11,9 @@
 namespace ostraka {
 
 struct SurfacePoints {
-    std::vector<Eigen::Vector3d> places, normals;  ///< unit normals
-    double spacing = 0;                            ///< min distance between points with similar normals
-    [[nodiscard]] std::size_t size() const { return places.size(); }
+    std::vector<Eigen::Vector3d> places, normals;                     ///< unit normals
+    double spacing = 0;                                               ///< min distance between points with similar normals
+    [[nodiscard]] std::size_t size() const { return places.size(); }  ///< number of points
 };
 
 /// Spreads points over the faces marked in `faces` (all faces if empty): no two points are nearer than `spacing` unless their
