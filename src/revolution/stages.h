@@ -54,8 +54,11 @@ namespace ostraka {
 struct AxisFrame {
     Eigen::Vector3d foot = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::UnitZ(), u = Eigen::Vector3d::UnitX(),
                     w = Eigen::Vector3d::UnitY();
+    /// Height along the axis above the foot.
     [[nodiscard]] double height(const Eigen::Vector3d& p) const { return (p - foot).dot(up); }
+    /// Component of p - foot perpendicular to the axis.
     [[nodiscard]] Eigen::Vector3d across(const Eigen::Vector3d& p) const { return p - foot - height(p) * up; }
+    /// Unit vector at an angle around the axis.
     [[nodiscard]] Eigen::Vector3d direction(double angle) const { return std::cos(angle) * u + std::sin(angle) * w; }
 };
 
