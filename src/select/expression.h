@@ -108,6 +108,7 @@ private:
     [[nodiscard]] ScreenCamera camera(const JsonValue& owner, PlaceFrame frame, const std::string& at) const;
     /// The surface point seen at the pixel of a pick.
     SurfaceHit seen(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
+    /// Area of a picture given by a rectangle or polygon.
     ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
                            const std::string& at) const;
     /// Search tree of the mesh, built at the first use.
