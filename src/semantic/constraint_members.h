@@ -22,8 +22,8 @@ public:
     /// Throws Error (input) with the problem and the remedy.
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
 
-    [[nodiscard]] const Shape& shape() const { return shape_; }
-    [[nodiscard]] const Relationship& relationship() const { return relationship_; }
+    [[nodiscard]] const Shape& shape() const { return shape_; }                       ///< shape on which the constraint is stated
+    [[nodiscard]] const Relationship& relationship() const { return relationship_; }  ///< the relationship that is a constraint
     [[nodiscard]] std::size_t count() const { return relationship_.annotations.size(); }  ///< number of members
     [[nodiscard]] const Annotation& member(std::size_t i) const;                          ///< annotation of member i
     /// The vertices of member i, at least one, ascending.

@@ -98,10 +98,10 @@ private:
     void add_surface(DeformResult& result) const;  ///< adds the defects of the surface
     /// Vertices that the edit and the violated constraints were expected to change.
     [[nodiscard]] semantic::Expected expected(const DeformResult& result) const;
-    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
-    DeformResult finish(DeformResult result);                         ///< adds the verdict
-    static std::string name_of(const ConstraintReport& report);       ///< name of a constraint for messages
-    void report(DeformResult& result, const Outcome& outcome) const;  ///< adds the outcome of each constraint
+    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }  ///< text of a share, such as "12.5 %"
+    DeformResult finish(DeformResult result);                                           ///< adds the verdict
+    static std::string name_of(const ConstraintReport& report);                         ///< name of a constraint for messages
+    void report(DeformResult& result, const Outcome& outcome) const;                    ///< adds the outcome of each constraint
     /// Why constraint i cannot be satisfied because its measure contradicts another constraint; empty: no contradiction.
     [[nodiscard]] std::string contradiction(const DeformResult& result, std::size_t i) const;
     /// Omits each constraint in turn, failing constraints first, and records which others then hold.

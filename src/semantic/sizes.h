@@ -15,7 +15,7 @@ public:
     /// `edited`: the shape after the edit; parts that the edit did not move start from the shape at rest.
     Sizes(std::vector<const Sized*> parts, const Shape& shape, const State& edited);
 
-    [[nodiscard]] bool empty() const { return parts_.empty(); }
+    [[nodiscard]] bool empty() const { return parts_.empty(); }  ///< true: no part has a prescribed measure
     /// Largest error of a measure: absolute value of the logarithm of the ratio of the measure to the required value.
     [[nodiscard]] double off(const State& now) const;
     /// Updates the factors from the result of the last factors (Broyden's method on the logarithms of the factors).
