@@ -33,6 +33,7 @@ struct PartsDeviation {
     double off = 0;                    ///< root mean square deviation
     std::size_t count = 0, worst = 0;  ///< number of such pairs; index in the list of the pair that deviates most
 };
+/// Deviation of the values from the expected values, both in the same order.
 PartsDeviation parts_deviation(std::span<const std::optional<double>> values, std::span<const std::optional<double>> expected);
 
 }  // namespace ostraka
