@@ -32,7 +32,7 @@ struct TransferOptions {
     void describe(OptionList& visit);  ///< declares the options with their names, help texts and ranges
 };
 
-/// What became of an annotation: kept, reduced to a line or point, or lost.
+/// Outcome of the transfer of an annotation: kept, reduced to a line or point, or lost.
 enum class TransferOutcome { kept, became_line, became_point, lost };
 std::string to_string(TransferOutcome outcome);
 
