@@ -70,7 +70,7 @@ struct PairMemory {
 /// that close a loop with candidates of a third fragment gain probability, as three wrong poses rarely agree. Groups are joined
 /// in descending order of probability if no fragment lies inside another; all other contacts of the join count as evidence for or
 /// against the join. The poses of each group are refined together (Ceres: point to plane between all fractures and rims that
-/// meet). Unrelated fragments stay single. Deterministic. Throws Error (usage) if there are no fragments.
+/// meet). Unrelated fragments stay single. The result is deterministic. Throws Error (usage) if there are no fragments.
 Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOptions& options = {},
                       const PairMemory& memory = {});
 
