@@ -26,7 +26,7 @@ public:
         Eigen::Vector3d along{};  ///< unit direction of the curve
     };
     /// The point nearest to `place` on the curves where any two of `labels` (ascending) meet, if its distance is at most
-    /// `search_radius`. O(edges).
+    /// `search_radius`. Time: O(edges).
     [[nodiscard]] std::optional<Place> nearest(const Eigen::Vector3d& place, const std::vector<int>& labels,
                                                double search_radius) const;
 

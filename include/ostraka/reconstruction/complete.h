@@ -62,8 +62,8 @@ struct CompletedObject {
 /// fragment's border; the template around the seam follows with a displacement that fades. Where projected borders cross, the
 /// fragment's faces are removed, ring by ring; if a border cannot be made simple, the template's triangles represent the fragment
 /// and a note reports the fragment. Fragments are processed in order: later fragments do not cover earlier ones. Template faces
-/// within the width of the seam zone of observed faces are "interpolated". Linear in the number of faces plus the nearest-point
-/// queries.
+/// within the width of the seam zone of observed faces are "interpolated". Takes time linear in the number of faces plus the
+/// nearest-point queries.
 CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& fragments, const CompleteOptions& options = {});
 
 }  // namespace ostraka
