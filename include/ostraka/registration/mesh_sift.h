@@ -48,8 +48,8 @@ struct FeatureSet {
 /// the histogram of the normals projected to the tangent plane (within 9 sigma, weighted by area, length and a Gaussian of 4.5
 /// sigma). Discs have radius 3.75 sigma, one disc in the middle and eight around it at 4.5 sigma; shape index is weighted by
 /// curvedness, slant angle by the projected normal; each histogram is normalised to length 1 and clipped at 1 / sqrt(8).
-/// Neighbours are projected to the tangent plane with their straight-line distances, since heads are rigid. Same result for any
-/// number of threads. Throws Error (usage) for options out of range, Error (input) for a mesh without area.
+/// Neighbours are projected to the tangent plane with their straight-line distances, since heads are rigid. The result is the
+/// same for any number of threads. Throws Error (usage) for options out of range, Error (input) for a mesh without area.
 FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options = {});
 
 /// A feature of surface `a` and the feature of surface `b` with the most similar descriptor.

@@ -70,7 +70,7 @@ public:
     /// Searches poses of the faces marked in `of_part` (all faces if empty) on the whole. Spreads points over both surfaces;
     /// pairs of points vote for poses (`PairTable`) at each scale of the range in steps of a twelfth; the proposed poses are
     /// scored, the better poses are refined on the points and scored again, and the best distinct poses are refined on the faces
-    /// (`align_part`). Throws Error (input) for a part without area. Same result for any number of threads.
+    /// (`align_part`). Throws Error (input) for a part without area. The result is the same for any number of threads.
     [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part = {}) const;
     /// Searches poses of the marked faces of a part, as the other overload, in this range of scales instead of the options'
     /// range.

@@ -51,7 +51,7 @@ struct GeneralisedProcrustes {
 
 /// Generalised Procrustes analysis (Gower 1975): centres all configurations and rotates each in turn to the common mean. Without
 /// `scaling` sizes are kept (partial, size-and-shape); with `scaling` all configurations get centroid size 1 (shape). Throws
-/// Error (input) if there is no configuration, and as `procrustes`. O(iterations n k).
+/// Error (input) if there is no configuration, and as `procrustes`. Time: O(iterations n k).
 GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& configurations, const ProcrustesOptions& options = {});
 
 /// Configurations as rows of a matrix for principal component analysis: each row has x, y, z of the first landmark, then of the
