@@ -52,7 +52,7 @@ public:
     [[nodiscard]] const std::vector<QueryReference>& references() const;
 
     /// Evaluates the query on an object. Quantities that are not attributes (area, perimeter, length, volume ...) are computed
-    /// from the mesh. Throws Error (input) for more than a million assignments. Thread-safe.
+    /// from the mesh. Throws Error (input) for more than a million assignments. Calls are thread-safe.
     [[nodiscard]] QueryAnswer ask(const QueriedObject& object) const;
 
     struct Node;
