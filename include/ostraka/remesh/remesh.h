@@ -27,8 +27,8 @@ struct RemeshResult {
 /// Isotropic remeshing to edges of equal length, projected onto the old surface (Botsch and Kobbelt, "A remeshing approach to
 /// multiresolution modeling", 2004; the CGAL implementation), followed by a few collapses or splits of edges to reach the target
 /// number of vertices, and a final projection. No property, annotation or index is carried over. Isolated vertices are removed.
-/// Deterministic. Throws Error (input) for a mesh without area, or with triangles so thin that they would be split into too many
-/// pieces, Error (usage) for an impossible number of vertices.
+/// The result is deterministic. Throws Error (input) for a mesh without area, or with triangles so thin that they would be split
+/// into too many pieces, Error (usage) for an impossible number of vertices.
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options);
 
 }  // namespace ostraka
