@@ -44,8 +44,8 @@ struct CameraPlan {
     PixelBox pane;                      ///< the part of the picture where the object is drawn
 };
 
-/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Linear. Throws Error (input) for
-/// a mesh without vertices.
+/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Takes linear time. Throws Error
+/// (input) for a mesh without vertices.
 PictureCamera fit_camera(const Mesh& mesh, const CameraPlan& plan);
 
 /// The pane of a single object in a picture of this size, with a scale bar and without legend and title.

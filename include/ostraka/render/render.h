@@ -82,9 +82,9 @@ struct Rendering {
 /// Draws the scenes side by side. Rays are traced through a bounding volume hierarchy (Embree); the first hit is shaded by a
 /// light near the viewer's head and a soft sky, with more rays where neighbouring pixels differ. Lines and markers are drawn
 /// where the ray to the viewer is unobstructed, with a tolerance of 0.2 % of the largest side of the bounding box. The picture is
-/// bit-identical for any number of threads. O((n + pixels) log n). In SVG and PDF the surface is an embedded image; everything
-/// else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a coordinate that
-/// is not finite or a list of the wrong length.
+/// bit-identical for any number of threads. Time: O((n + pixels) log n). In SVG and PDF the surface is an embedded image;
+/// everything else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a
+/// coordinate that is not finite or a list of the wrong length.
 Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {}, PictureKind kind = PictureKind::pixels);
 
 }  // namespace ostraka
