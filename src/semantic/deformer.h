@@ -95,13 +95,13 @@ public:
 
 private:
     // The verdict: deformer_verdict.cpp
-    void add_surface(DeformResult& result) const;  ///< adds the defects of the surface
+    void add_surface(DeformResult& result) const;  ///< writes the defects of the deformed surface to the result
     /// Vertices that the edit and the violated constraints were expected to change.
     [[nodiscard]] semantic::Expected expected(const DeformResult& result) const;
     static std::string percent(double share) { return digits(100 * share, 3) + " %"; }  ///< text of a share, such as "12.5 %"
-    DeformResult finish(DeformResult result);                                           ///< adds the verdict
-    static std::string name_of(const ConstraintReport& report);                         ///< name of a constraint for messages
-    void report(DeformResult& result, const Outcome& outcome) const;                    ///< adds the outcome of each constraint
+    DeformResult finish(DeformResult result);                         ///< adds verdict and objections to the result
+    static std::string name_of(const ConstraintReport& report);       ///< name of a constraint for messages
+    void report(DeformResult& result, const Outcome& outcome) const;  ///< writes the outcome of each constraint to the result
     /// Why constraint i cannot be satisfied because its measure contradicts another constraint; empty: no contradiction.
     [[nodiscard]] std::string contradiction(const DeformResult& result, std::size_t i) const;
     /// Omits each constraint in turn, failing constraints first, and records which others then hold.
