@@ -8,13 +8,13 @@ namespace ostraka::detail {
 
 /// Sorts and nests the contours of each slice, finds intersections, reverses contours whose orientation contradicts their
 /// nesting, and sets the completeness of each slice. `is_whole_mesh`: true if all faces of the mesh were sliced. Returns whether
-/// all contours were reversed because the mesh is closed and inside out. O(n log n), except for sorting the edges with
+/// all contours were reversed because the mesh is closed and inside out. Time: O(n log n), except for sorting the edges with
 /// overlapping boxes; in parallel.
 bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_whole_mesh);
 
 /// Sets parent and depth of the closed contours, which come first in `contours`, sorted by decreasing absolute area
-/// (nesting.cpp). Exact for the given points, also where contours touch. O(n log n) for contours of similar size: a horizontal
-/// line through a point is compared only with the edges of one thin strip.
+/// (nesting.cpp). Exact for the given points, also where contours touch. Time: O(n log n) for contours of similar size: a
+/// horizontal line through a point is compared only with the edges of one thin strip.
 void nest(std::vector<Contour>& contours);
 
 /// Intersections of the contours of a slice.

@@ -10,7 +10,7 @@ namespace ostraka::detail {
 /// A binary tree of bounding boxes over faces in the order of a space-filling curve, built once for many planes.
 class PlaneSearch {
 public:
-    /// Builds the tree over the given faces (over all faces if the list is empty). O(n log n).
+    /// Builds the tree over the given faces (over all faces if the list is empty). Time: O(n log n).
     PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces);
 
     /// The faces, ascending, whose bounding boxes come within `search_radius` of height 0 of the frame.

@@ -29,8 +29,8 @@ struct MedialAxis {
 /// The residue is dimensionless, 0 at the tips of branches, and increases towards the centre (a disc: up to 0.18), so that
 /// pruning keeps the axis connected. Between two contours the residue is 1: loops around holes stay on every level. Points closer
 /// than 1e-6 of the slice's size are merged. Noise of the outline adds branches whose residue is about the squared amplitude
-/// divided by the product of wavelength and contour length. O(n log n). Throws Error (usage) for a residue outside 0.001 to 1, or
-/// samples below 20 or above a million.
+/// divided by the product of wavelength and contour length. Time: O(n log n). Throws Error (usage) for a residue outside 0.001 to
+/// 1, or samples below 20 or above a million.
 MedialAxis medial_axis(const Slice& slice, const std::vector<double>& residues = {0.01, 0.05, 0.15}, int samples = 600);
 
 }  // namespace ostraka

@@ -78,9 +78,9 @@ struct NamedDescriptor {
 /// All descriptors of a slice, in the order of the table.
 std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& descriptors);
 
-/// Computes the descriptors of a slice. Linear in the number of segments, except for sorting (hull) and searching (thickness).
-/// Thickness is integrated by two-point Gauss quadrature on pieces of at most 1/500 of the contour; all other values are exact or
-/// accurate to about 1e-12.
+/// Computes the descriptors of a slice. Takes time linear in the number of segments, except for sorting (hull) and searching
+/// (thickness). Thickness is integrated by two-point Gauss quadrature on pieces of at most 1/500 of the contour; all other values
+/// are exact or accurate to about 1e-12.
 SliceDescriptors describe_slice(const Slice& slice);
 /// The descriptors of all slices, in parallel.
 std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices);
