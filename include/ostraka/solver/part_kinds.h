@@ -12,7 +12,7 @@ namespace ostraka::kinds {
 /// The points have a fitted plane with a given normal, up to sign: the projection rotates the current points about their mean.
 /// Rows: the centred points.
 struct FittedPlaneOrientation {
-    static constexpr KindInfo kind{"FittedPlaneOrientation", 3};  ///< name and min number of points
+    static constexpr KindInfo kind{"FittedPlaneOrientation", 3};  ///< name of the kind, and min number of points
     Eigen::Vector3d normal;                                       ///< normal of any length
 };
 
@@ -20,7 +20,7 @@ struct FittedPlaneOrientation {
 /// the rest state and carried to the current points by the best rigid motion; the closest motion has a closed form. Rows: the
 /// points.
 struct CoAxiality {
-    static constexpr KindInfo kind{"CoAxiality", 2};  ///< name and min number of points
+    static constexpr KindInfo kind{"CoAxiality", 2};  ///< name of the kind, and min number of points
     Eigen::Vector3d direction, point;                 ///< direction and a point of the line
     /// The axis at rest; empty: the longest principal axis of the rest positions, through their mean.
     std::optional<Eigen::Vector3d> rest_direction = {}, rest_point = {};
@@ -30,7 +30,7 @@ struct CoAxiality {
 /// projection rotates the current points about their mean. The closest rotation is a top eigenvector in unit quaternions: the
 /// joint range of the two quadratic forms is convex (Brickman 1961). Rows: the centred points.
 struct AxisDirection {
-    static constexpr KindInfo kind{"AxisDirection", 2};  ///< name and min number of points
+    static constexpr KindInfo kind{"AxisDirection", 2};  ///< name of the kind, and min number of points
     Eigen::Vector3d direction;                           ///< direction of any length
     Interval angle{0, 0};                                ///< range of the angle, radians, at most pi / 2
     /// Direction of the axis at rest; empty: the longest principal axis of the rest positions.
@@ -42,7 +42,7 @@ struct AxisDirection {
 
 /// The means of groups of points, which are stations of an axis, lie on a given line; the surface follows. Rows: the means.
 struct AxisOnLine {
-    static constexpr KindInfo kind{"AxisOnLine", 1};  ///< name and min number of points
+    static constexpr KindInfo kind{"AxisOnLine", 1};  ///< name of the kind, and min number of points
     Eigen::Vector3d direction, point;                 ///< direction and a point of the line
     std::vector<int> stations = {};  ///< for each point, its station, from 0 on; empty: a separate station for each point
     /// For each point, the share (0 to 1) that counts for the next station; the rest counts for the point's own station. The
@@ -53,7 +53,7 @@ struct AxisOnLine {
 /// The means of groups of points have the same height, the mean of their heights, or given differences of height. Rows: the
 /// means.
 struct MeansOnLevel {
-    static constexpr KindInfo kind{"MeansOnLevel", 2};  ///< name and min number of points
+    static constexpr KindInfo kind{"MeansOnLevel", 2};  ///< name of the kind, and min number of points
     Eigen::Vector3d up;                                 ///< upward direction of any length
     std::vector<int> groups = {};      ///< for each point, its group, from 0 on; empty: a separate group for each point
     std::vector<double> weights = {};  ///< for each point, its weight in the mean of its group; empty: 1
@@ -63,7 +63,7 @@ struct MeansOnLevel {
 
 /// The weighted mean of the points is at a given place. Row: the mean.
 struct MeanPosition {
-    static constexpr KindInfo kind{"MeanPosition", 1};  ///< name and min number of points
+    static constexpr KindInfo kind{"MeanPosition", 1};  ///< name of the kind, and min number of points
     Eigen::Vector3d place;                              ///< position of the mean
     std::vector<double> weights = {};                   ///< weight of each point; empty: 1
 };
@@ -77,14 +77,14 @@ struct MirrorPlane {
 /// of this mean. Rows: the points; without a plane the centred points, and the optimal plane's normal is the last eigenvector of
 /// the symmetric part of sum p q^T.
 struct MirrorSymmetry {
-    static constexpr KindInfo kind{"MirrorSymmetry", 2};  ///< name and min number of points
+    static constexpr KindInfo kind{"MirrorSymmetry", 2};  ///< name of the kind, and min number of points
     std::optional<MirrorPlane> plane = {};                ///< plane of reflection; empty: the optimal plane
 };
 
 /// Points mirror partners that lie within triangles. Ids: for each group a point and the corners of the triangle of its partner.
 /// Rows: the point and its partner.
 struct MirrorInTriangles {
-    static constexpr KindInfo kind{"MirrorInTriangles", 4};  ///< name and min number of points
+    static constexpr KindInfo kind{"MirrorInTriangles", 4};  ///< name of the kind, and min number of points
     MirrorPlane plane;                                       ///< plane of reflection
     std::vector<double> barycentric;                         ///< for each group, three barycentric coordinates of the partner
     /// For each group, the mirrored point minus its partner, a difference that is preserved; empty: zero.
@@ -103,7 +103,7 @@ struct PinnedMeasure {
 /// becomes a rotated copy of this shape, stretched along the measure or scaled uniformly; the set of such copies does not depend
 /// on the points, so that conflicting constraints cannot degrade the shape over the iterations.
 struct Proportion {
-    static constexpr KindInfo kind{"Proportion", 2};  ///< name and min number of points
+    static constexpr KindInfo kind{"Proportion", 2};  ///< name of the kind, and min number of points
     Interval range;  ///< range of the ratio measure / second or, without a second measure, of the measure in the points' unit
     PinnedMeasure measure;                     ///< measure of the part; its pins belong to the part
     std::optional<PinnedMeasure> second = {};  ///< second measure; empty: the measure itself is in the range
