@@ -58,8 +58,8 @@ public:
 
 /// Learns trees that minimise the logistic loss (Friedman 2001; second-order leaf values and histograms of 64 quantiles as in
 /// Chen and Guestrin 2016). `truth`: for each row, whether it is positive; `weights`: one per row, or empty. Features must be
-/// finite. Bit-identical for any number of threads. Throws Error (input) for no rows or rows of one class only, (usage) for lists
-/// of different lengths.
+/// finite. The result is bit-identical for any number of threads. Throws Error (input) for no rows or rows of one class only,
+/// (usage) for lists of different lengths.
 BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, const std::vector<double>& weights = {},
                    const BoostOptions& options = {});
 

@@ -10,8 +10,9 @@ namespace ostraka {
 /// DBSCAN clustering (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`. A sample with at least `minimum` samples
 /// (including itself) at distances of at most `epsilon` is a core point. Returns one label per sample: 0, 1, ... in the order of
 /// the clusters' first core points, and -1 for noise; a border point of two clusters belongs to the first. With minimum 1 there
-/// is no noise, and clusters are the sets of samples connected by steps of `epsilon`. Quadratic in the number of samples. Throws
-/// Error (input) for no sample and values that are not finite, and Error (usage) for an epsilon below 0 or a minimum below 1.
+/// is no noise, and clusters are the sets of samples connected by steps of `epsilon`. Takes time quadratic in the number of
+/// samples. Throws Error (input) for no sample and values that are not finite, and Error (usage) for an epsilon below 0 or a
+/// minimum below 1.
 std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum);
 
 /// Radius `epsilon` for DBSCAN: the radius within which a sample would have `minimum` samples on average, if the samples were

@@ -39,8 +39,8 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples);
 
 /// Silhouette of each sample (Rousseeuw 1987): (b - a) / max(a, b), where a is the mean distance to the other samples of its
 /// cluster and b the mean distance to the samples of the nearest other cluster; 0 for a cluster of one sample, for noise (labels
-/// below 0) and if there is only one cluster. Quadratic in the number of samples. Throws Error (input) for no sample or a sample
-/// that is not finite, and Error (usage) unless there is one label per sample.
+/// below 0) and if there is only one cluster. Takes time quadratic in the number of samples. Throws Error (input) for no sample
+/// or a sample that is not finite, and Error (usage) unless there is one label per sample.
 std::vector<double> silhouettes_of_samples(const Eigen::MatrixXd& samples, const std::vector<int>& labels);
 /// Silhouette of each sample, from a symmetric matrix of the distances between samples.
 std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
