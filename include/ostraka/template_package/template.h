@@ -87,7 +87,7 @@ void check_usable(const Template& loaded, const std::string& file);
 std::string part_name(const Path& folder, const Path& part);
 
 /// Copies the parts of a template into a folder, without subfolders, and returns the copied template with new checksums; `name`:
-/// file name of the new template. Written atomically. Throws Error (input) if two parts have the same name.
+/// file name of the new template. Files are written atomically. Throws Error (input) if two parts have the same name.
 TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance);
 
 }  // namespace ostraka
