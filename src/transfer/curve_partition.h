@@ -14,7 +14,7 @@ bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annota
 
 /// If the regions among the annotations partition the whole surface of `source`, makes their projections partition `target` as
 /// well: pieces that belong to no region or several regions are assigned to the region with which they share most of their
-/// border. Does nothing if the projections already partition `target`. O(n log n) for n faces of the target cut along all
+/// border. Does nothing if the projections already partition `target`. Time: O(n log n) for n faces of the target cut along all
 /// outlines.
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
                     std::vector<ProjectedAnnotation>& projected);

@@ -14,8 +14,8 @@ double edge_length(const Mesh& mesh, Halfedge h);
 /// parts, so that the mesh is traversed only once for all regions.
 class FaceParts {
 public:
-    /// `walls`: edges between parts, in any order, possibly repeated. O(n) on all threads; parts are numbered by their lowest
-    /// faces, independently of the number of threads. The mesh must outlive this object.
+    /// `walls`: edges between parts, in any order, possibly repeated. Time: O(n) on all threads; parts are numbered by their
+    /// lowest faces, independently of the number of threads. The mesh must outlive this object.
     FaceParts(const Mesh& mesh, std::vector<Edge> walls);
 
     /// A region as a union of parts.

@@ -38,13 +38,13 @@ struct Correspondence {
     bool relocated = false;
 };
 
-/// Correspondences of these vertices of `source` on the target, in the order of `vertices`. Runs on all threads. O(k log n) for k
-/// vertices and n target faces.
+/// Correspondences of these vertices of `source` on the target, in the order of `vertices`. Runs on all threads. Time: O(k log n)
+/// for k vertices and n target faces.
 std::vector<Correspondence> find_correspondences(const Mesh& source, const std::vector<Index>& vertices,
                                                  const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
 /// All candidate correspondences of a vertex, most likely first: hits of the normal line by distance, then the nearest compatible
-/// point. Another candidate is chosen if the first candidate lies on another layer.
+/// point. Callers choose another candidate if the first candidate lies on another layer.
 std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index vertex, const SurfaceSearch& target,
                                                       const CorrespondenceOptions& options = {});
 

@@ -20,9 +20,9 @@ struct Misalignment {
     double scale = 1;          ///< size of the target divided by size of the source
 };
 
-/// Measures the misalignment at 400 vertices, evenly distributed over the indices; independent of the number of threads. O(log
-/// n), plus the time for the mean edge lengths. For meshes accepted by compare_alignment, since the motion is searched only near
-/// the given position.
+/// Measures the misalignment at 400 vertices, evenly distributed over the indices; independent of the number of threads. Time:
+/// O(log n), plus the time for the mean edge lengths. For meshes accepted by compare_alignment, since the motion is searched only
+/// near the given position.
 Misalignment find_misalignment(const Mesh& source, const SurfaceSearch& target);
 
 /// Message for a misalignment that stands out; `diagonal`: diagonal of the meshes; `unit`: unit of the coordinates, may be empty.

@@ -27,7 +27,7 @@ struct ProjectedAnnotation {
 /// common borders stay common. Small loops between nearby places, and places in folds (where the normal meets the surface
 /// elsewhere first), are dropped. Regions that partition the whole source partition the whole target. Places closer than a
 /// ten-thousandth of an edge to the straight segment between their neighbours are dropped. Regions that are the whole mesh
-/// (`all`) stay the whole mesh. O(k log n) for k places. The result does not depend on the number of threads.
+/// (`all`) stay the whole mesh. Time: O(k log n) for k places. The result does not depend on the number of threads.
 std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
                                                 const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
