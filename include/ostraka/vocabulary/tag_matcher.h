@@ -9,7 +9,8 @@ namespace ostraka {
 
 /// Compares tags of annotations with words. With a vocabulary, which must outlive the matcher, a tag means a word if the concept
 /// of the tag is the concept of the word or a narrower one; a tag that is not in the vocabulary is compared by spelling.
-/// Comparison by spelling ignores case, blanks and a number at the end of the tag ("flower 3" means "flower"). Thread-safe.
+/// Comparison by spelling ignores case, blanks and a number at the end of the tag ("flower 3" means "flower"). Calls are
+/// thread-safe.
 class TagMatcher {
 public:
     explicit TagMatcher(const Vocabulary* vocabulary = nullptr);  ///< null: tags are compared by spelling

@@ -105,8 +105,8 @@ Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& wh
 Json vocabulary_to_json(const Vocabulary& vocabulary);  ///< the vocabulary as a JSON document
 /// Writes a vocabulary after the checks that `read_vocabulary` performs. Reading and writing again gives the same bytes.
 void write_vocabulary(const Path& file, const Vocabulary& vocabulary);
-/// Performs the checks of `read_vocabulary` on a vocabulary in memory; `where` names the vocabulary in errors. Linear in the size
-/// of the vocabulary.
+/// Performs the checks of `read_vocabulary` on a vocabulary in memory; `where` names the vocabulary in errors. Takes time linear
+/// in the size of the vocabulary.
 void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 
 /// Reports properties of a vocabulary that are allowed but may be unintended: concepts without labels or with labels shared by
