@@ -39,7 +39,7 @@ struct FileStamp {
 /// Current properties of a file; empty if the file does not exist.
 std::optional<FileStamp> stamp_of(const Path& file);
 
-/// SHA-256 of files and folders; each checksum is computed once. Thread-safe.
+/// SHA-256 of files and folders; each checksum is computed once. Calls are thread-safe.
 class FileChecksums {
 public:
     /// Checksum of a file. Throws Error (input) if the file cannot be read.
