@@ -22,6 +22,7 @@ struct AnnotatedMeshOperation : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
     }
+    /// The annotations, checked against the mesh.
     [[nodiscard]] const AnnotationSet& set() const { return annotations.on(mesh->mesh); }
     [[nodiscard]] AnnotatedMeshView object() const { return {mesh->mesh, set()}; }
 
@@ -53,7 +54,7 @@ Words direction_words(const std::string& option, std::vector<std::string> more =
 /// The option --up: a direction in the form that `direction_of` accepts, checked before any work starts.
 class DirectionOption {
 public:
-    void declare(Parameters& p, const std::string& help);
+    void declare(Parameters& p, const std::string& help);  ///< declares the option --up
     explicit operator bool() const { return !text_.empty(); }
     /// Direction given by the user; empty if none was given.
     [[nodiscard]] std::optional<std::array<double, 3>> value() const;
@@ -65,10 +66,12 @@ private:
 /// The option --vocabulary: the vocabulary by whose concepts tags are compared.
 class VocabularyOption {
 public:
+    /// Declares the option --vocabulary.
     void declare(Parameters& p, const std::string& help) {
         p.input_option("vocabulary", Kind::vocabulary, file_, "vocabulary (.vocabulary.json, .ttl, .rdf) " + help);
     }
     explicit operator bool() const { return static_cast<bool>(file_); }
+    /// Matcher of tags by the vocabulary, or by spelling without a vocabulary.
     [[nodiscard]] TagMatcher words() const { return file_ ? TagMatcher(&file_.load<Vocabulary>(read_vocabulary)) : TagMatcher(); }
     /// SHA-256 of the vocabulary file; empty if none was given.
     [[nodiscard]] std::string checksum() const { return file_ ? sha256_of_file(file_.path()) : std::string(); }

@@ -12,12 +12,12 @@ namespace ostraka {
 
 /// The results of slicing an object that are reported.
 struct SliceFindings {
-    const SlicedObject& cut;
-    std::string unit;
-    bool one_plane = false;  ///< true: a single plane was given, so that there is no tube and heights are relative to the plane
+    const SlicedObject& cut;  ///< the slices
+    std::string unit;         ///< unit of lengths
+    bool one_plane = false;   ///< true: a single plane was given, so that there is no tube and heights are relative to the plane
     std::vector<ComparedAxis> axes;  ///< axes to which the axis of the slices is compared
-    ThicknessHomogeneity thickness;
-    Tube tube;
+    ThicknessHomogeneity thickness;  ///< evenness of the wall
+    Tube tube;                       ///< the tubular part
 };
 
 /// Declares the values and tables that `add_slices` fills: the members of a slices file (slices.schema.json).

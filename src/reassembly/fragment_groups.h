@@ -41,19 +41,19 @@ private:
     /// The last evaluation of an edge of the pair graph.
     struct Examination {
         std::size_t a, b;  ///< versions of the two groups at the time of the evaluation
-        Verdict verdict;
+        Verdict verdict;   ///< result of the evaluation
     };
 
     /// Fragments of groups `a` and `b` that come close under the join.
     [[nodiscard]] FragmentPairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const;
     /// The join, refined by registering group `b` onto group `a`.
     [[nodiscard]] Motion registered(std::size_t a, std::size_t b, Motion join) const;
-    [[nodiscard]] Verdict examine(const PairEdge& edge) const;
-    [[nodiscard]] bool up_to_date(std::size_t e) const;  ///< whether edge `e` was evaluated with the current groups
-    void update(std::size_t e);                          ///< evaluates edge `e`
-    void join_eagerly();
-    void join_lazily();
-    void join(const PairEdge& edge, const Motion& move);
+    [[nodiscard]] Verdict examine(const PairEdge& edge) const;  ///< evaluates the join that an edge proposes
+    [[nodiscard]] bool up_to_date(std::size_t e) const;         ///< whether edge `e` was evaluated with the current groups
+    void update(std::size_t e);                                 ///< evaluates edge `e`
+    void join_eagerly();                                        ///< joins groups with re-evaluation of all edges after each join
+    void join_lazily();                                   ///< joins groups with re-evaluation of each edge when its turn comes
+    void join(const PairEdge& edge, const Motion& move);  ///< joins the groups of the edge's two fragments by a motion
 
     const PreparedFragments& fragments_;
     const PairGraph& graph_;

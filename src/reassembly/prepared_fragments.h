@@ -39,14 +39,14 @@ public:
     [[nodiscard]] double loop_length(std::size_t i, std::size_t j, std::size_t k) const;
 
 private:
-    void prepare(const Fragment& fragment, std::size_t k, std::string& alone);
+    void prepare(const Fragment& fragment, std::size_t k, std::string& alone);  ///< prepares fragment `k`
     /// Why a fragment with this fracture cannot be matched; empty: it can.
     [[nodiscard]] std::string fracture_problem(const PreparedFracture& fragment) const;
 
     const ReassemblyOptions& options_;
     const PairEffort& effort_;
-    std::vector<std::unique_ptr<PreparedFracture>> prepared_;
-    std::vector<Eigen::Vector3d> middle_;  ///< for each fragment, the mean of its vertices
+    std::vector<std::unique_ptr<PreparedFracture>> prepared_;  ///< for each fragment, its prepared data; null: not matched
+    std::vector<Eigen::Vector3d> middle_;                      ///< for each fragment, the mean of its vertices
     std::vector<double> radius_;  ///< for each fragment, the radius of its bounding sphere about the mean of its vertices
 };
 

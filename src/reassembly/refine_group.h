@@ -10,7 +10,7 @@ namespace ostraka {
 /// Indices of two fragments that meet, and the distance within which their fractures count as touching.
 struct MeetingPair {
     std::size_t first = 0, second = 0;  ///< indices in the group
-    double tolerance = 0;
+    double tolerance = 0;               ///< max distance of touching fractures
 };
 
 /// Minimises the distances of all contact points from the planes at their partners over all poses except the pose of the first

@@ -9,7 +9,7 @@ namespace ostraka::fitting {
 
 /// An admissible assignment of a column to a row, with its cost.
 struct AssignmentArc {
-    int row, column;
+    int row, column;    ///< index of the row and of the column
     std::int64_t cost;  ///< cost of the assignment, at least 0
 };
 

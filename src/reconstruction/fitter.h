@@ -23,12 +23,12 @@ public:
     /// From now on solves for the vertices of a cage instead of the mesh; `weights` (one row per vertex of the mesh) must outlive
     /// the fitter.
     void use_cage(const CageWeights& weights, const Points& cage);
-    [[nodiscard]] const Points& cage() const { return cage_; }
+    [[nodiscard]] const Points& cage() const { return cage_; }  ///< current positions of the cage's vertices
 
     /// Sets the current positions of the mesh's vertices.
     void start_at(Points points) { current_ = std::move(points); }
-    [[nodiscard]] const Points& rest() const { return rest_; }
-    [[nodiscard]] const Points& current() const { return current_; }
+    [[nodiscard]] const Points& rest() const { return rest_; }        ///< positions of the mesh's vertices at rest
+    [[nodiscard]] const Points& current() const { return current_; }  ///< current positions of the mesh's vertices
 
     /// Smoothing length of a level; `diagonal`: diagonal of the template.
     static double smoothing(const NonRigidOptions& options, int level, double diagonal);
@@ -97,7 +97,7 @@ private:
     LevelSystem& system_;
     const Mesh& mesh_;
     const MatchSearch& search_;
-    MatchSearch::Labels labels_;
+    MatchSearch::Labels labels_;                                          ///< labels that restrict the matches
     std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< correspondence constraints of each vertex
     double diagonal_;                                                     ///< diagonal of the template
     const NonRigidOptions& options_;
@@ -105,14 +105,14 @@ private:
     /// Current positions; positions at the start of the level; target Laplacian displacements.
     Points current_, start_, displacement_;
     const Rings& rings_;
-    Solver* solver_ = nullptr;
+    Solver* solver_ = nullptr;              ///< solver of the current level
     const CageWeights* weights_ = nullptr;  ///< weights of the cage's vertices; null: the unknowns are the mesh's vertices
     Points cage_rest_, cage_;               ///< rest positions and current positions of the cage's vertices
-    std::unique_ptr<CageSpaceSolver> through_cage_;
-    std::vector<VertexMatch> matches_;  ///< match of each vertex
-    std::vector<Slide> slides_;         ///< for each vertex, directions in which it may slide from its match
-    std::vector<bool> weighted_;        ///< for each vertex, whether its match has a weight in the factorisation
-    std::vector<double> match_weight_;  ///< for each vertex, the weight of its match
+    std::unique_ptr<CageSpaceSolver> through_cage_;  ///< solver over the cage; null: solve over the mesh
+    std::vector<VertexMatch> matches_;               ///< match of each vertex
+    std::vector<Slide> slides_;                      ///< for each vertex, directions in which it may slide from its match
+    std::vector<bool> weighted_;                     ///< for each vertex, whether its match has a weight in the factorisation
+    std::vector<double> match_weight_;               ///< for each vertex, the weight of its match
 };
 
 }  // namespace ostraka

@@ -12,9 +12,9 @@ namespace ostraka {
 
 /// The faces of a fragment that have one label, without fractures.
 struct FragmentPart {
-    std::vector<Index> faces;  ///< for each face of `mesh`, its face of the fragment
-    Mesh mesh;                 ///< mesh of the part
-    std::unique_ptr<SurfaceSearch> search;
+    std::vector<Index> faces;                  ///< for each face of `mesh`, its face of the fragment
+    Mesh mesh;                                 ///< mesh of the part
+    std::unique_ptr<SurfaceSearch> search;     ///< search tree over `mesh`
     std::vector<bool> edge_ends, vertex_ends;  ///< for each edge and each vertex of `mesh`: whether the outer surface ends there
 };
 
@@ -38,9 +38,9 @@ private:
 
     const Mesh& mesh_;
     const std::vector<Facet>& facets_;
-    std::vector<int> labels_;
+    std::vector<int> labels_;  ///< label of each face for which `parts_` was built
     Parts parts_;
-    std::vector<bool> end_vertices_;
+    std::vector<bool> end_vertices_;  ///< for each vertex, whether the outer surface ends there
 };
 
 }  // namespace ostraka

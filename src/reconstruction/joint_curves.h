@@ -26,16 +26,16 @@ public:
         Eigen::Vector3d along{};  ///< unit direction of the curve
     };
     /// The point nearest to `place` on the curves where any two of `labels` (ascending) meet, if its distance is at most
-    /// `search_radius`. O(edges).
+    /// `search_radius`. Time: O(edges).
     [[nodiscard]] std::optional<Place> nearest(const Eigen::Vector3d& place, const std::vector<int>& labels,
                                                double search_radius) const;
 
 private:
     /// An edge of a curve.
     struct Segment {
-        int fragment = 0;       ///< index of the fragment
-        Index face = no_index;  ///< face of the fragment beside the edge
-        Eigen::Vector3d from, to;
+        int fragment = 0;                         ///< index of the fragment
+        Index face = no_index;                    ///< face of the fragment beside the edge
+        Eigen::Vector3d from, to;                 ///< end points of the edge
         bool from_ends = false, to_ends = false;  ///< whether the outer surface of the fragment ends at the end point
     };
     /// From two labels, the lower one first, to the edges where they meet.

@@ -34,8 +34,8 @@ public:
     explicit LevelSystem(const Mesh& template_mesh);
 
     const Mesh& mesh;
-    Points rest;
-    Rings rings;
+    Points rest;           ///< positions of the vertices at rest
+    Rings rings;           ///< neighbours of each vertex
     double mean_area = 1;  ///< mean of the areas around vertices
     /// Indices of the solver's constraints that attract a vertex to its match, to its earlier position, and to its Laplacian
     /// displacement.
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] std::size_t stay(std::size_t vertex) const { return stay_[vertex]; }
     /// Index of the Laplacian constraint of a vertex; no_constraint if the vertex is isolated.
     [[nodiscard]] std::size_t laplacian(std::size_t vertex) const { return laplacian_[vertex]; }
-    static constexpr std::size_t no_constraint = static_cast<std::size_t>(-1);
+    static constexpr std::size_t no_constraint = static_cast<std::size_t>(-1);  ///< index of no constraint
 
     /// The solver for a new fit, without weights. Keeps the fill-reducing order and the symbolic factorisation of an earlier fit,
     /// which depend on the mesh alone, but no numbers: results equal the results of a new solver to the bit.

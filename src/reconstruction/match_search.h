@@ -17,16 +17,16 @@ namespace ostraka {
 
 /// Target position of a template vertex from annotations: a landmark, or a point of an outline.
 struct CorrespondenceConstraint {
-    Index vertex = no_index;
-    Eigen::Vector3d place;  ///< target position
-    double length = 0;      ///< length of the outline that the vertex represents; 0 for a landmark
-    int fragment = 0;       ///< index of the fragment
-    bool outline = false;   ///< true: the target is a point of the outline of a region
+    Index vertex = no_index;  ///< index of the template's vertex
+    Eigen::Vector3d place;    ///< target position
+    double length = 0;        ///< length of the outline that the vertex represents; 0 for a landmark
+    int fragment = 0;         ///< index of the fragment
+    bool outline = false;     ///< true: the target is a point of the outline of a region
 };
 
 /// A sample of a fragment's outer surface; all samples represent the same area.
 struct FragmentSample {
-    Eigen::Vector3d place, normal;
+    Eigen::Vector3d place, normal;  ///< position and unit normal
     int label = -1;  ///< label of the template's faces among which the counterpart of the sample lies; -1: no annotation
 };
 
@@ -41,7 +41,7 @@ struct Slide {
 /// vertices on faces outside matched annotations.
 class MatchSearch {
 public:
-    /// The unit of the template. Its unit is `scale` times the unit of the placed fragments; all positions and lengths in calls
+    /// The unit of the template, whose unit is `scale` times the unit of the placed fragments; all positions and lengths in calls
     /// and results are in the template's unit. The search trees that fragments bring along are in the fragments' own coordinates.
     /// `Guides`: correspondences from landmarks alone, or also from points along matched lines and outlines.
     enum class Guides { landmarks, paths };
@@ -89,7 +89,7 @@ public:
 private:
     /// The faces of one fragment that have one label.
     struct Part {
-        int fragment = 0;
+        int fragment = 0;  ///< index of the fragment
         const FragmentPart* part = nullptr;
     };
     /// From a label (id of the template's annotation, -1 for none) to the faces of the fragments.
@@ -104,15 +104,17 @@ private:
         int fragment = 0, label = 0;  ///< index of the fragment; label of the template's annotation
         Annotation region;            ///< faces of the fragment with the label
     };
+    /// Adds points along matched outlines and lines to the correspondences.
     void add_path_correspondences(const AnnotationSet& set);
+    /// For each vertex, its position on a fragment with the template's own faces.
     [[nodiscard]] std::vector<VertexMatch> shared_matches(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
 
     const Mesh& template_;
     const std::vector<PlacedFragment>& fragments_;
     /// For each fragment, the template's vertex of each of its vertices; empty if the faces are not shared.
     std::vector<std::vector<Index>> shared_;
-    JointCurves joints_;
-    std::vector<Counterpart> counterparts_;
+    JointCurves joints_;                     ///< curves where annotations meet
+    std::vector<Counterpart> counterparts_;  ///< regions of fragments with a counterpart
     /// Vertices of the template and of the fragment, in the order of `correspondences_`.
     std::vector<std::pair<Index, Index>> landmarks_;
     std::vector<int> landmark_fragment_;  ///< for each landmark, the index of its fragment

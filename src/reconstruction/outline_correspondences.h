@@ -12,7 +12,7 @@ namespace ostraka {
 
 /// A path of vertices connected by edges, along which positions are measured.
 struct VertexPath {
-    std::vector<Index> vertices;
+    std::vector<Index> vertices;  ///< successive vertices
     bool closed = false;
 };
 
@@ -23,9 +23,9 @@ std::vector<VertexPath> vertex_paths_of(const Mesh& mesh, const Annotation& part
 
 /// A template vertex and its target position on a fragment.
 struct OutlineCorrespondence {
-    Index vertex = no_index;
-    Eigen::Vector3d place;
-    double length = 0;  ///< length of the template's line that the vertex represents
+    Index vertex = no_index;  ///< index of the template's vertex
+    Eigen::Vector3d place;    ///< target position on the fragment
+    double length = 0;        ///< length of the template's line that the vertex represents
 };
 
 /// Matches the vertices of a template's annotation with points along the curves of a fragment's annotation. Positions are

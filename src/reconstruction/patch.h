@@ -33,19 +33,20 @@ private:
     };
     /// Whether the face of the halfedge is in the patch.
     [[nodiscard]] bool keeps(Halfedge h) const;
+    /// Whether the halfedge is on the border of the patch, with the patch to its left.
     [[nodiscard]] bool is_border(Halfedge h) const { return keeps(h) && !keeps(mesh_.opposite(h)); }
     /// Restores simple borders; `stack`: vertices at which the faces of the patch may form several fans.
     void regularise(std::vector<Vertex> stack);
     /// Removes the faces of vertices at which the faces of the patch form several fans, repeatedly, as a removal may create
     /// further such vertices.
     void open_fans(std::vector<Vertex> stack);
-    Pieces drop_small_pieces();
-    void find_closed(const Pieces& pieces);
-    void find_loops();
+    Pieces drop_small_pieces();              ///< removes pieces below the min area; returns the remaining pieces
+    void find_closed(const Pieces& pieces);  ///< sets closed_
+    void find_loops();                       ///< sets loops_
 
     const Mesh& mesh_;
     std::vector<bool> keep_;  ///< for each face, whether it is in the patch
-    double minimum_;
+    double minimum_;          ///< min area of a piece, as a share of the mesh's area
     std::vector<std::vector<Vertex>> loops_;
     std::vector<Face> closed_;
 };

@@ -12,7 +12,7 @@ namespace ostraka {
 /// Pieces of the fragment are recognised by the degrees of some thirty vertices around an edge, and traversed from there over all
 /// their faces; a piece counts only if every one of its faces is a face of `mesh`. If a symmetric `mesh` has several candidate
 /// positions, the position nearest to the mesh scaled by `scale` is used. `no_index` for vertices of meshes so regular that no
-/// neighbourhood is distinctive, and of pieces that are too small. O(n).
+/// neighbourhood is distinctive, and of pieces that are too small. Time: O(n).
 std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, double scale = 1,
                                    const std::vector<bool>& broken = {});
 

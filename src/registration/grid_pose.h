@@ -16,6 +16,7 @@ SurfacePoints thinned(const SurfacePoints& points, std::size_t count);
 struct Nearness {
     double low, high;  ///< distances at which the nearness is 1 and 0
     explicit Nearness(double tolerance) : low(0.25 * tolerance), high(2.5 * tolerance) {}
+    /// Nearness of a point at this distance.
     [[nodiscard]] double operator()(double distance) const {
         return distance >= high ? 0 : distance <= low ? 1 : std::log(high / distance) / std::log(high / low);
     }

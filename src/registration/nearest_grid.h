@@ -31,7 +31,7 @@ public:
     [[nodiscard]] double search_radius() const { return search_radius_; }
 
 private:
-    [[nodiscard]] std::size_t index(int x, int y, int z) const {
+    [[nodiscard]] std::size_t index(int x, int y, int z) const {  ///< index of a cell
         return (static_cast<std::size_t>(x) * static_cast<std::size_t>(count_[1]) + static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(count_[2]) +
                static_cast<std::size_t>(z);

@@ -26,7 +26,7 @@ public:
     /// Candidate motions of a part: `references` points of the part (evenly chosen) are each paired with at most `partners` other
     /// points (random, by `seed`). All pairs of the whole with equal features vote for a point of the whole and a rotation about
     /// its normal; rare features weigh more than frequent ones. Returns the `kept` motions with the most votes for each reference
-    /// point. Same result for any number of threads.
+    /// point. The result is the same for any number of threads.
     [[nodiscard]] std::vector<VotedMotion> vote(const SurfacePoints& part, int references, int partners, int kept,
                                                 std::uint64_t seed) const;
 
@@ -46,7 +46,7 @@ private:
     double max_distance_, step_;
     int distances_ = 0;                ///< number of bins of distances
     std::vector<std::size_t> starts_;  ///< for each bin of features, index of its first entry
-    std::vector<Entry> entries_;
+    std::vector<Entry> entries_;       ///< pairs of points, ordered by bin of features
 };
 
 }  // namespace ostraka

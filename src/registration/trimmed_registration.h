@@ -55,9 +55,9 @@ public:
 
 /// Result of `register_from`.
 struct Registration {
-    Motion pose;
-    PoseFit fit;
-    int iterations = 0;
+    Motion pose;           ///< best pose encountered
+    PoseFit fit;           ///< quality of this pose
+    int iterations = 0;    ///< number of steps
     bool settled = false;  ///< true: the last steps did not improve the pose
 };
 

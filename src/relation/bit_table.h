@@ -12,9 +12,12 @@ namespace ostraka::detail {
 class BitTable {
 public:
     BitTable(std::size_t rows, std::size_t columns) : words_((columns + 63) / 64), bits_(rows * words_, 0) {}
-    [[nodiscard]] std::uint64_t* row(std::size_t r) { return bits_.data() + r * words_; }
+    [[nodiscard]] std::uint64_t* row(std::size_t r) { return bits_.data() + r * words_; }  ///< first 64-bit word of row r
+    /// First 64-bit word of row r.
     [[nodiscard]] const std::uint64_t* row(std::size_t r) const { return bits_.data() + r * words_; }
+    /// Whether the bit in row r and column c is set.
     [[nodiscard]] bool test(std::size_t r, std::size_t c) const { return (row(r)[c / 64] >> (c % 64) & 1U) != 0; }
+    /// Sets the bit in row r and column c.
     void set(std::size_t r, std::size_t c) { row(r)[c / 64] |= std::uint64_t{1} << (c % 64); }
     void clear(std::size_t r, std::size_t c) { row(r)[c / 64] &= ~(std::uint64_t{1} << (c % 64)); }
     /// Sets all bits of a row.
@@ -41,8 +44,8 @@ public:
     }
 
 private:
-    std::size_t words_;
-    std::vector<std::uint64_t> bits_;
+    std::size_t words_;                ///< number of 64-bit words of a row
+    std::vector<std::uint64_t> bits_;  ///< words of all rows
 };
 
 }  // namespace ostraka::detail

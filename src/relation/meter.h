@@ -18,7 +18,7 @@ namespace detail {
 
 /// Thrown if a relationship cannot be determined; not an error, since other relationships may be determined.
 struct Unknown {
-    std::string text;
+    std::string text;  ///< why the relationship cannot be determined
 };
 
 /// The measured quantities of one relationship with the tolerances that apply.
@@ -30,15 +30,18 @@ public:
     void add_length(const std::string& quantity, double value) { add(quantity, value, options_.distance * diagonal_, unit_); }
     /// Adds the height by which a part lies on the wrong side of a contact; the tolerance is 0.
     void add_height_below_0(double value) { add("height", value, 0, unit_); }
+    /// Adds an angle between axes.
     void add_angle(double degrees) { add("angle", degrees, options_.angle, "degree"); }
-    void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }
+    void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }  ///< adds the tilt of a contact
+    /// Adds a relative difference.
     void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.ratio, "%"); }
     [[nodiscard]] bool holds() const { return holds_; }  ///< whether all quantities are within their tolerances
 
-    const Relationship& stated;
-    RelationParameters& parameters;
+    const Relationship& stated;      ///< the relationship that is measured
+    RelationParameters& parameters;  ///< gets the measured quantities
 
 private:
+    /// Adds a quantity; a tolerance stated in the relationship overrides `tolerance`.
     void add(const std::string& quantity, double value, double tolerance, const std::string& unit);
 
     const RelationOptions& options_;
@@ -53,9 +56,9 @@ struct RelationMeter::State : AnnotatedMeshView {
     RelationOptions options;
     double diagonal = 0;                ///< diagonal of the mesh
     std::map<int, detail::Part> parts;  ///< from the id of an annotation to its part
-    std::optional<Contacts> contacts;
-    bool contacts_left_out = false;  ///< true if the pairs with the shortest borders were omitted
-    std::list<int> recent;           ///< ids of the parts whose data are in memory, most recently used last
+    std::optional<Contacts> contacts;   ///< contacts of all pairs of regions; empty: not computed yet
+    bool contacts_left_out = false;     ///< true if the pairs with the shortest borders were omitted
+    std::list<int> recent;              ///< ids of the parts whose data are in memory, most recently used last
     std::unordered_map<int, std::list<int>::iterator> recent_place;  ///< from the id of a part to its position in `recent`
     std::size_t recent_faces = 0;                                    ///< total number of faces of the parts in `recent`
 

@@ -25,10 +25,10 @@ struct AnnotationQuery::Node {
         word       ///< `text`: a value in a comparison; in a condition, true if an annotation with this meaning exists
     };
     Kind kind;
-    std::size_t at = 0;  ///< column of the query's text at which the node begins, from 1
-    std::string text, unit;
-    double value = 0;
-    std::vector<std::string> words;
+    std::size_t at = 0;                     ///< column of the query's text at which the node begins, from 1
+    std::string text, unit;                 ///< see Kind
+    double value = 0;                       ///< see Kind
+    std::vector<std::string> words;         ///< words that stand for annotations, see Kind
     std::vector<std::unique_ptr<Node>> of;  ///< operands
 };
 

@@ -36,12 +36,12 @@ public:
     void after_collapse(const Mesh& mesh, Vertex kept);
 
 private:
-    enum Role : std::uint8_t { free, on_curve, fixed };  ///< relation of a vertex to the marked curves
-    [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;
+    enum Role : std::uint8_t { free, on_curve, fixed };         ///< relation of a vertex to the marked curves
+    [[nodiscard]] Role role(const Mesh& mesh, Vertex v) const;  ///< relation of a vertex to the marked curves
 
     Marks& marks_;
-    bool protect_;
-    bool keep_ = true;
+    bool protect_;            ///< true: vertices of marked curves keep their positions
+    bool keep_ = true;        ///< true: collapses must preserve the curves
     bool any_ = false;        ///< whether any edge or vertex is marked
     bool broken_ = false;     ///< whether curves were merged
     bool recompute_ = false;  ///< whether the roles must be updated after the collapse

@@ -12,9 +12,9 @@ class IndexedHeap {
 public:
     explicit IndexedHeap(std::size_t count) : key_(count, 0), place_(count, no_index) { heap_.reserve(count); }
 
-    [[nodiscard]] bool empty() const { return heap_.empty(); }
-    [[nodiscard]] bool contains(Index i) const { return place_[i] != no_index; }
-    [[nodiscard]] Index top() const { return heap_.front(); }  ///< index with the smallest key
+    [[nodiscard]] bool empty() const { return heap_.empty(); }                    ///< true: the heap holds no index
+    [[nodiscard]] bool contains(Index i) const { return place_[i] != no_index; }  ///< whether the heap holds index i
+    [[nodiscard]] Index top() const { return heap_.front(); }                     ///< index with the smallest key
 
     /// Sets the key of an index, and adds the index if the heap does not contain it.
     void set(Index i, double key) {
@@ -25,6 +25,7 @@ public:
         }
         down(up(place_[i]));
     }
+    /// Removes an index if the heap holds it.
     void remove(Index i) {
         const Index hole = place_[i];
         if (hole == no_index) return;
@@ -38,11 +39,14 @@ public:
     }
 
 private:
+    /// Whether index a precedes index b.
     [[nodiscard]] bool before(Index a, Index b) const { return key_[a] < key_[b] || (key_[a] == key_[b] && a < b); }
+    /// Stores index i at a position of the heap.
     void put(Index place, Index i) {
         heap_[place] = i;
         place_[i] = place;
     }
+    /// Moves the index at a position towards the top; returns the new position.
     Index up(Index place) {
         const Index i = heap_[place];
         while (place > 0) {
@@ -54,6 +58,7 @@ private:
         put(place, i);
         return place;
     }
+    /// Moves the index at a position towards the leaves.
     void down(Index place) {
         const Index i = heap_[place];
         const auto size = static_cast<Index>(heap_.size());

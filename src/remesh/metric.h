@@ -13,9 +13,12 @@ namespace ostraka {
 struct Frame {
     Vector centre{0, 0, 0};  ///< centre of the bounding box
     double size = 1;         ///< diagonal of the bounding box
+    /// Coordinates of a point in the frame.
     [[nodiscard]] Vector local(const Point& p) const { return (p - CGAL::ORIGIN - centre) / size; }
+    /// Point of the mesh for coordinates in the frame.
     [[nodiscard]] Point world(const Vector& x) const { return CGAL::ORIGIN + centre + size * x; }
 };
+/// The frame of a mesh.
 Frame make_frame(const Mesh& mesh);
 
 /// Marks of edges and vertices during the simplification; indices do not change before the garbage is collected.
@@ -27,7 +30,7 @@ struct Marks {
 /// Position of the vertex that remains after a collapse, and cost of the collapse.
 struct CollapsePlace {
     Vector position{0, 0, 0};  ///< position in the coordinates of the frame
-    double cost = 0;
+    double cost = 0;           ///< cost of the collapse
 };
 
 /// Cost of collapses by one method.
@@ -44,8 +47,10 @@ public:
     [[nodiscard]] virtual bool reaches_second_ring() const = 0;
 };
 
+/// Cost by quadric error metrics (Garland and Heckbert 1997).
 std::unique_ptr<CollapseMetric> make_quadric_metric(const Mesh& mesh, const Frame& frame, const Marks& marks,
                                                     const SimplifyOptions& options);
+/// Cost by Lindstrom and Turk (1998).
 std::unique_ptr<CollapseMetric> make_lindstrom_turk_metric(const Frame& frame);
 
 }  // namespace ostraka

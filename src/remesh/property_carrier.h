@@ -12,6 +12,7 @@ namespace ostraka {
 template <class Key>
 class PropertyCarrier {
 public:
+    /// Finds the property maps of the mesh.
     explicit PropertyCarrier(Mesh& mesh) {
         for (const std::string& name : mesh.properties<Key>()) {
             if (name == "v:point" || name.ends_with(":removed") || name.ends_with(":connectivity")) continue;
@@ -19,6 +20,7 @@ public:
             add<std::uint8_t>(mesh, name), add<std::array<std::uint8_t, 4>>(mesh, name);
         }
     }
+    /// Copies the values of element `from` to element `to`.
     void copy(Key from, Key to) const {
         for (const auto& step : steps_) step(from, to);
     }

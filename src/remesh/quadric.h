@@ -11,8 +11,8 @@ namespace ostraka {
 /// A quadratic function of a point: Q(x) = x^T A x + 2 b^T x + c with symmetric A (Garland and Heckbert 1997, section 5).
 struct Quadric {
     double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;  ///< entries of A
-    Vector b{0, 0, 0};
-    double c = 0;
+    Vector b{0, 0, 0};                                      ///< the vector b
+    double c = 0;                                           ///< the constant c
 
     /// Adds weight * (n . (x - p))^2, the squared distance from the plane through p with unit normal n.
     void add_plane(const Vector& n, const Vector& p, double weight) {
@@ -34,6 +34,7 @@ struct Quadric {
         c += q.c;
         return *this;
     }
+    /// Value of the function at x.
     [[nodiscard]] double operator()(const Vector& x) const {
         const Vector Ax(xx * x.x() + xy * x.y() + xz * x.z(), xy * x.x() + yy * x.y() + yz * x.z(),
                         xz * x.x() + yz * x.y() + zz * x.z());

@@ -32,6 +32,7 @@ struct Camera {
     [[nodiscard]] Eigen::Vector3d to_viewer(const Eigen::Vector3d& point) const {
         return distance == 0 ? toward : (centre + distance * toward - point).normalized();
     }
+    /// Distance from a point to the viewer; a distance beyond the object for parallel projection.
     [[nodiscard]] double distance_to_viewer(const Eigen::Vector3d& point) const {
         return distance == 0 ? 8 : (centre + distance * toward - point).norm();
     }

@@ -23,22 +23,22 @@ public:
     /// Width and height in pixels; in a PDF document a pixel is 1/96 inch.
     Canvas(int width, int height, PictureKind kind = PictureKind::pixels);
 
-    void fill(const Rgb& colour);
+    void fill(const Rgb& colour);  ///< fills the canvas with one colour
     /// Draws an image over the canvas: `columns` by `rows` pixels (0xAARRGGBB, premultiplied), scaled to this width and height.
     void paint(const std::vector<std::uint32_t>& pixels, int columns, int rows, int left, int top, int width, int height);
 
     /// Restricts drawing to a rectangle until `unclip`.
     void clip(double left, double top, double width, double height);
-    void unclip();
+    void unclip();  ///< removes the restriction
 
     struct Place {
         double x, y;
     };
-    void polyline(const std::vector<Place>& places, const Rgb& colour, double width);
-    void dashed(const std::vector<Place>& places, const Rgb& colour, double width);
-    void polygon(const std::vector<Place>& places, const Rgb& colour);
-    void disc(Place centre, double radius, const Rgb& colour);
-    void rectangle(double left, double top, double width, double height, const Rgb& colour);
+    void polyline(const std::vector<Place>& places, const Rgb& colour, double width);  ///< draws a line through the places
+    void dashed(const std::vector<Place>& places, const Rgb& colour, double width);    ///< draws a dashed line through the places
+    void polygon(const std::vector<Place>& places, const Rgb& colour);                 ///< fills a polygon
+    void disc(Place centre, double radius, const Rgb& colour);                         ///< fills a disc
+    void rectangle(double left, double top, double width, double height, const Rgb& colour);  ///< fills a rectangle
 
     enum class Align { left, centre, right };
     /// Draws text with its base line at `y`; `halo`: colour of an outline around the letters, or null.
@@ -46,7 +46,7 @@ public:
               const Rgb* halo = nullptr);
     /// Draws text rotated to read upwards, centred at (x, y).
     void upward_text(const std::string& words, double x, double y, double size, const Rgb& colour);
-    double text_width(const std::string& words, double size);
+    double text_width(const std::string& words, double size);  ///< width of a text in pixels
     /// The text, shortened with an ellipsis to be at most `width` wide.
     std::string elide(const std::string& words, double size, double width);
 
@@ -57,8 +57,8 @@ public:
     std::string document();
 
 private:
-    void check() const;  ///< throws Error (failure) if cairo reported an error
-    void colour(const Rgb& value);
+    void check() const;                            ///< throws Error (failure) if cairo reported an error
+    void colour(const Rgb& value);                 ///< sets the colour for drawing
     void trace(const std::vector<Place>& places);  ///< makes a poly-line the current path
     PictureKind kind_;
     std::unique_ptr<std::string> bytes_;  ///< output buffer of cairo for SVG and PDF

@@ -12,11 +12,12 @@ double label_column(Canvas& canvas, const Scene& scene, double pane_width, const
 
 /// Places the labels of visible parts in two columns of width `column` beside the pane. Each label goes to the side nearer to its
 /// part while there is room, in the vertical order of the parts; labels are moved apart if they overlap and exchanged if their
-/// leader lines cross. The leader line of a region ends at the region's point farthest from its visible border. O(pixels / 16 +
-/// labels^2).
+/// leader lines cross. The leader line of a region ends at the region's point farthest from its visible border. Time: O(pixels /
+/// 16 + labels^2).
 std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera,
                                     const PixelBox& pane, double column, const Style& style);
 
+/// Draws labels with their leader lines.
 void draw_labels(Canvas& canvas, const std::vector<PaneLabel>& labels, const Style& style);
 
 }  // namespace ostraka::detail

@@ -13,14 +13,14 @@ namespace ostraka::detail {
 
 /// Colours of the overlay, and scale of its lines and letters.
 struct Style {
-    double size = 1;  ///< pixels per nominal pixel; nominal pixels are those of a picture 900 pixels high
-    Rgb ink{45, 45, 48};
+    double size = 1;      ///< pixels per nominal pixel; in a picture 900 pixels high it is 1
+    Rgb ink{45, 45, 48};  ///< colour of text and lines
     Rgb background{255, 255, 255};
 };
 
 /// A line in the surface's own coordinates.
 struct Line {
-    std::vector<Eigen::Vector3d> points;
+    std::vector<Eigen::Vector3d> points;  ///< successive points of the line
     Rgb colour;
     double width = 1;                     ///< width in nominal pixels
     bool cased = false, through = false;  ///< drawn with a dark outline; hidden intervals are drawn dashed
@@ -58,7 +58,7 @@ public:
     SideColumn(Canvas& canvas, std::vector<LegendEntry> legend, std::optional<ColourScale> scale, double width_limit,
                double height, const Style& style);
     [[nodiscard]] double width() const { return width_; }  ///< including margins; 0 if there is nothing to show
-    void draw(double left, double top) const;
+    void draw(double left, double top) const;              ///< draws the column at this position
 
 private:
     void draw_legend(double left, double top) const;
@@ -68,10 +68,10 @@ private:
     std::vector<LegendEntry> legend_;
     std::size_t omitted_ = 0;  ///< number of legend entries for which there is no room
     std::optional<ColourScale> scale_;
-    std::vector<double> ticks_;  ///< values of the ticks of the colour bar
-    std::vector<std::string> tick_texts_;
+    std::vector<double> ticks_;            ///< values of the ticks of the colour bar
+    std::vector<std::string> tick_texts_;  ///< text of each tick
     Style style_;
-    double width_ = 0, height_ = 0, font_ = 0, legend_height_ = 0, tick_width_ = 0;
+    double width_ = 0, height_ = 0, font_ = 0, legend_height_ = 0, tick_width_ = 0;  ///< sizes in pixels; font_: font size
 };
 
 }  // namespace ostraka::detail

@@ -12,7 +12,7 @@ namespace ostraka::detail {
 
 struct Shading {
     bool smooth = true;           ///< interpolate normals across edges
-    double crease_cosine = 0.77;  ///< cosine of the crease angle, above which edges look sharp
+    double crease_cosine = 0.77;  ///< cosine of the crease angle: edges whose face normals differ by a larger angle look sharp
     int ambient_occlusion = 0;    ///< number of ambient occlusion rays per sample
     int samples = 8;              ///< number of rays per pixel where colours change
     bool edges = false;           ///< draw the edges of the mesh

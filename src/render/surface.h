@@ -25,8 +25,8 @@ public:
 
     /// Intersection of a ray with a triangle.
     struct Hit {
-        Index triangle = no_index;
-        Eigen::Vector3d weights;  ///< barycentric coordinates
+        Index triangle = no_index;  ///< index of the triangle
+        Eigen::Vector3d weights;    ///< barycentric coordinates
         Eigen::Vector3d point;
     };
 
@@ -46,9 +46,11 @@ public:
     /// The normal at the corner `vertex` of a face whose normal is `normal`; requires a surface constructed with `smooth`.
     [[nodiscard]] Eigen::Vector3f corner_normal(Index vertex, const Eigen::Vector3f& normal, float crease_cosine) const;
 
+    /// Position in the surface's coordinates.
     [[nodiscard]] Eigen::Vector3d point(Index index) const { return points_[index].cast<double>(); }
+    /// Indices of the triangle's points.
     [[nodiscard]] const std::array<Index, 3>& corners(Index triangle) const { return triangles_[triangle]; }
-    [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
+    [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }  ///< number of triangles
     /// Indices of the points that are used by a triangle.
     [[nodiscard]] const std::vector<Index>& used_points() const { return used_; }
 
@@ -60,9 +62,9 @@ public:
     [[nodiscard]] const std::array<double, 3>& middle() const { return middle_; }
 
 private:
-    void measure_box(const Scene& scene);
-    void build_tree();
-    void gather_faces_around_points();
+    void measure_box(const Scene& scene);  ///< sets middle_ and unit_length_
+    void build_tree();                     ///< builds the search tree
+    void gather_faces_around_points();     ///< sets around_begin_ and around_
 
     const std::vector<std::array<Index, 3>>& triangles_;
     std::vector<Index> used_;  ///< indices of the points that are used by a triangle (all points if there are no triangles)

@@ -20,9 +20,9 @@ struct Outline {
 
 /// Image of the wall with square cells: rows are heights, columns are radii.
 struct ProfileImage {
-    double step = 0;  ///< side of a cell
-    std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;  ///< for each cell, the share of its informative rays that are inside the wall
+    double step = 0;                    ///< side of a cell
+    std::size_t rows = 0, columns = 0;  ///< number of heights, and of radii
+    std::vector<double> wall_share;     ///< for each cell, the share of its informative rays that are inside the wall
     /// For each cell, the number of informative rays: rays that determine whether there is wall.
     std::vector<double> informative;
     std::vector<double> present;  ///< for each row, the number of rays that hit a wall
@@ -54,11 +54,15 @@ namespace ostraka {
 struct AxisFrame {
     Eigen::Vector3d foot = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::UnitZ(), u = Eigen::Vector3d::UnitX(),
                     w = Eigen::Vector3d::UnitY();
+    /// Height along the axis above the foot.
     [[nodiscard]] double height(const Eigen::Vector3d& p) const { return (p - foot).dot(up); }
+    /// Component of p - foot perpendicular to the axis.
     [[nodiscard]] Eigen::Vector3d across(const Eigen::Vector3d& p) const { return p - foot - height(p) * up; }
+    /// Unit vector at an angle around the axis.
     [[nodiscard]] Eigen::Vector3d direction(double angle) const { return std::cos(angle) * u + std::sin(angle) * w; }
 };
 
+/// The coordinate system of an axis; its height 0 is at the axis's point.
 AxisFrame frame_of(const Axis& axis);
 
 /// A sherd with its role in the construction of the template.
@@ -73,9 +77,9 @@ struct PlacedSherd {
 
 /// One mesh of the moved sherds.
 struct JoinedSherds {
-    Mesh mesh;
-    std::vector<std::vector<Index>> of_fragment;  ///< for each sherd, its faces in `mesh` that are not fracture
-    [[nodiscard]] std::vector<Index> faces() const;
+    Mesh mesh;                                       ///< faces of all selected sherds
+    std::vector<std::vector<Index>> of_fragment;     ///< for each sherd, its faces in `mesh` that are not fracture
+    [[nodiscard]] std::vector<Index> faces() const;  ///< faces of all sherds in `mesh` that are not fracture
     [[nodiscard]] std::vector<bool> broken() const;  ///< for each face of `mesh`, whether it belongs to a fracture
 };
 
@@ -94,8 +98,8 @@ void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::stri
 
 /// The wall in all directions around the axis.
 struct WallSection {
-    detail::ProfileImage image;
-    std::vector<double> tops;  ///< for each direction, height of the highest wall above the lowest row; -1: no wall
+    detail::ProfileImage image;  ///< share of rays inside the wall
+    std::vector<double> tops;    ///< for each direction, height of the highest wall above the lowest row; -1: no wall
 
     /// Removes the wall from heights with too little wall.
     void drop_rare(const RevolutionOptions& options);
@@ -120,20 +124,20 @@ public:
     void ring(const Eigen::Vector2d& point);
     /// Connects the rings with indices `a` and `b` by triangles.
     void sew(std::size_t a, std::size_t b);
-    [[nodiscard]] TriangleSoup soup() const;
+    [[nodiscard]] TriangleSoup soup() const;  ///< the swept surface
 
     /// Vertices of a ring.
     struct Ring {
-        std::vector<Vertex> vertices;
-        bool pole = false;  ///< true: the ring is a single vertex on the axis
+        std::vector<Vertex> vertices;  ///< indices of the vertices around the axis
+        bool pole = false;             ///< true: the ring is a single vertex on the axis
     };
-    std::vector<Ring> rings;
+    std::vector<Ring> rings;  ///< rings in the order in which they were added
 
 private:
     void add(Vertex a, Vertex b, Vertex c) { triangles_.push_back({Index(a), Index(b), Index(c)}); }
     const AxisFrame& frame_;
-    double lowest_, edge_;
-    Mesh mesh_;  ///< the vertices, without faces
+    double lowest_, edge_;  ///< height of the lowest point; approximate mean edge length
+    Mesh mesh_;             ///< the vertices, without faces
     std::vector<std::array<Index, 3>> triangles_;
 };
 

@@ -42,15 +42,15 @@ struct SelectionBorders {
 
 /// A selection on the mesh that was cut along the selection's borders.
 struct CutSelection {
-    CutMesh cut;
+    CutMesh cut;              ///< the cut mesh, and its relation to the original mesh
     std::vector<bool> faces;  ///< for each face of the cut mesh, whether it is selected
 };
 
 /// A scalar field, and the level at which a selection has its border.
 struct SelectionLevel {
     std::vector<double> values;  ///< value of each vertex
-    double level = 0;
-    bool above = true;  ///< true: the selection is where values are at least the level; false: at most
+    double level = 0;            ///< value at the border
+    bool above = true;           ///< true: the selection is where values are at least the level; false: at most
 };
 
 /// Evaluates selection expressions on one object, whose annotations are those of earlier steps. Errors name the file and the JSON
@@ -97,8 +97,9 @@ public:
     static PlaceFrame frame_of(const JsonValue& object, PlaceFrame around);
 
 private:
-    Point point(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
-    Index face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
+    Point point(const JsonValue& list, PlaceFrame frame, const std::string& at) const;  ///< position given by three numbers
+    Index face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;   ///< index of a picked face
+    /// Indices of picked vertices.
     std::vector<Index> picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
     std::function<bool(const Point&)> volume(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                              const std::string& at) const;
@@ -106,6 +107,7 @@ private:
     [[nodiscard]] ScreenCamera camera(const JsonValue& owner, PlaceFrame frame, const std::string& at) const;
     /// The surface point seen at the pixel of a pick.
     SurfaceHit seen(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
+    /// Area of a picture given by a rectangle or polygon.
     ScreenArea screen_area(const std::string& kind, const JsonValue& value, const ScreenCamera& camera,
                            const std::string& at) const;
     /// Search tree of the mesh, built at the first use.
@@ -133,10 +135,14 @@ private:
     std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
     /// True if this lasso runs along the edges of the mesh, that is, if it states a metric.
     bool keeps_to_edges(const JsonValue& lasso) const;
+    /// Faces on the seed's side of a lasso.
     std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// Scalar map that an expression names.
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use
+    /// Interval of a threshold, in the values of the map.
     ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
+    /// Faces of the chosen segments of similar thickness.
     std::vector<bool> segments(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     /// Whether a growth is given by a distance instead of a number of rings.
     bool by_distance(const JsonValue& value, const std::string& at) const;
@@ -146,9 +152,10 @@ private:
     const Annotation& earlier(const JsonValue& id, AnnotationType type, const std::string& at) const;
     /// The kind of an expression and its value; throws Error (input) for an expression with two kinds.
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
+    /// Throws Error (input) for the place `at`.
     [[noreturn]] void fail(const std::string& at, const std::string& what, const std::string& remedy) const;
 
-    bool face_sets_along_edges_ = false;
+    bool face_sets_along_edges_ = false;  ///< see keep_face_sets
     /// Evaluator of the uncut mesh, if this evaluator works on a cut mesh; else null.
     const ExpressionEvaluator* whole_ = nullptr;
     const CutMesh* cut_ = nullptr;               ///< the cut mesh; null: not cut
@@ -158,7 +165,7 @@ private:
     const std::vector<std::int32_t>& face_labels_;  ///< label of each face
     const AnnotationSet& set_;
     std::string where_;
-    CGAL::Bbox_3 bounds_;
+    CGAL::Bbox_3 bounds_;  ///< bounding box of the mesh
     Surroundings surroundings_;
     mutable std::optional<SurfaceSearch> search_;
     mutable std::map<std::string, ScreenCamera> cameras_;                  ///< from a name to the camera

@@ -16,7 +16,7 @@ enum class StepOutline {
     free,   ///< always a free outline: sets of faces end at isolines
 };
 
-enum class StepAction { make, add_to, remove_from, replace, erase, retag };
+enum class StepAction { make, add_to, remove_from, replace, erase, retag };  ///< what a step does with an annotation
 /// Name of an action in recipes: "make", "add to", "remove from", "replace", "delete", "retag".
 std::string to_string(StepAction action);
 

@@ -25,7 +25,7 @@ ScreenArea screen_polygon(const std::vector<Pixel>& points, const std::string& w
 /// For each face, whether its centroid is seen within the area of the picture. With `search` only visible points count: the
 /// segment from the point to the eye (for parallel rays, until it has left the object) must not meet another face. Faces that
 /// contain the point itself never hide it, so that both sides of an open surface can be seen. Exact for the coordinates of the
-/// eye. With a null `search` hidden points count too. O(n), plus O(log n) per point that needs a ray.
+/// eye. With a null `search` hidden points count too. Time: O(n), plus O(log n) per point that needs a ray.
 std::vector<bool> faces_seen(const Mesh& mesh, const PictureCamera& camera, const ScreenArea& area, const SurfaceSearch* search);
 /// Indices of the vertices with a face that are seen within the area of the picture, ascending, as for `faces_seen`.
 std::vector<Index> vertices_seen(const Mesh& mesh, const PictureCamera& camera, const ScreenArea& area,

@@ -1,4 +1,4 @@
-// The members of a constraint on a shape, and what its statements need of them.
+// The annotated members of a constraint on a shape, and the properties of the members that statements use.
 #pragma once
 
 #include "semantic/constraint_spec.h"
@@ -8,9 +8,9 @@
 
 namespace ostraka::semantic {
 
-/// Indices as the solver's ids.
+/// Vertex indices as ids of the solver's points.
 inline std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
-/// The points of some vertices.
+/// The positions of these vertices, one per column.
 Points columns_at(const Points& points, const std::vector<Index>& vertices);
 
 /// A relationship that is a constraint, on a shape. Errors (input) name the file and the constraint.
@@ -19,41 +19,44 @@ public:
     ConstraintMembers(Shape shape, const Relationship& relationship, std::string place)
         : shape_(shape), relationship_(relationship), place_(std::move(place)) {}
 
+    /// Throws Error (input) with the problem and the remedy.
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
 
-    [[nodiscard]] const Shape& shape() const { return shape_; }
-    [[nodiscard]] const Relationship& relationship() const { return relationship_; }
-    [[nodiscard]] std::size_t count() const { return relationship_.annotations.size(); }
-    [[nodiscard]] const Annotation& member(std::size_t i) const;
-    /// The vertices of a member, at least one, ascending.
+    [[nodiscard]] const Shape& shape() const { return shape_; }                       ///< shape on which the constraint is stated
+    [[nodiscard]] const Relationship& relationship() const { return relationship_; }  ///< the relationship that is a constraint
+    [[nodiscard]] std::size_t count() const { return relationship_.annotations.size(); }  ///< number of members
+    [[nodiscard]] const Annotation& member(std::size_t i) const;                          ///< annotation of member i
+    /// The vertices of member i, at least one, ascending.
     [[nodiscard]] std::vector<Index> vertices(std::size_t i) const;
-    /// The vertices of all members together.
+    /// The vertices of all members, without duplicates.
     [[nodiscard]] std::vector<int> all_vertices() const;
-    [[nodiscard]] const std::vector<Index>& faces(std::size_t i) const;
+    [[nodiscard]] const std::vector<Index>& faces(std::size_t i) const;  ///< faces of member i
 
-    /// Throw Error (input) for another number of members (maximum 0: any), and for a member that is not a region.
+    /// Throws Error (input) if the number of members is not between the minimum and the maximum (0: any number).
     void need(std::size_t minimum, std::size_t maximum) const;
+    /// Throws Error (input) if member i is not a region.
     void need_region(std::size_t i) const;
 
-    /// The stated direction, otherwise the upward direction of the annotations. Throws Error (input) if there is neither.
+    /// The direction in `stated`, otherwise the upward direction of the annotations. Throws Error (input) if there is neither.
     [[nodiscard]] Vector3d up(const std::optional<Vector3d>& stated) const;
-    /// The measure of a member that has this name or id; without it, its only measure. Throws Error (input) if none or several
-    /// have it.
+    /// The measure of a member that has this name or id; without a name, the only measure of the member. Throws Error (input) if
+    /// no measure or several measures match.
     [[nodiscard]] const Measure& measure(const MeasureName& name, std::size_t member) const;
-    /// The tolerance stated for a quantity, otherwise the default.
+    /// The tolerance that the relationship states for a quantity, otherwise the tolerance `for_all`.
     [[nodiscard]] double tolerance(const std::string& quantity, double for_all) const;
 
-    /// The member that the others follow: the named one, otherwise the one with the largest share of vertices moved by the edit
-    /// (of equals, the first). Nothing if they follow none, or if the edit moves none of them. Throws Error (input) if the name
-    /// is none of a member.
+    /// Index of the leader, the member that the others follow: the member named in `stated`, otherwise the member with the
+    /// largest share of vertices moved by the edit (the first of several equal ones). Nothing if no member is to be followed, or
+    /// if the edit moves no member. Throws Error (input) if no member has the name.
     [[nodiscard]] std::optional<std::size_t> leader(const Leader& stated, const State& edited) const;
+    /// Throws Error (input) if no member has the name of the leader.
     void check_leader(const Leader& stated) const { static_cast<void>(leader(stated, State(shape_.mesh))); }
 
-    /// A low-level constraint whose weight is a share of the constraint's.
+    /// A low-level constraint on the points `ids`, whose weight is the share `share` of the constraint's weight.
     [[nodiscard]] std::unique_ptr<Constraint> make(const ConstraintKind& kind, std::vector<int> ids, double share = 1) const;
-    /// A constraint that keeps a member as the edit leaves it.
+    /// A low-level constraint that keeps the shape of member i as the edit leaves it.
     [[nodiscard]] std::unique_ptr<Constraint> as_edited(std::size_t i, const State& edited) const;
-    /// Diagonal of the bounding box of a constraint's points at rest.
+    /// Diagonal of the bounding box of a low-level constraint's points at rest.
     [[nodiscard]] double size_at_rest(const Constraint& constraint) const;
 
 private:
@@ -61,6 +64,7 @@ private:
     const Relationship& relationship_;
     std::string place_;
 };
-using MembersPtr = std::shared_ptr<const ConstraintMembers>;  ///< shared by statements
+/// Members of a constraint, shared by the functions of its statement.
+using MembersPtr = std::shared_ptr<const ConstraintMembers>;
 
 }  // namespace ostraka::semantic

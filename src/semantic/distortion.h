@@ -1,4 +1,4 @@
-// Detects parts that should have kept their shape and were distorted by solving.
+// Detects parts that were distorted by solving although they should have kept their shape.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -7,17 +7,17 @@
 
 namespace ostraka::semantic {
 
-/// Expected changes, one flag per vertex.
+/// Expected changes: one flag per vertex of the mesh.
 struct Expected {
-    std::vector<bool> change;  ///< moved by the edit, or in a constraint that did not hold
-    std::vector<bool> size;    ///< in such a constraint about size
+    std::vector<bool> change;  ///< the edit moves the vertex, or it is in a constraint that did not hold
+    std::vector<bool> size;    ///< the vertex is in a constraint on size that did not hold
 };
 
-/// Finds distorted regions. Regions of which most vertices were not expected to change are compared with their shape after the
-/// edit: they are distorted if the root mean square deviation exceeds `options.distortion`, up to a rigid motion of the part
-/// and without vertices within `options.spread` of those expected to change, where the surface has to give way. Regions not
-/// expected to change in size are distorted if they have become thin. `now`: result of solving from `edited`. Sorted from worst
-/// to best.
+/// Finds distorted regions. A region of which most vertices were not expected to change is compared with its shape after the
+/// edit: it is distorted if the root mean square deviation exceeds `options.distortion`, up to a rigid motion of the part and
+/// without the vertices within `options.spread` of vertices that were expected to change, where the surface has to yield. A
+/// region not expected to change in size is distorted if it has become thin. `now`: result of solving from `edited`. Sorted from
+/// the most to the least distorted.
 std::vector<DistortedPart> distorted_parts(AnnotatedMeshView rest, const Expected& expected, const Mesh& edited, const Mesh& now,
                                            const DeformOptions& options);
 

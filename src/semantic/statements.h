@@ -1,4 +1,4 @@
-// What constraints of each type mean.
+// Translates relationships of each type of constraint to statements.
 #pragma once
 
 #include "semantic/constraint_members.h"
@@ -15,7 +15,7 @@
 
 namespace ostraka::semantic {
 
-/// The verdict from deviations and their tolerances.
+/// Verdict that follows from deviations and their tolerances.
 Measured verdict_of(std::vector<Deviation> deviations);
 
 // Functions that translate relationships to statements, for one or several types each: shapes.cpp, axis_constraints.cpp,
@@ -39,32 +39,35 @@ Statement part_similarity(const MembersPtr&, const spec::Alike&, const RelationO
 Statement same_length(const MembersPtr&, const spec::Alike&, const RelationOptions&);
 Statement keep_direction(const MembersPtr&, const spec::KeepDirection&, const RelationOptions&);
 Statement keep_position(const MembersPtr&, const spec::KeepPosition&, const RelationOptions&);
-/// Whether the type has the name of one of the solver's kinds ("edge strain").
+/// Whether the type has the name of one of the solver's kinds of constraint ("edge strain").
 bool is_low_level(const std::string& type);
-/// Reads the parameters, including those that the kind does not use.
+/// Statement of a constraint of one of the solver's kinds; reads the parameters, including parameters that the kind does not use.
 Statement low_level(const MembersPtr&, const ParameterReader&, const RelationOptions&);
 
-/// The rigid motion from the current positions of vertices to their positions at rest.
+/// The rigid motion that maps the current positions of the vertices best onto their positions at rest.
 Motion motion_back(const ConstraintMembers& members, const std::vector<Index>& vertices, const State& now);
-/// The axis of a member as measured on the current shape, transformed to the part at rest by the best rigid motion, so that a
-/// constraint that transforms it forward reproduces the measured axis. The axis at rest if the current shape has none.
+/// The axis of a member as measured on the current shape, transformed to the member at rest by the best rigid motion, so that a
+/// constraint that transforms the axis forward reproduces the measured axis. Returns `rest`, the axis at rest, if the current
+/// shape has no axis.
 Axis axis_carried_back(const ConstraintMembers& members, std::size_t i, const Axis& rest, const State& now);
-/// What keeps the surface around each of some vertices as `shape` has it, so many times as large, but lets it turn.
+/// Constraints that keep the surface around each vertex as in `shape`, scaled by `grown`, up to a rotation.
 Statement::Constraints stars_kept(const ConstraintMembers& members, const std::vector<Index>& vertices, const Points& shape,
                                   double grown = 1);
-/// The first members keep their surface by stars: displacements from neighbours, which do not turn, would shear what turns far.
+/// Lets the first `count` members rotate: their surface is kept by `stars_kept`, since Laplacian displacements, which do not
+/// rotate, would shear parts that rotate far.
 void let_turn(const MembersPtr& members, std::size_t count, Statement& statement);
-/// Measures as the relation of this type does. doubt_axes: an angle within its tolerance gets the verdict unknown if the axis
-/// of a part is less certain than the tolerance, that is, if the axis of its slices and the longest principal axis of its area
-/// differ by more, for a part at least twice as long as wide.
+/// Sets the verdict to unknown for an angle within its tolerance if the axis of a part is less certain than the tolerance: the
+/// axis of its slices and the longest principal axis of its area differ by more, for a part at least twice as long as wide.
 void doubt_axes(const ConstraintMembers& members, const State& deformed, double tolerance, Measured& measured);
 
+/// A measurement of the relationship `stated` by RelationMeter, as for relationships that are no constraints.
 std::function<Measured(const State&)> as_related(const MembersPtr& members, Relationship stated,
                                                  const RelationOptions& tolerances);
-/// The mean of vertices, and the unit normal of their fitted plane.
+/// The mean of the vertices' positions.
 Vector3d mean_of(const std::vector<Index>& vertices, const Points& points);
+/// The unit normal of the plane fitted to the vertices.
 Vector3d normal_of(const Points& points, const std::vector<Index>& vertices);
-/// Distance tolerance in the mesh's unit.
+/// Tolerance of distances in the mesh's unit.
 double length_tolerance(const ConstraintMembers& members, const RelationOptions& tolerances);
 
 }  // namespace ostraka::semantic

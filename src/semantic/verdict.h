@@ -1,4 +1,4 @@
-// Measures on the result how well the edit was followed and what happened to the surface.
+// Measures on the result of a solve how closely the edit was followed, and how the surface changed.
 #pragma once
 
 #include "ostraka/semantic/deform.h"
@@ -6,13 +6,15 @@
 
 namespace ostraka::semantic {
 
-/// Flags the mesh vertices that the edit moves, see EditFollowed. `displacements`: those of the edit alone.
+/// For each mesh vertex, whether the edit moves it, as EditFollowed defines. `displacements`: displacement of each vertex by the
+/// edit alone.
 std::vector<bool> asked_vertices(const HandleSpace& space, const EditState& last, const Points& displacements);
 
+/// How closely the positions `now` follow the edit; `asked`: for each vertex, whether the edit moves it.
 EditFollowed followed_edit(const HandleSpace& space, const EditState& last, const std::vector<bool>& asked, const Points& rest,
                            const Points& edited, const Points& now);
 
-/// Compares three states of one mesh.
+/// Compares three states of one mesh: at rest, after the edit, and after solving.
 SurfaceChange surface_change(const Mesh& rest, const Mesh& edited, const Mesh& now);
 
 }  // namespace ostraka::semantic

@@ -1,4 +1,4 @@
-// Joins face segments to contours.
+// Joins the segments in which a plane cuts faces to contours.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -7,15 +7,15 @@
 
 namespace ostraka::detail {
 
-/// Adds the contour without degenerate segments (no length, or traversed back and forth), and measures it; does nothing if
-/// nothing is left.
+/// Removes the degenerate segments of a contour (no length, or traversed back and forth), measures the contour and appends it;
+/// does nothing if no segment remains.
 void add_contour(std::vector<Contour>& contours, Contour contour);
 
-/// Reverses a contour: an outer contour becomes a hole.
+/// Reverses the orientation of a contour: an outer contour becomes a hole.
 void turn_around(Contour& contour);
 
-/// Intersection of the plane at height `plane` with the edge: the vertex on the plane, or a point between. `height` returns the
-/// height of a vertex.
+/// Intersection of the plane at height `plane` with the edge of `h`: the end vertex on the plane, or a point between the ends.
+/// `height` returns the height of a vertex.
 template <class Height>
 Eigen::Vector2d crossing(const Mesh& mesh, const SliceFrame& frame, Halfedge h, double plane, double tolerance,
                          const Height& height) {
@@ -28,8 +28,9 @@ Eigen::Vector2d crossing(const Mesh& mesh, const SliceFrame& frame, Halfedge h, 
     return from + s / (s - t) * (to - from);
 }
 
-/// The contours of one plane through the faces [begin, end), which ascend and have vertices both above and not above the plane.
-/// `above` tests whether a vertex counts as above, `place` returns the intersection of the plane with an edge.
+/// The contours of one plane through the faces [begin, end), whose indices ascend and which have vertices both above and not
+/// above the plane. `above` returns whether a vertex counts as above the plane, `place` the intersection of the plane with an
+/// edge.
 template <class Faces, class Above, class Place>
 std::vector<Contour> join(const Mesh& mesh, Faces begin, Faces end, const Above& above, const Place& place) {
     const auto count = static_cast<std::size_t>(end - begin);

@@ -1,4 +1,4 @@
-// Nearest points on curves given as ordered lists of many short segments.
+// Search for the nearest point on curves given as ordered lists of many short segments.
 #pragma once
 
 #include "ostraka/geom/circle.h"
@@ -8,7 +8,7 @@
 
 namespace ostraka::detail {
 
-/// A binary tree of bounding boxes over consecutive segments: neighbours in the list are neighbours in the plane, so that no
+/// A binary tree of bounding boxes over consecutive segments. Neighbours in the list are neighbours in the plane, so that no
 /// sorting is needed.
 class SegmentTree {
 public:
@@ -20,7 +20,8 @@ public:
         for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n].extend(boxes_[2 * n]), boxes_[n].extend(boxes_[2 * n + 1]);
     }
 
-    /// Distance to the nearest segment. `hint` is a nearby segment, and is set to the nearest.
+    /// Distance from `p` to the nearest segment. `hint`: index of a segment near `p`, replaced by the index of the nearest
+    /// segment.
     double distance(const Eigen::Vector2d& p, std::size_t& hint) const {
         double best = squared(p, hint);
         search(1, p, best, hint);
@@ -28,7 +29,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t leaf = 4;
+    static constexpr std::size_t leaf = 4;  ///< number of segments per leaf
     struct Box {
         Eigen::Vector2d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
         Eigen::Vector2d high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -38,6 +39,7 @@ private:
             return (low - p).cwiseMax(p - high).cwiseMax(0).squaredNorm();
         }
     };
+    /// Squared distance from p to segment i.
     [[nodiscard]] double squared(const Eigen::Vector2d& p, std::size_t i) const {
         const auto& [a, b] = segments_[i];
         const Eigen::Vector2d along = b - a;
@@ -45,6 +47,7 @@ private:
         const double t = length > 0 ? std::clamp(along.dot(p - a) / length, 0.0, 1.0) : 0;
         return (a + t * along - p).squaredNorm();
     }
+    /// Searches the subtree of a node for a segment nearer than `best`, a squared distance.
     void search(std::size_t node, const Eigen::Vector2d& p, double& best, std::size_t& nearest) const {
         if (node >= leaves_) {
             const std::size_t first = (node - leaves_) * leaf;
@@ -58,9 +61,9 @@ private:
         if (std::max(left, right) < best) search(second, p, best, nearest);
     }
 
-    PlaneSegments segments_;
-    std::size_t leaves_ = 1;
-    std::vector<Box> boxes_;
+    PlaneSegments segments_;  ///< the segments of the curves, in order
+    std::size_t leaves_ = 1;  ///< number of leaves, a power of two
+    std::vector<Box> boxes_;  ///< box of each node; the children of node i are 2 i and 2 i + 1
 };
 
 }  // namespace ostraka::detail

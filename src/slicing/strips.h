@@ -1,4 +1,4 @@
-// Point-in-polygon with exact predicates for many contours at once.
+// Point-in-polygon tests with exact predicates for many contours at once.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -11,11 +11,12 @@ namespace ostraka::detail {
 /// The edges of all closed contours, sorted into horizontal strips.
 class Strips {
 public:
+    /// An edge from `a` to `b`.
     struct Edge {
-        Eigen::Vector2d a, b;
-        int contour;
-        std::size_t place;  ///< index of `a` in its contour
-        bool last;          ///< the closing edge of the contour
+        Eigen::Vector2d a, b;  ///< end points
+        int contour;           ///< index of the contour
+        std::size_t place;     ///< index of `a` among the points of the contour
+        bool last;             ///< true: the edge closes the contour
     };
 
     explicit Strips(const std::vector<Contour>& contours) {
@@ -46,7 +47,8 @@ public:
         }
     }
 
-    /// Finds the contours that contain the point in their interior, and those that pass through it.
+    /// Finds the contours that contain the point in their interior (`inside`), and the contours that pass through the point
+    /// (`on`).
     void locate(const Eigen::Vector2d& p, std::vector<int>& inside, std::vector<int>& on) const {
         inside.clear(), on.clear();
         std::vector<int>& crossed = inside;
@@ -86,8 +88,8 @@ public:
         crossed.resize(kept_count);
     }
 
-    /// Calls visit(edge, edge) once for every pair of edges whose boxes overlap within the tolerance, except consecutive edges
-    /// of a contour.
+    /// Calls visit(edge, edge) once for every pair of edges whose boxes, enlarged by the tolerance, overlap, except consecutive
+    /// edges of a contour.
     template <class Visit>
     void overlapping(double tolerance, const Visit& visit) const {
         std::vector<std::pair<double, Index>> sorted;  // left end, edge
@@ -114,25 +116,28 @@ public:
     }
 
 private:
+    /// Whether two edges are consecutive edges of a contour.
     static bool are_neighbours(const Edge& e, const Edge& f) {
         if (e.contour != f.contour) return false;
         const auto [low, high] = std::minmax(e.place, f.place);
         return high == low + 1 || (low == 0 && (e.place == high ? e : f).last);
     }
+    /// Index of the strip at height y.
     [[nodiscard]] std::size_t strip(double y) const {
         if (!(high_ > low_)) return 0;
         const double position = (y - low_) / (high_ - low_) * double(strips_);
         return static_cast<std::size_t>(std::clamp(position, 0.0, double(strips_ - 1)));
     }
+    /// Lowest and highest strip that the edge intersects.
     [[nodiscard]] std::pair<std::size_t, std::size_t> range(const Edge& edge) const {
         return std::minmax(strip(edge.a.y()), strip(edge.b.y()));
     }
 
-    std::vector<Edge> edges_;
-    std::vector<std::size_t> first_;
-    std::vector<Index> entries_;
-    double low_ = 0, high_ = 0;
-    std::size_t strips_ = 1;
+    std::vector<Edge> edges_;         ///< edges of all closed contours
+    std::vector<std::size_t> first_;  ///< for each strip, index of its first entry in entries_
+    std::vector<Index> entries_;      ///< indices of the edges that intersect each strip
+    double low_ = 0, high_ = 0;       ///< lowest and highest y coordinate
+    std::size_t strips_ = 1;          ///< number of strips
 };
 
 }  // namespace ostraka::detail

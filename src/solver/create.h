@@ -8,21 +8,26 @@ namespace ostraka::solver {
 
 using kinds::Interval;
 
-/// Arguments from which a constraint of any kind is created. `rest` holds the constraint's own points in the order of ids.
+/// Arguments from which a constraint of any kind is created. `rest` holds the rest positions of the constraint's own points, in
+/// the order of `ids`.
 struct ConstraintArguments {
-    std::string_view kind;
-    std::vector<int> ids;
-    double weight;
-    Points rest;
+    std::string_view kind;  ///< name of the kind
+    std::vector<int> ids;   ///< indices of the constrained points in the shape
+    double weight;          ///< weight of the constraint
+    Points rest;            ///< rest positions of the constrained points, in the order of `ids`
 
+    /// Throws Error (usage) that names the kind, with the problem and the remedy.
     [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) const;
-    /// A direction as a unit vector; fails if it is not finite or has no length.
+    /// A direction as a unit vector; throws Error (usage) if the direction is not finite or has no length.
     Eigen::Vector3d unit(const Eigen::Vector3d& direction, const char* name = "direction") const;
+    /// The point; throws Error (usage) if the point is not finite.
     [[nodiscard]] Eigen::Vector3d finite(const Eigen::Vector3d& point, const char* name = "point") const;
-    /// A range of values from 0 on; `range_of` multiplies it by the measure at rest unless absolute.
+    /// The range; throws Error (usage) unless 0 <= min <= max.
     [[nodiscard]] Interval checked(const Interval& range) const;
+    /// The range, multiplied by the measure at rest unless `absolute`.
     [[nodiscard]] Interval range_of(const Interval& range, bool absolute, double rest_measure) const;
-    /// The given points, otherwise the rest points; the number of columns must be the same.
+    /// The given points, or the rest positions if empty; throws Error (usage) if the number of columns differs from the number of
+    /// ids.
     [[nodiscard]] Points given_or_rest(const std::optional<Points>& points) const;
 };
 
@@ -75,19 +80,19 @@ ConstraintPtr create(const kinds::PolylineLength&, const ConstraintArguments&);
 ConstraintPtr create(const kinds::EqualLengths&, const ConstraintArguments&);
 ConstraintPtr create(const kinds::EqualLength&, const ConstraintArguments&);
 
-/// Sum of a_i b_i^T in the order of the columns.
+/// Sum of a_i b_i^T over the columns, in their order.
 Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b);
 
-/// The proper rotation R that maximises tr(R^T M): R q_i is closest to r_i for M = sum of r_i q_i^T.
+/// The proper rotation R that maximises tr(R^T M); for M = sum of r_i q_i^T the points R q_i are closest to r_i.
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m);
 
 /// Unit eigenvectors of a symmetric matrix, in ascending order of eigenvalues.
 SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric);
 
-/// An arbitrary unit vector perpendicular to a unit vector.
+/// An arbitrary unit vector perpendicular to the unit vector `unit`.
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit);
 
-/// A constraint whose projection is determined by moments. Rows: the centred points.
+/// A constraint whose projection is determined by the moments of its rows. Rows: the centred points.
 class MomentConstraint : public Constraint {
 public:
     explicit MomentConstraint(const ConstraintArguments& a) : Constraint(a.kind, a.ids, a.weight) {

@@ -1,4 +1,4 @@
-// Argument checks of this module.
+// Checks of arguments of the statistics functions.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,11 +7,11 @@
 
 namespace ostraka {
 
-/// Throws Error (input) unless there is at least one row and one column and all values are finite.
+/// Throws Error (input) unless `samples` has at least one row and one column and all values are finite.
 void require_samples(const Eigen::MatrixXd& samples, const std::string& where);
 
-/// Throws Error (input) unless the matrix is square, finite and symmetric to 1e-9 of its largest entry; for distances, also
-/// unless all entries are non-negative.
+/// Throws Error (input) unless the matrix is square, finite and symmetric to 1e-9 of its largest entry. If `distances` is true,
+/// also throws if an entry is negative.
 void require_symmetric(const Eigen::MatrixXd& matrix, bool distances, const std::string& where);
 
 /// The number of rows that differ from all rows before them.

@@ -11,12 +11,12 @@ namespace ostraka::shapes {
 
 using Colour3 = std::array<std::uint8_t, 3>;
 
-/// Rotation by `degrees` around an axis.
+/// Rotation matrix for an angle in degrees around an axis.
 inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
     return Eigen::AngleAxisd(degrees * pi / 180, axis.normalized()).toRotationMatrix();
 }
 
-/// An object without parts; the thinnest wall or gap is in mm.
+/// Creates an object without parts; `thinnest`: thinnest wall or gap, mm.
 inline std::unique_ptr<SyntheticObject> start_object(const std::string& name, const std::string& object_class,
                                                      const std::string& description, int genus, std::size_t minimum_vertices,
                                                      double thinnest) {
@@ -30,18 +30,20 @@ inline std::unique_ptr<SyntheticObject> start_object(const std::string& name, co
     return object;
 }
 
-/// Adds a part and returns its label.
+/// Adds a part to an object and returns its label.
 inline int add_part(SyntheticObject& object, const std::string& name, const Colour3& colour) {
     object.parts.push_back(name);
     object.part_colours.push_back(colour);
     return static_cast<int>(object.parts.size()) - 1;
 }
 
+/// Adds a solid that forms one part; `blend`: width of the smooth union, mm.
 inline void add_member(SyntheticObject& object, SolidPointer solid, int part, double blend) {
     object.members.push_back({std::move(solid), blend, false, {{std::numeric_limits<double>::infinity(), part}}});
 }
 
-/// A member with several parts: `until` pairs the index of a profile point or bead with the part that ends there.
+/// Adds a solid that forms several parts; each pair in `until` is the index of a profile point or bead, and the part that ends
+/// there.
 template <class Items>
 void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items& items, double blend,
                         const std::vector<std::pair<double, int>>& until) {
@@ -57,7 +59,7 @@ void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items
     object.members.push_back(std::move(member));
 }
 
-/// Subtracts a solid; the resulting walls become `part` (below 0: the part that was cut).
+/// Subtracts a solid from an object; the resulting walls become `part` (below 0: the part that was cut).
 inline void carve(SyntheticObject& object, SolidPointer solid, int part, double blend) {
     Member member{std::move(solid), blend, true, {}};
     if (part >= 0) member.stretches = {{std::numeric_limits<double>::infinity(), part}};
@@ -65,6 +67,7 @@ inline void carve(SyntheticObject& object, SolidPointer solid, int part, double 
 }
 
 using ObjectPointer = std::unique_ptr<const SyntheticObject>;
+/// Completes an object after all members were added.
 inline ObjectPointer finished(std::unique_ptr<SyntheticObject> object) {
     object->finish();
     return object;

@@ -1,4 +1,4 @@
-// Interpolating cubic splines over chord length, and the point on them that minimises a distance.
+// Interpolating cubic splines over chord length, and the search for the point of a spline that minimises a distance.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,11 +11,13 @@
 
 namespace ostraka::shapes {
 
-/// Cubic spline through `points` at given knots. An end without prescribed slope has zero curvature.
+/// Cubic spline through `points` at given knots. `start`, `end`: prescribed slopes; an end without prescribed slope has zero
+/// curvature.
 template <int D>
 class Spline {
 public:
     using Vec = Eigen::Matrix<double, D, 1>;
+    /// Value, first and second derivative at a parameter.
     struct State {
         Vec value, first, second;
     };
@@ -50,6 +52,7 @@ public:
         for (std::size_t i = n - 1; i-- > 0;) bends_[i] = (bends_[i] - above[i] * bends_[i + 1]) / diagonal[i];
     }
 
+    /// Value and derivatives at a parameter.
     [[nodiscard]] State at(double t) const {
         const auto next = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, t);
         const auto i = static_cast<std::size_t>(next - knots_.begin()) - 1;
@@ -59,9 +62,9 @@ public:
             (points_[i + 1] - points_[i]) / h + ((1 - 3 * a * a) * bends_[i] + (3 * b * b - 1) * bends_[i + 1]) * (h / 6),
             a * bends_[i] + b * bends_[i + 1]};
     }
-    [[nodiscard]] double length() const { return knots_.back(); }
+    [[nodiscard]] double length() const { return knots_.back(); }  ///< last parameter, the chord length of the points
 
-    /// Parameters from start to end, `per_piece` in each piece.
+    /// Parameters of samples from start to end, `per_piece` samples in each piece.
     [[nodiscard]] std::vector<double> samples(int per_piece) const {
         std::vector<double> parameters;
         for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
@@ -72,13 +75,13 @@ public:
     }
 
 private:
-    [[nodiscard]] double step(std::size_t i) const { return knots_[i + 1] - knots_[i]; }
-    std::vector<double> knots_;
-    std::vector<Vec> points_, bends_;
+    [[nodiscard]] double step(std::size_t i) const { return knots_[i + 1] - knots_[i]; }  ///< length of piece i
+    std::vector<double> knots_;                                                           ///< parameter of each point
+    std::vector<Vec> points_, bends_;  ///< bends_: second derivatives at the knots
 };
 
-/// Root of an increasing function within [low, high] (or the end nearest to it): Newton steps kept inside a shrinking bracket.
-/// `slope_and_bend(t)` gives the function and its derivative.
+/// Root of an increasing function within [low, high] (or the nearest end of the interval), by Newton steps from `t` kept inside a
+/// shrinking bracket. `slope_and_bend(t)` returns the function and its derivative.
 template <class Function>
 double bracketed_root(double low, double high, double t, Function&& slope_and_bend) {
     // The error after a Newton step is of the order of the squared step: smaller steps gain nothing.
@@ -96,11 +99,12 @@ double bracketed_root(double low, double high, double t, Function&& slope_and_be
     return t;
 }
 
-/// Curve samples grouped by piece, to find the sample with minimum cost without evaluating all: `lower_bound(group)` must not
-/// exceed `cost(i)` of any member.
+/// Samples of a curve grouped by piece, to find the sample of min cost without evaluating all samples.
 struct SampleGroups {
-    int per_piece;
-    std::size_t samples;  ///< pieces * per_piece + 1
+    int per_piece;        ///< number of samples per piece
+    std::size_t samples;  ///< number of samples: pieces * per_piece + 1
+    /// Index of the sample i with the smallest `cost(i)`; `lower_bound(piece)` must not exceed the cost of any sample of the
+    /// piece.
     template <class Bound, class Cost>
     [[nodiscard]] std::size_t minimum(Bound&& lower_bound, Cost&& cost) const {
         const std::size_t pieces = samples / static_cast<std::size_t>(per_piece);

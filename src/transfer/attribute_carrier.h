@@ -1,4 +1,4 @@
-// Transfer of attributes to the target, including the pins of measures.
+// Transfer of attributes of annotations to the target, including the pins of measures.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -10,20 +10,23 @@
 
 namespace ostraka {
 
+/// Copies attributes and maps the pins of measures to the target.
 class AttributeCarrier {
 public:
-    /// `refined`: the target has new faces, and only vertices keep their indices.
+    /// `refined`: true if the target has new faces, and only its vertices keep their indices.
     AttributeCarrier(const PathTracer& tracer, bool refined) : tracer_(tracer), refined_(refined) {}
 
+    /// Transfers the attributes of annotation `from` to annotation `to`.
     void carry(const Annotation& from, Annotation& to);
-    /// Restores the old value, marked stale, of measures that lost a pin and cannot be recomputed. To be called after measures
+    /// Restores the old value, marked stale, of measures that lost a pin and cannot be recomputed. Must be called after measures
     /// were refreshed.
     void keep_old_values(AnnotationSet& set) const;
 
 private:
     const PathTracer& tracer_;
     bool refined_;
-    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation id, attribute id, old value
+    /// For each measure that lost a pin: annotation id, attribute id, old value.
+    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;
 };
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Keeps regions disjoint that share no face on the source.
+// Keeps regions disjoint on the target if they share no face on the source.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -8,11 +8,11 @@
 
 namespace ostraka {
 
-/// `selected`: for each annotation of the set, the flags of the faces of `mesh` that were assigned to it; empty if it has none.
-/// A face assigned to several regions that share no face on the source goes to the region that covers most of it there (the
-/// first one of several with equal coverage). If the regions of the set partition the whole source, unassigned faces are
-/// assigned in the same way. The region of the whole object is ignored. `source_search` is called only if there is such a face.
-/// Linear, except for these faces.
+/// `selected`: for each annotation of the set, flags of the faces of `mesh` that were assigned to the annotation; empty if it has
+/// no faces. A face assigned to several regions that share no face on the source is assigned to the region that covers most of
+/// the face's projection onto the source (the first of several regions with equal coverage). If the regions of the set partition
+/// the whole source, unassigned faces are assigned in the same way. The region of the whole object is ignored. `source_search` is
+/// called only if there is such a face. Linear, except for these faces.
 void keep_disjoint(AnnotatedMeshView source, const std::function<const SurfaceSearch&()>& source_search, const Mesh& mesh,
                    std::vector<std::vector<bool>>& selected);
 

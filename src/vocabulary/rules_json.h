@@ -5,7 +5,8 @@
 
 namespace ostraka {
 
-/// Reads rules. The list is checked against the schema, but references to concepts and attributes are not checked.
+/// Reads inference rules from JSON. The list is checked against the schema, but references to concepts and attributes are not
+/// checked.
 std::vector<InferenceRule> rules_from_json(const JsonValue& rule_list, const std::string& where);
 
 }  // namespace ostraka

@@ -11,7 +11,7 @@
 
 namespace ostraka::detail {
 
-/// The names in a member that is a text or a list of texts.
+/// The names in a JSON member that is a text or a list of texts.
 inline std::vector<std::string> names_in(const JsonValue& object, const char* member) {
     const JsonValue* value = find_member(object, member);
     if (value != nullptr && value->IsString()) return {ostraka::text_of(*value)};
@@ -20,15 +20,17 @@ inline std::vector<std::string> names_in(const JsonValue& object, const char* me
     return names;
 }
 
+/// A number as text, with 9 significant digits.
 inline std::string text_of(double value) { return digits(value, 9); }
 
-inline std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
+inline std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }  ///< the text in single quotes
 
+/// Name of an annotation for messages: "'tag' (id 3)".
 inline std::string annotation_name(const Annotation& annotation) {
     return fmt::format("{} (id {})", in_quotes(annotation.tag), annotation.id);
 }
 
-/// True if a text is one of several words, or another name of the same term in `allowed` (which may be null).
+/// True if a text is one of the words, or another name of the same term of `allowed` (which may be null).
 inline bool is_one_of(const std::string& value, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
         if (folded(word) == folded(value)) return true;

@@ -1,4 +1,4 @@
-// Rejects requests of the page.
+// Rejects a request of the page.
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -7,6 +7,7 @@
 
 namespace ostraka::workbench {
 
+/// Throws Error (usage) with the problem and the remedy.
 [[noreturn]] inline void fail_request(const std::string& problem, const std::string& remedy = "load the page again") {
     throw Error(ErrorKind::usage, "the workbench", problem, remedy);
 }

@@ -12,7 +12,7 @@
 
 namespace ostraka::workbench {
 
-/// The part of an object that an output of this kind becomes; empty if none.
+/// The part of an object that an output of this kind becomes; empty: the output becomes no part.
 inline std::string part_of(Kind kind) {
     switch (kind) {
         case Kind::mesh:
@@ -34,12 +34,13 @@ inline std::string part_of(Kind kind) {
     }
 }
 
+/// Whether the name is a valid name of a file without folder.
 inline bool is_plain_name(const std::string& name) {
     return !name.empty() && name.size() <= 100 && name.front() != '.' && printable(name) == name &&
            name.find_first_of("/\\:$") == std::string::npos;
 }
 
-/// `name`, with a number appended if an object already has it.
+/// A name for a new object: `name`, with a number appended if an object already has this name.
 inline std::string free_name(const SessionState& state, const std::string& name) {
     const auto is_taken = [&](const std::string& candidate) {
         return std::any_of(state.objects.begin(), state.objects.end(),
@@ -50,7 +51,7 @@ inline std::string free_name(const SessionState& state, const std::string& name)
     return free;
 }
 
-/// File name without the extension of its part.
+/// File name without folder and without the extension of its kind of file.
 inline std::string stem_of(const std::string& file) {
     const std::string name = Path(file).filename().string();
     for (const std::string_view end : {".ant.json", ".graph.json", ".recipe.json", ".edit.json", ".template.json", ".cage.ply"})

@@ -31,7 +31,7 @@ std::vector<std::string> page_conflicts(const JsonValue& result);
 std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title,
                                      const std::set<std::string>& omitted = {});
 
-/// Whether the extension of this file name is that of a mesh file.
+/// Whether the extension of this file name is an extension of mesh files.
 bool is_mesh_name(const std::string& name);
 
 /// Links rows of tables to objects and annotations of the page, by names and tags in the cells.

@@ -21,15 +21,15 @@ std::string manual_page(const OperationEntry& entry);
 
 /// A flag that the command accepts for every operation.
 struct CommonFlag {
-    const char* name;
-    bool has_value;  ///< the flag is followed by a value
+    const char* name;  ///< name without leading dashes
+    bool has_value;    ///< the flag is followed by a value
 };
 inline constexpr CommonFlag common_flags[]{{"json", false},   {"show", true},   {"quiet", false},
                                            {"threads", true}, {"memory", true}, {"help", false}};
 
 /// Shells for which a completion script is generated.
 enum class Shell { bash, zsh, fish };
-/// Completion script of a shell for `ostraka`; it calls `ostraka --complete WORD...`.
+/// Completion script of a shell for the command `ostraka`; the script calls `ostraka --complete WORD...`.
 std::string completion_script(Shell shell);
 /// Completions of the last word of a command line; `words` are the words after `ostraka`. Completions are operation names, flags,
 /// choices, tags of the annotation file named by an earlier word, and files of the required kind. Never throws because of a

@@ -12,11 +12,11 @@ namespace ostraka {
 
 /// A scalar map: one number for each vertex of an object; a number that is not finite means no value.
 struct PageMap {
-    std::string name;
+    std::string name;            ///< name of the map
     std::string label;           ///< name of the quantity, with its unit
     std::vector<double> values;  ///< value of each vertex
     struct Category {
-        std::string text;
+        std::string text;             ///< name of the category
         std::array<int, 3> colour{};  ///< red, green, blue, 0 to 255
     };
     std::vector<Category> categories = {};  ///< if not empty, the values of the map are indices into this list
@@ -26,7 +26,7 @@ struct PageMap {
 struct PageSlices {
     /// A descriptor of the slices: a column of the table beside the drawing.
     struct Column {
-        std::string name, title, unit;
+        std::string name, title, unit;  ///< name of the descriptor, column title, and unit
     };
     /// A closed or open contour of a slice.
     struct Contour {
@@ -38,7 +38,7 @@ struct PageSlices {
         double height = 0;                          ///< height of the slicing plane
         std::array<double, 3> origin{}, u{}, v{};   ///< point of the slicing plane, and unit vectors of its axes
         std::vector<std::optional<double>> values;  ///< descriptor values, one per column; empty: no value
-        std::vector<Contour> contours;
+        std::vector<Contour> contours;              ///< contours in the plane, outer contours and holes
     };
     std::string unit;  ///< unit of lengths
     std::vector<Column> columns;
@@ -50,19 +50,19 @@ struct PageSlices {
 /// State of a constraint before and after a deformation.
 struct PageConstraint {
     struct Deviation {
-        std::string quantity;
+        std::string quantity;  ///< name of the quantity
         /// Value before and after the deformation, and max value that satisfies the constraint; empty: unknown.
         std::optional<double> before, value, tolerance;
         std::string unit;
     };
-    std::string type;                  ///< type of the constraint
-    std::vector<std::size_t> members;  ///< indices of the constrained annotations in the annotation set
-    double weight = 1;
-    bool hard = false;            ///< true: the constraint is satisfied exactly, not by weight
-    std::string before, verdict;  ///< state before, and verdict after the deformation, as text
-    std::optional<bool> holds;    ///< whether the constraint is satisfied after the deformation; empty: undetermined
-    std::string text;
-    std::vector<Deviation> deviations;
+    std::string type;                   ///< type of the constraint
+    std::vector<std::size_t> members;   ///< indices of the constrained annotations in the annotation set
+    double weight = 1;                  ///< weight of a soft constraint
+    bool hard = false;                  ///< true: the constraint is satisfied exactly, not by weight
+    std::string before, verdict;        ///< state before, and verdict after the deformation, as text
+    std::optional<bool> holds;          ///< whether the constraint is satisfied after the deformation; empty: undetermined
+    std::string text;                   ///< explanation
+    std::vector<Deviation> deviations;  ///< deviations of the constraint's quantities
     std::optional<std::array<double, 2>> residual;  ///< mean and maximum residual after the deformation
 };
 
@@ -77,26 +77,26 @@ struct PageVerdict {
 
 /// Contents of one object of a page. The mesh and all other data that this struct refers to must live until the object is added.
 struct PageObject {
-    std::string name;
-    const Mesh* mesh = nullptr;
+    std::string name;                            ///< name of the object
+    const Mesh* mesh = nullptr;                  ///< the shown mesh
     const AnnotationSet* annotations = nullptr;  ///< null: no annotations
     const RelationGraph* graph = nullptr;        ///< null: no relationships
     /// Checks of the graph's relationships, in the order of the graph; empty: not checked.
     std::vector<RelationCheck> checks = {};
-    const Mesh* cage = nullptr;  ///< null: no cage
-    std::vector<PageMap> maps = {};
-    const PageSlices* slices = nullptr;         ///< null: no slices
-    std::vector<PageVerdict> conformance = {};  ///< results of 'relation check'; empty: not checked
-    std::vector<PageConstraint> constraints = {};
-    std::vector<std::string> conflicts = {};  ///< messages on conflicting constraints
+    const Mesh* cage = nullptr;                    ///< null: no cage
+    std::vector<PageMap> maps = {};                ///< scalar maps that can be shown
+    const PageSlices* slices = nullptr;            ///< null: no slices
+    std::vector<PageVerdict> conformance = {};     ///< results of 'relation check'; empty: not checked
+    std::vector<PageConstraint> constraints = {};  ///< states of the constraints after a deformation
+    std::vector<std::string> conflicts = {};       ///< messages on conflicting constraints
     /// Indices of the regions that can be moved apart in the viewer, since they share no vertex.
     std::vector<std::size_t> parts = {};
     std::string unit = {};                 ///< unit of the mesh; empty: unit of the annotations
     std::array<double, 3> up = {0, 0, 1};  ///< upward direction, used if the annotations state none
     /// Size of the original object, if it has more vertices than the shown mesh.
     struct Whole {
-        std::size_t vertices = 0, faces = 0;
-        double deviation = 0;  ///< max distance of the original vertices from the shown mesh
+        std::size_t vertices = 0, faces = 0;  ///< numbers of the original object
+        double deviation = 0;                 ///< max distance of the original vertices from the shown mesh
     };
     /// Empty if the shown mesh is the original object.
     std::optional<Whole> whole = {};
@@ -113,7 +113,7 @@ struct PageObject {
 /// A table whose cells are texts, numbers, or empty.
 struct PageTable {
     struct Row {
-        std::vector<Json> cells;
+        std::vector<Json> cells;  ///< one cell per column
         /// Index in the page of the object, and index in the object's set of the annotation, that the row describes; -1: none.
         int object = -1, annotation = -1;
     };
@@ -124,7 +124,7 @@ struct PageTable {
 
 /// An object of a collection whose data are stored in a file beside the page.
 struct PageEntry {
-    std::string name;
+    std::string name;             ///< name of the object
     std::string file, thumbnail;  ///< file names relative to the page: the output of `Page::script`, and a PNG
     std::size_t vertices = 0, faces = 0;
     std::vector<std::string> tags;  ///< tags of the object's annotations
@@ -142,7 +142,7 @@ public:
     /// 1/131,068 of their range; the order of vertices and triangles is kept. Throws Error (input) for a mesh without triangles
     /// or a map of a different length.
     std::size_t add(const PageObject& object);
-    void add(PageTable table);
+    void add(PageTable table);  ///< Adds a table to the page.
     /// Adds a drawing; `svg` is the text of an SVG file.
     void add_drawing(const std::string& title, const std::string& svg);
     /// Adds a remark that the page shows.
@@ -166,10 +166,10 @@ private:
     std::size_t add_bytes(std::string_view bytes);                      ///< returns the offset of the bytes in `bytes_`
     [[nodiscard]] std::string data(const std::string& made_how) const;  ///< JSON text of the page's data
 
-    Json document_;
+    Json document_;  ///< data of the page, as it is written
     JsonValue objects_{rapidjson::kArrayType}, tables_{rapidjson::kArrayType}, drawings_{rapidjson::kArrayType},
         notes_{rapidjson::kArrayType}, places_{rapidjson::kArrayType}, entries_{rapidjson::kArrayType};
-    std::string bytes_;
+    std::string bytes_;  ///< binary data to which the JSON refers
     /// Checksum of each object's triangles, to detect objects that can be morphed into each other.
     std::vector<std::string> triangles_;
 };

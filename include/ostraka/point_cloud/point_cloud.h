@@ -28,7 +28,7 @@ struct CloudOptions {
     double longest = 8;      ///< max edge length of the surface, in multiples of the point spacing
     double close_holes = 1;  ///< max size of a hole that is filled, as a share of the bounding box diagonal
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Estimates a unit normal for each point: the direction from a quadric through the point's neighbours (jets; Cazals and Pouget
@@ -41,10 +41,10 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
 double point_spacing(const std::vector<Point>& points);
 
 struct CloudSurface {
-    Mesh mesh;                     ///< its vertices are the points that belong to a face, in the order of the cloud
-    std::vector<Index> sources;    ///< for each vertex, index of its point in the cloud
-    std::size_t border_loops = 0;  ///< number of border loops that remain
-    std::vector<std::string> notes;
+    Mesh mesh;                       ///< its vertices are the points that belong to a face, in the order of the cloud
+    std::vector<Index> sources;      ///< for each vertex, index of its point in the cloud
+    std::size_t border_loops = 0;    ///< number of border loops that remain
+    std::vector<std::string> notes;  ///< remarks on the reconstruction
 };
 
 /// Surface reconstruction by advancing front (Cohen-Steiner and Da 2004). The surface is oriented by the normals (estimated if

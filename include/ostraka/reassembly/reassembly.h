@@ -16,7 +16,7 @@ struct ReassemblyOptions {
     int partners = 24;      ///< for each fragment, number of partners with the best quick fit that are registered in full
     int min_faces = 100;    ///< min number of faces of a fragment that is matched: a fragment with fewer shows no relief
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// All candidate poses of a pair of fragments.
@@ -70,7 +70,7 @@ struct PairMemory {
 /// that close a loop with candidates of a third fragment gain probability, as three wrong poses rarely agree. Groups are joined
 /// in descending order of probability if no fragment lies inside another; all other contacts of the join count as evidence for or
 /// against the join. The poses of each group are refined together (Ceres: point to plane between all fractures and rims that
-/// meet). Unrelated fragments stay single. Deterministic. Throws Error (usage) if there are no fragments.
+/// meet). Unrelated fragments stay single. The result is deterministic. Throws Error (usage) if there are no fragments.
 Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOptions& options = {},
                       const PairMemory& memory = {});
 

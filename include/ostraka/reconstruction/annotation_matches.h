@@ -14,7 +14,7 @@ namespace ostraka {
 struct AnnotationMatchOptions {
     double min_score = 0.4;  ///< min score of a match, 0 to 1
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// An annotation of a fragment and its counterpart on the template.

@@ -7,7 +7,7 @@ namespace ostraka {
 
 /// File names of the template and the fragments in an assembly file.
 struct AssemblyNames {
-    std::string template_file;
+    std::string template_file;           ///< file name of the template
     std::vector<std::string> fragments;  ///< file name of each fragment
 };
 

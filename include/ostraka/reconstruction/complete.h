@@ -13,7 +13,7 @@ namespace ostraka {
 
 /// Origin of a face of the completed object: a fragment, the template near an observed face, or the template elsewhere.
 enum class Origin : std::uint8_t { observed, interpolated, hypothesis };
-std::string to_string(Origin origin);
+std::string to_string(Origin origin);  ///< "observed", "interpolated" or "hypothesis"
 
 struct CompleteOptions {
     /// Max distance of a fragment's vertex from the fitted template, as a share of the template's diagonal.
@@ -26,13 +26,13 @@ struct CompleteOptions {
     bool join = true;      ///< true: use the fragments' triangles; false: use the template's triangles everywhere
     double min_piece = 0.01;  ///< min area of a piece of a fragment that is used, as a share of the fragment's area
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reason why the triangles of a fragment could not be used.
 struct CompletionNote {
     int fragment = 0;  ///< index of the fragment
-    std::string text;
+    std::string text;  ///< the reason as a sentence
 };
 
 /// A completed object with the origin of its faces.
@@ -47,8 +47,8 @@ struct CompletedObject {
     std::vector<Index> template_face;
     /// Distance of the face's centroid from the nearest observed face; 0 if observed, -1 if no face is observed.
     std::vector<double> distance;
-    std::vector<double> confidence;  ///< 1 if observed, halved with every `halving` of distance
-    std::vector<CompletionNote> notes;
+    std::vector<double> confidence;     ///< 1 if observed, halved with every `halving` of distance
+    std::vector<CompletionNote> notes;  ///< fragments whose triangles could not be used
     // For each fragment:
     std::vector<std::size_t> joined;  ///< number of faces of `mesh` that come from the fragment
     /// Share of the fragment's outer area that lies on the fitted template; 0 if the fragment has no outer area.
@@ -62,8 +62,8 @@ struct CompletedObject {
 /// fragment's border; the template around the seam follows with a displacement that fades. Where projected borders cross, the
 /// fragment's faces are removed, ring by ring; if a border cannot be made simple, the template's triangles represent the fragment
 /// and a note reports the fragment. Fragments are processed in order: later fragments do not cover earlier ones. Template faces
-/// within the width of the seam zone of observed faces are "interpolated". Linear in the number of faces plus the nearest-point
-/// queries.
+/// within the width of the seam zone of observed faces are "interpolated". Takes time linear in the number of faces plus the
+/// nearest-point queries.
 CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& fragments, const CompleteOptions& options = {});
 
 }  // namespace ostraka

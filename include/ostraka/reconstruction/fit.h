@@ -39,7 +39,7 @@ struct NonRigidOptions {
     double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;              ///< match lines and outlines by the position along the curve
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment registered to the template, with matches of its annotations.
@@ -71,7 +71,7 @@ struct NonRigidFit {
         double residual = 0;       ///< root mean square distance of the matches after the level
         int steps = 0;             ///< number of iterations of matching and solving
     };
-    std::vector<Level> levels;
+    std::vector<Level> levels;  ///< one record per level
     /// Computing times in seconds.
     double seconds_matching = 0, seconds_solving = 0, seconds_coarsening = 0;
 };

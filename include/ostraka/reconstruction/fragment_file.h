@@ -15,17 +15,17 @@ struct FragmentFileOptions {
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment as read, and how it was obtained.
 struct FragmentFile {
-    Fragment fragment;
-    std::string facets_from;   ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
-    Facets found;              ///< facets found from the shape, if they were computed
-    bool points = false;       ///< true: the file has no faces, and the mesh is reconstructed from its points
-    std::vector<Path> inputs;  ///< files that were read
-    std::vector<std::string> notes;
+    Fragment fragment;               ///< mesh, annotations and facets of the fragment
+    std::string facets_from;         ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
+    Facets found;                    ///< facets found from the shape, if they were computed
+    bool points = false;             ///< true: the file has no faces, and the mesh is reconstructed from its points
+    std::vector<Path> inputs;        ///< files that were read
+    std::vector<std::string> notes;  ///< remarks on reading
 };
 
 /// Reads a mesh and, if present, the annotations beside the mesh (NAME.ant.json), or points without faces (annotations beside

@@ -14,9 +14,9 @@ namespace ostraka {
 
 /// A landmark that the template and a fragment have in common.
 struct LandmarkPair {
-    std::string name;  ///< tag of the landmark
-    Eigen::Vector3d on_template, on_fragment;
-    Index vertex = no_index;  ///< index of the landmark's vertex on the template
+    std::string name;                          ///< tag of the landmark
+    Eigen::Vector3d on_template, on_fragment;  ///< position on the template, and position on the fragment
+    Index vertex = no_index;                   ///< index of the landmark's vertex on the template
 };
 
 /// Landmarks common to the template and a fragment, ordered by tag: point annotations of one point with the same tag in both
@@ -29,23 +29,23 @@ struct PlacementOptions {
     double unit_ratio = 3;    ///< factor: a fragment whose own scale differs from the others' by more is in another unit
     double collinear = 0.03;  ///< landmarks are collinear if their second principal extent is at most this share of the first
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Distance of one landmark of a placed fragment from the template's landmark.
 struct LandmarkResidual {
-    std::string name;
+    std::string name;     ///< tag of the landmark
     double distance = 0;  ///< distance of the moved landmark from the scaled template's landmark, in the fragment's unit
     bool used = true;     ///< false: the landmark is an outlier and does not count for the pose
 };
 
 /// Pose of a fragment on the scaled template.
 struct FragmentPlacement {
-    Motion pose;           ///< rigid motion from the fragment's file to the scaled template
-    double own_scale = 0;  ///< scale of the template from this fragment alone, a diagnostic value
-    std::vector<LandmarkResidual> landmarks;
-    double residual = 0;    ///< root mean square residual of the landmarks used, in the fragment's unit
-    bool mirrored = false;  ///< true: the mirror image of the fragment fits far better
+    Motion pose;                              ///< rigid motion from the fragment's file to the scaled template
+    double own_scale = 0;                     ///< scale of the template from this fragment alone, a diagnostic value
+    std::vector<LandmarkResidual> landmarks;  ///< residual of each landmark
+    double residual = 0;                      ///< root mean square residual of the landmarks used, in the fragment's unit
+    bool mirrored = false;                    ///< true: the mirror image of the fragment fits far better
     std::vector<std::pair<std::string, std::string>> swapped;  ///< pairs of landmarks whose tags seem to be exchanged
     std::string problem;  ///< why the fragment is not placed, with the remedy; empty if it is placed
 };

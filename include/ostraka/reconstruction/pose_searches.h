@@ -43,9 +43,10 @@ private:
         PoseSearchResult result;
     };
     struct TemplateSearch;
+    /// Key of a search with this range of scales.
     [[nodiscard]] std::string key_of(const Fragment& fragment, double min_scale, double max_scale) const;
 
-    const Mesh& mesh_;
+    const Mesh& mesh_;  ///< the template
     PoseSearchOptions options_;
     std::string template_key_;  ///< checksum of the inputs that all keys have in common
     std::unique_ptr<TemplateSearch> template_search_;

@@ -17,15 +17,15 @@
 namespace ostraka {
 
 struct ReconstructOptions {
-    PlacementOptions placement;
-    SearchOptions search;
-    bool refine = true;  ///< refine the poses on the surface, with the landmarks as anchors
-    PartAlignmentOptions alignment;
-    RotationMatchOptions rotations;
-    AnnotationMatchOptions annotations;
-    PriorOptions prior;
-    NonRigidOptions fit;
-    CompleteOptions completion;   ///< the tolerance of the completion is replaced by `observed`
+    PlacementOptions placement;          ///< options for placing fragments by landmarks
+    SearchOptions search;                ///< options for pose searches
+    bool refine = true;                  ///< refine the poses on the surface, with the landmarks as anchors
+    PartAlignmentOptions alignment;      ///< options for refining poses on the surface
+    RotationMatchOptions rotations;      ///< options for rotations about the template's axis
+    AnnotationMatchOptions annotations;  ///< options for matching annotations
+    PriorOptions prior;                  ///< options of the shape prior
+    NonRigidOptions fit;                 ///< options of the non-rigid fit
+    CompleteOptions completion;          ///< the tolerance of the completion is replaced by `observed`
     double observed = 0.02;       ///< max distance of an observed vertex from its match, as a share of the template's diagonal
     double scale_tolerance = 10;  ///< max deviation of a fragment's own scale from the common scale, per cent
     double slack = 3;             ///< max deviation of a proportion or measure from its allowed range, per cent
@@ -36,7 +36,7 @@ struct ReconstructOptions {
     double overlap = 20;  ///< max share of a fragment's outer surface that lies where another fragment is observed, per cent
     bool restore = true;  ///< solve the constraints for the unobserved part
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Kinds of evidence, in the order from cause to effect.
@@ -44,11 +44,11 @@ enum class ObjectionKind { placement, size, landmarks, surface, overlap, constra
 std::string to_string(ObjectionKind kind);
 /// Evidence that a fragment, or all fragments together, do not form one object with the template.
 struct Objection {
-    ObjectionKind kind = ObjectionKind::placement;
-    int fragment = -1;    ///< index of the fragment; -1: no single fragment
-    int constraint = -1;  ///< id of the violated relationship of the graph; -1: geometric evidence
-    double strain = 0;    ///< deviation as a multiple of its tolerance; 0: cannot be determined
-    std::string text;     ///< the evidence as a sentence
+    ObjectionKind kind = ObjectionKind::placement;  ///< kind of evidence
+    int fragment = -1;                              ///< index of the fragment; -1: no single fragment
+    int constraint = -1;                            ///< id of the violated relationship of the graph; -1: geometric evidence
+    double strain = 0;                              ///< deviation as a multiple of its tolerance; 0: cannot be determined
+    std::string text;                               ///< the evidence as a sentence
 };
 
 /// Whether the fragments belong to one object.
@@ -68,18 +68,18 @@ struct Reconstruction {
     NonRigidFit fit;                                        ///< deformation of the template to the fragments
     std::vector<Point> points;     ///< final positions of the template's vertices, in the unit of the fragments
     std::vector<double> distance;  ///< for each vertex of the template, its distance from the matched fragment; -1: not observed
-    CompletedObject object;
+    CompletedObject object;        ///< the completed object
     std::vector<std::size_t> joined;  ///< for each fragment, number of its faces in the completed object
     double observed_share = 0;        ///< observed share of the completed object's area
     /// Number of intersecting pairs of faces of the completed object, without pairs within the template or within one fragment.
     std::size_t crossings = 0;
     std::vector<ConstraintReport> constraints;  ///< state of the graph's constraints after the deformation
-    std::vector<ConstraintConflict> conflicts;
+    std::vector<ConstraintConflict> conflicts;  ///< constraints that contradict each other
     double strain = 0;  ///< largest tested deviation, as a multiple of its tolerance; above 1: evidence against a common object
-    Compatibility verdict = Compatibility::undecided;
-    std::vector<Objection> objections;      ///< evidence against a common object
-    std::string undecided;                  ///< reason for the verdict "undecided"; empty for other verdicts
-    std::map<std::string, double> seconds;  ///< from each phase to its computing time in seconds
+    Compatibility verdict = Compatibility::undecided;  ///< whether the fragments belong to one object
+    std::vector<Objection> objections;                 ///< evidence against a common object
+    std::string undecided;                             ///< reason for the verdict "undecided"; empty for other verdicts
+    std::map<std::string, double> seconds;             ///< from each phase to its computing time in seconds
 };
 
 struct ReconstructionState;

@@ -14,9 +14,9 @@ namespace ostraka {
 struct SearchOptions {
     enum class Search { automatic, always, never };
     Search search = Search::automatic;  ///< which fragments are searched; automatic: those with fewer than three landmarks
-    PoseSearchOptions poses;
+    PoseSearchOptions poses;            ///< options of each pose search
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Searches the poses of fragments with fewer than three landmarks (of all fragments, with "always") on the template and writes

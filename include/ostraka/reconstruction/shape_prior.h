@@ -29,7 +29,7 @@ struct PriorOptions {
     double search_radius = 0.1;  ///< max distance of a match, as a share of the template's diagonal
     double angle = 60;           ///< max angle between the normals of a match, degrees
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The most probable shape of the class.
@@ -39,7 +39,7 @@ struct PriorFit {
     double residual = 0;               ///< root mean square distance of matched points from the planes of their matches
     double samples = 0;       ///< effective number of independent samples of the matched surface, estimated from the residuals
     std::size_t matched = 0;  ///< number of matched points
-    int iterations = 0;
+    int iterations = 0;       ///< number of iterations
 };
 
 /// Maximum a posteriori shape of the class for the observed part (cf. statistical shape models, Cootes et al. 1995, Blanz and

@@ -10,7 +10,7 @@ namespace ostraka {
 
 /// A cage around a template and the coordinates of the template's vertices in it.
 struct TemplateCage {
-    Mesh cage;
+    Mesh cage;                ///< mesh of the cage
     Coordinates coordinates;  ///< coordinates of the template's vertices in the cage
 };
 

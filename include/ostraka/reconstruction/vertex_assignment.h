@@ -23,7 +23,7 @@ struct VertexAssignmentOptions {
     int candidates = 12;       ///< one-to-one: number of candidate counterparts for each vertex
     double unassigned = 1;     ///< one-to-one: cost of a vertex without a counterpart, as a share of the sum of the weights
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Counterparts of the vertices of a template's part.

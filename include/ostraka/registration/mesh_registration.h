@@ -17,7 +17,7 @@ struct MeshRegistrationOptions {
     double tolerance = 0;
     int samples = 4000;  ///< number of points on both meshes together for registration, and on each mesh for evaluation
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Whether two meshes show the same object.
@@ -32,14 +32,14 @@ std::string to_string(RegistrationVerdict verdict);
 /// Distances between two registered surfaces, at points spread over both. Lengths are in the target's unit.
 struct SurfaceAgreement {
     double rms = 0;  ///< root mean square distance, in both directions; a point without a partner counts with the search radius
-    double largest = 0;  ///< 99th percentile of the distances, in the direction where it is larger
-    double share = 0;    ///< share of the points within the tolerance, in the direction where it is smaller
+    double largest = 0;  ///< 99th percentile of the distances from one surface to the other, the larger of both directions
+    double share = 0;    ///< share of the points of one surface within the tolerance of the other, the smaller of both directions
     double close = 0;    ///< share of the points within a third of the tolerance
 };
 
 /// Result of `register_mesh`.
 struct MeshRegistration {
-    RegistrationVerdict verdict = RegistrationVerdict::different;
+    RegistrationVerdict verdict = RegistrationVerdict::different;  ///< whether the meshes show the same object
     Motion motion;               ///< maps the source onto the target; the best motion found, whatever the verdict
     SurfaceAgreement agreement;  ///< distances between the surfaces under `motion`
     double tolerance = 0;        ///< max distance of equal surfaces, in the target's unit
@@ -55,8 +55,8 @@ struct MeshRegistration {
 /// mesh has more weight, by the area of its faces, so that the offsets of the flat faces of both meshes from the curved surface
 /// cancel in the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
 /// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is returned.
-/// Same result for any number of threads; O(n) besides a search of constant size. Throws Error (usage) for options out of range,
-/// (input) for a mesh without area, or for a flat mesh, which only its border would constrain.
+/// The result is the same for any number of threads; O(n) besides a search of constant size. Throws Error (usage) for options out
+/// of range, (input) for a mesh without area, or for a flat mesh, which only its border would constrain.
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
 /// The verdict and its reasons as one sentence; `diagonal`: diagonal of the target.

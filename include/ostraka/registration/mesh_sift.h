@@ -20,7 +20,7 @@ struct SiftOptions {
     /// Min height of a further peak in the histogram of directions, as a share of the highest peak.
     double second_direction = 0.8;
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A salient point with a direction in its tangent plane. A salient point with several directions yields several features.
@@ -36,9 +36,9 @@ struct Feature {
 struct FeatureSet {
     /// Number of discs, bins of a histogram, and rows of `descriptors`.
     static constexpr int discs = 9, bins = 8, length = discs * 2 * bins;
-    std::vector<Feature> features;
-    Eigen::MatrixXf descriptors;  ///< one column of 144 rows per feature; zero for a disc that is mostly beyond the border
-    double size = 0;              ///< reference length for the scales
+    std::vector<Feature> features;  ///< features in the order of the columns of `descriptors`
+    Eigen::MatrixXf descriptors;    ///< one column of 144 rows per feature; zero for a disc that is mostly beyond the border
+    double size = 0;                ///< reference length for the scales
 };
 
 /// MeshSIFT features of a mesh (Smeets, Keustermans, Vandermeulen and Suetens, "meshSIFT: local surface features for 3D face
@@ -48,8 +48,8 @@ struct FeatureSet {
 /// the histogram of the normals projected to the tangent plane (within 9 sigma, weighted by area, length and a Gaussian of 4.5
 /// sigma). Discs have radius 3.75 sigma, one disc in the middle and eight around it at 4.5 sigma; shape index is weighted by
 /// curvedness, slant angle by the projected normal; each histogram is normalised to length 1 and clipped at 1 / sqrt(8).
-/// Neighbours are projected to the tangent plane with their straight-line distances, since heads are rigid. Same result for any
-/// number of threads. Throws Error (usage) for options out of range, Error (input) for a mesh without area.
+/// Neighbours are projected to the tangent plane with their straight-line distances, since heads are rigid. The result is the
+/// same for any number of threads. Throws Error (usage) for options out of range, Error (input) for a mesh without area.
 FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options = {});
 
 /// A feature of surface `a` and the feature of surface `b` with the most similar descriptor.
@@ -59,7 +59,7 @@ struct FeatureMatch {
 };
 struct MatchOptions {
     double ratio = 0.8;  ///< max ratio of the smallest angle between descriptors to the second smallest; 1 accepts every match
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 /// For each feature of `a`, the feature of `b` whose descriptor has the smallest angle with its descriptor, if the match passes
 /// the ratio test.

@@ -18,21 +18,21 @@ struct PartAlignmentOptions {
     int samples = 3000;          ///< number of points of the part, evenly spread, that are registered to the whole
     int iterations = 60;         ///< max number of iterations
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A point of the part and the corresponding point of the whole.
 struct Anchor {
-    Eigen::Vector3d of_part, of_whole;
+    Eigen::Vector3d of_part, of_whole;  ///< position on the part, and position on the whole
     bool operator==(const Anchor&) const = default;
 };
 
 /// Result of `align_part`.
 struct PartAlignment {
-    Motion pose;          ///< rigid motion from the part onto the whole
-    double residual = 0;  ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
-    double overlap = 0;   ///< share of the samples that have a pair
-    int iterations = 0;
+    Motion pose;           ///< rigid motion from the part onto the whole
+    double residual = 0;   ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
+    double overlap = 0;    ///< share of the samples that have a pair
+    int iterations = 0;    ///< number of iterations
     bool settled = false;  ///< true: the last step changed nothing
 };
 

@@ -15,14 +15,14 @@ struct PoseSearchOptions {
     /// Range in which the scale of the whole is searched; if both are equal, the scale is known.
     double min_scale = 1, max_scale = 1;
     double tolerance = 0.02;      ///< max distance of a point of the part that lies on the whole, as a share of the part's size
-    double min_confidence = 0.5;  ///< min confidence of a decided pose; below it the pose is undecided
+    double min_confidence = 0.5;  ///< min confidence of a decided pose
     int points = 2000;            ///< number of points on the whole; points on the part have the same density
     int references = 120;         ///< number of reference points of the part
     int partners = 300;           ///< number of other points of the part that vote with each reference point
     int candidates = 10;          ///< number of poses that are refined on the whole's own faces
     std::uint64_t seed = 1;       ///< random seed
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A pose of the part on the whole.
@@ -70,7 +70,7 @@ public:
     /// Searches poses of the faces marked in `of_part` (all faces if empty) on the whole. Spreads points over both surfaces;
     /// pairs of points vote for poses (`PairTable`) at each scale of the range in steps of a twelfth; the proposed poses are
     /// scored, the better poses are refined on the points and scored again, and the best distinct poses are refined on the faces
-    /// (`align_part`). Throws Error (input) for a part without area. Same result for any number of threads.
+    /// (`align_part`). Throws Error (input) for a part without area. The result is the same for any number of threads.
     [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part = {}) const;
     /// Searches poses of the marked faces of a part, as the other overload, in this range of scales instead of the options'
     /// range.

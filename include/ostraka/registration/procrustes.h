@@ -21,13 +21,13 @@ struct SimilarityMap {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
     double sum_of_squares = 0;  ///< sum of the squared distances of the mapped landmarks from their targets
-    [[nodiscard]] Landmarks apply(const Landmarks& landmarks) const;
+    [[nodiscard]] Landmarks apply(const Landmarks& landmarks) const;  ///< maps each landmark
 };
 
 struct ProcrustesOptions {
-    bool scaling = false;     ///< true: scale all configurations to the same size
-    bool reflection = false;  ///< true: treat mirror images as the same shape
-    void list_options(OptionList& list);
+    bool scaling = false;              ///< true: scale all configurations to the same size
+    bool reflection = false;           ///< true: treat mirror images as the same shape
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The rotation and translation, and with `scaling` the scale, that map `from` to `to` with the least sum of squared distances,
@@ -45,13 +45,13 @@ struct GeneralisedProcrustes {
     Landmarks mean;
     std::vector<double> centroid_sizes;  ///< centroid size of each configuration before scaling
     double sum_of_squares = 0;           ///< sum of the squared distances of all aligned landmarks from the mean
-    int iterations = 0;
+    int iterations = 0;                  ///< number of iterations
     bool converged = false;  ///< true: the last iteration decreased the sum of squares by less than 1e-15 of the squared sizes
 };
 
 /// Generalised Procrustes analysis (Gower 1975): centres all configurations and rotates each in turn to the common mean. Without
 /// `scaling` sizes are kept (partial, size-and-shape); with `scaling` all configurations get centroid size 1 (shape). Throws
-/// Error (input) if there is no configuration, and as `procrustes`. O(iterations n k).
+/// Error (input) if there is no configuration, and as `procrustes`. Time: O(iterations n k).
 GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& configurations, const ProcrustesOptions& options = {});
 
 /// Configurations as rows of a matrix for principal component analysis: each row has x, y, z of the first landmark, then of the

@@ -23,7 +23,7 @@ std::string to_string(SlippableKind kind);
 
 /// Group of slippable motions of a surface.
 struct SlippableMotions {
-    SlippableKind kind = SlippableKind::none;
+    SlippableKind kind = SlippableKind::none;              ///< kind of the group
     Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< a point of the line or the plane; centre of the sphere
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< direction of the line; normal of the plane
     double pitch = 0;                                      ///< pitch of a helix: translation per radian
@@ -33,8 +33,8 @@ struct SlippableMotions {
     /// A sample of the group of motions.
     struct Step {
         bool rotates = false;  ///< true: rotation; false: translation
-        Motion motion;
-        double amount = 0;  ///< angle in radians for a rotation, else a length
+        Motion motion;         ///< the sampled motion
+        double amount = 0;     ///< angle in radians for a rotation, else a length
     };
     /// Samples of the group: for each of its independent motions, `steps` multiples from -1 to 1 of `radians` (rotations) or
     /// `length` (translations).

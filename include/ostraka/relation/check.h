@@ -14,17 +14,17 @@ struct RelationOptions {
     double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
     double ratio = 10;       ///< tolerance of areas, shapes and attribute values: relative difference, per cent
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-enum class Verdict { holds, fails, unknown };
+enum class Verdict { holds, fails, unknown };  ///< whether a relationship holds; unknown: cannot be determined
 std::string to_string(Verdict verdict);
 
 /// Result of checking one relationship.
 struct RelationCheck {
-    Verdict verdict = Verdict::unknown;
-    RelationParameters parameters;  ///< deviations measured on this mesh, with the tolerances in effect
-    std::string text;               ///< why the relationship fails or cannot be determined; empty if it holds
+    Verdict verdict = Verdict::unknown;  ///< whether the relationship holds
+    RelationParameters parameters;       ///< deviations measured on this mesh, with the tolerances in effect
+    std::string text;                    ///< why the relationship fails or cannot be determined; empty if it holds
 };
 
 /// Checks each relationship of `graph`, in the order of the graph. The verdict is unknown for constraints (see

@@ -11,8 +11,8 @@
 
 namespace ostraka {
 
-/// Measures relationships on one object. Data of a part (axis, samples, search tree) are computed once. Not thread-safe. The
-/// annotation object must outlive the meter.
+/// Measures relationships on one object. Data of a part (axis, samples, search tree) are computed once. The meter is not
+/// thread-safe. The annotation object must outlive the meter.
 class RelationMeter {
 public:
     explicit RelationMeter(AnnotatedMeshView object, const RelationOptions& options = {});
@@ -37,8 +37,8 @@ private:
 
 /// The relationships determined by the selections and the geometry of an annotated mesh.
 struct ExtractedRelations {
-    RelationGraph graph;  ///< stated relationships, followed by the extracted ones with fresh ids
-    ContainmentOrder order;
+    RelationGraph graph;      ///< stated relationships, followed by the extracted ones with fresh ids
+    ContainmentOrder order;   ///< containment of the annotations
     std::vector<int> stated;  ///< ids of stated relationships that were also extracted and therefore not added a second time
     /// Types that were not extracted, since they need an upward direction and the set states none.
     std::vector<std::string> not_looked_for;

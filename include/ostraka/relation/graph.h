@@ -29,7 +29,7 @@ enum class GeometricRelation {
 
 /// Properties of a type of relationship.
 struct RelationType {
-    std::string name;
+    std::string name;              ///< canonical name of the type
     std::size_t minimum, maximum;  ///< min and max number of members; maximum = 0: any number
     /// The geometric type; empty for the constraints of the thesis, which can only be stated.
     std::optional<GeometricRelation> geometric;
@@ -47,7 +47,7 @@ std::string nearest_relation_type(const std::string& name);
 
 /// A line given by a point and its direction, or a plane given by a point and its normal; `direction` is a unit vector.
 struct PointAndDirection {
-    std::array<double, 3> point{0, 0, 0}, direction{0, 0, 1};
+    std::array<double, 3> point{0, 0, 0}, direction{0, 0, 1};  ///< a point of the line or plane, and the direction
 };
 
 /// One measured quantity of a geometric relationship, e.g. the angle between two axes.
@@ -61,24 +61,25 @@ struct Deviation {
 
 /// Measured properties of a geometric relationship.
 struct RelationParameters {
-    std::vector<Deviation> deviations;
+    std::vector<Deviation> deviations;             ///< measured quantities of the relationship
     std::optional<PointAndDirection> plane, axis;  ///< mirror plane or common plane, and common axis; empty: not applicable
     std::optional<std::array<double, 3>> up;       ///< upward direction; empty if the relationship does not depend on one
     std::string attribute;                         ///< name of the attribute with equal values, for "equal attributes"
+    /// Whether nothing was measured.
     [[nodiscard]] bool empty() const { return deviations.empty() && !plane && !axis && !up && attribute.empty(); }
 };
 
 /// A relationship between annotations.
 struct Relationship {
     int id = 0;
-    std::string type;              ///< name of the type
-    bool directed = false;         ///< true: the first annotation is the subject, the second the object
-    std::vector<int> annotations;  ///< ids of the annotations, distinct; for containment [container, contained]
-    bool is_constraint = false;    ///< true: the relationship is a constraint that a deformation preserves
-    double weight = 1;             ///< weight of a constraint
-    std::string constraint;        ///< parameters of a constraint as the text of a JSON object; empty: no parameters
-    std::string origin;            ///< "extracted", "stated", or empty if the file does not specify it
-    RelationParameters parameters;
+    std::string type;               ///< name of the type
+    bool directed = false;          ///< true: the first annotation is the subject, the second the object
+    std::vector<int> annotations;   ///< ids of the annotations, distinct; for containment [container, contained]
+    bool is_constraint = false;     ///< true: the relationship is a constraint that a deformation preserves
+    double weight = 1;              ///< weight of a constraint
+    std::string constraint;         ///< parameters of a constraint as the text of a JSON object; empty: no parameters
+    std::string origin;             ///< "extracted", "stated", or empty if the file does not specify it
+    RelationParameters parameters;  ///< measured properties of a geometric relationship
 };
 
 /// Creates a relationship of a geometric type, with the origin "extracted".
@@ -101,7 +102,7 @@ const Relationship* find_twin(const RelationGraph& graph, const Relationship& re
 /// built.
 class Twins {
 public:
-    explicit Twins(const RelationGraph& graph);
+    explicit Twins(const RelationGraph& graph);  ///< builds the index
     ~Twins();
     /// The id of the first relationship in the index that is equivalent to this one; empty: there is none.
     [[nodiscard]] std::optional<int> find(const Relationship& relationship) const;
@@ -124,12 +125,13 @@ void check_graph(const RelationGraph& graph, const AnnotationSet& set, const std
 /// member). Known types get their canonical spelling. Throws Error (input) that names the file and the JSON pointer or the
 /// relationship.
 RelationGraph read_graph(const Path& file, const AnnotationSet& set);
+/// Reads a graph from JSON, with the checks of read_graph; `where` names the file in errors.
 RelationGraph graph_from_json(const JsonValue& document, const AnnotationSet& set, const std::string& where);
 
 /// Writes a graph that `check_graph` accepts, atomically; the same graph and provenance give the same bytes.
 void write_graph(const Path& file, const RelationGraph& graph, const AnnotationSet& set, const Provenance& provenance);
-Json graph_to_json(const RelationGraph& graph, const Provenance& provenance);
-JsonValue relationship_to_json(const Relationship& relationship, JsonAllocator& allocator);
+Json graph_to_json(const RelationGraph& graph, const Provenance& provenance);                ///< the graph as a JSON document
+JsonValue relationship_to_json(const Relationship& relationship, JsonAllocator& allocator);  ///< one relationship as JSON
 
 /// The graph in Graphviz DOT: a node for each annotation in the annotation's colour, an arc for each relationship of two
 /// annotations, a small node for each relationship of one or of more than two annotations. Text of annotations is untrusted:

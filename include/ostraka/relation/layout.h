@@ -18,8 +18,8 @@ struct GraphLayout {
 };
 
 /// Lays out a graph. Children are placed below their container, in the order of the set. Brackets that share rows lie in
-/// different lanes, short brackets near the tree: sorted by length, each bracket takes the first free lane. O(r^2) in the number
-/// of relationships.
+/// different lanes, short brackets near the tree: sorted by length, each bracket takes the first free lane. Time: O(r^2) in the
+/// number of relationships.
 GraphLayout layout_of(const RelationGraph& graph, const AnnotationSet& set, const ContainmentOrder& order);
 
 }  // namespace ostraka

@@ -19,7 +19,17 @@ struct QueryReference {
 };
 
 /// The annotated object on which a query is evaluated.
+<<<<<<< ours
 struct QueriedObject : AnnotatedMeshView {
+||||||| base
+struct QueriedObject {
+    const Mesh* mesh = nullptr;
+    const AnnotationSet* set = nullptr;
+=======
+struct QueriedObject {
+    const Mesh* mesh = nullptr;              ///< mesh of the object
+    const AnnotationSet* set = nullptr;      ///< annotations of the object
+>>>>>>> theirs
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
     const Vocabulary* vocabulary = nullptr;  ///< vocabulary by which words and attribute names are compared; null: by spelling
     /// Returns the values that an attribute has in another object, in the form that `values_of` returns.
@@ -51,7 +61,7 @@ public:
     [[nodiscard]] const std::vector<QueryReference>& references() const;
 
     /// Evaluates the query on an object. Quantities that are not attributes (area, perimeter, length, volume ...) are computed
-    /// from the mesh. Throws Error (input) for more than a million assignments. Thread-safe.
+    /// from the mesh. Throws Error (input) for more than a million assignments. Calls are thread-safe.
     [[nodiscard]] QueryAnswer ask(const QueriedObject& object) const;
 
     struct Node;

@@ -27,7 +27,7 @@ struct AdjacentPair {
 
 /// Containment and adjacency of annotations.
 struct Topology {
-    ContainmentOrder order;
+    ContainmentOrder order;              ///< containment of the annotations
     std::vector<AdjacentPair> adjacent;  ///< pairs in ascending order of their indices
 };
 

@@ -16,7 +16,7 @@ struct RefineOptions {
     /// Position of new vertices, and which edges are split.
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RefineResult {
@@ -32,9 +32,9 @@ struct RefineResult {
 /// Splits edges until the target number of vertices, or the requested number of levels, is reached; exactly one of the two must
 /// be given. Old vertices keep their indices and, unless the scheme is loop, their positions. Values in property maps of types
 /// Index, int, bool, double, float and std::uint8_t are carried along: parts of an edge or face take the value of the edge or
-/// face from which they were cut; new vertices, and edges inside old faces, take the default of the map. Linear in the size of
-/// the result, except for sorting by length. Deterministic. Throws Error (usage) if the mesh has more vertices than requested, no
-/// edges to split, or if the result would be too large for 32-bit indices.
+/// face from which they were cut; new vertices, and edges inside old faces, take the default of the map. Takes time linear in the
+/// size of the result, except for sorting by length. The result is deterministic. Throws Error (usage) if the mesh has more
+/// vertices than requested, no edges to split, or if the result would be too large for 32-bit indices.
 ///
 /// Sources: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984 (halving
 /// longest edges keeps angles bounded); Loop, "Smooth subdivision surfaces based on triangles", 1987.

@@ -13,11 +13,11 @@ struct RemeshOptions {
     int iterations = 3;          ///< number of rounds of splitting, collapsing, flipping, smoothing and projecting
     double feature_angle = 0;    ///< edges whose face normals differ by more than this angle (degrees) are kept; 0: none
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RemeshResult {
-    Mesh mesh;
+    Mesh mesh;                      ///< the new mesh
     double target_edge_length = 0;  ///< edge length aimed at, in the mesh's unit
     std::size_t remeshed = 0;       ///< number of vertices before the final adjustment to the target number
     bool reached = false;           ///< true: the mesh has exactly the target number of vertices
@@ -27,8 +27,8 @@ struct RemeshResult {
 /// Isotropic remeshing to edges of equal length, projected onto the old surface (Botsch and Kobbelt, "A remeshing approach to
 /// multiresolution modeling", 2004; the CGAL implementation), followed by a few collapses or splits of edges to reach the target
 /// number of vertices, and a final projection. No property, annotation or index is carried over. Isolated vertices are removed.
-/// Deterministic. Throws Error (input) for a mesh without area, or with triangles so thin that they would be split into too many
-/// pieces, Error (usage) for an impossible number of vertices.
+/// The result is deterministic. Throws Error (input) for a mesh without area, or with triangles so thin that they would be split
+/// into too many pieces, Error (usage) for an impossible number of vertices.
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options);
 
 }  // namespace ostraka

@@ -22,7 +22,7 @@ struct SimplifyOptions {
     /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
     double border_weight = 1;
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Edges and vertices of annotations: outlines and poly-lines as edges, annotated points as vertices.
@@ -36,7 +36,9 @@ struct MarkedParts {
 class CollapseVisitor {
 public:
     virtual ~CollapseVisitor() = default;
+    /// Called before vertex `removed` is merged into vertex `kept`.
     virtual void merge_vertices(Mesh& /*mesh*/, Vertex /*kept*/, Vertex /*removed*/) {}
+    /// Called before edge `removed` is merged into edge `kept`.
     virtual void merge_edges(Mesh& /*mesh*/, Edge /*kept*/, Edge /*removed*/) {}
 };
 
@@ -55,9 +57,9 @@ struct SimplifyResult {
 /// Collapses edges in ascending order of cost until `options.vertices` vertices are left. The mesh stays manifold and keeps its
 /// topology (genus, components, borders) and orientation; no face is flipped. Property maps of remaining elements keep their
 /// values; the garbage is collected. Neighbouring vertices stay neighbours or are merged, so that a poly-line mapped through
-/// `vertex_map` is a poly-line. O(n log n). Deterministic. Throws Error (usage) if the mesh has fewer vertices than requested or
-/// the number of flags does not match the mesh. If the target number cannot be reached, the result gives the reason and the mesh
-/// is the smallest that was found.
+/// `vertex_map` is a poly-line. Time: O(n log n). The result is deterministic. Throws Error (usage) if the mesh has fewer
+/// vertices than requested or the number of flags does not match the mesh. If the target number cannot be reached, the result
+/// gives the reason and the mesh is the smallest that was found.
 ///
 /// Sources: Garland and Heckbert, "Surface simplification using quadric error metrics", 1997; Lindstrom and Turk, "Fast and
 /// memory efficient polygonal simplification", 1998; link conditions: Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving

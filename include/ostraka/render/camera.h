@@ -11,7 +11,7 @@ namespace ostraka {
 
 /// A part of a picture in pixels; x grows to the right, y downwards. The centre of the top left pixel is (0.5, 0.5).
 struct PixelBox {
-    double left = 0, top = 0, width = 0, height = 0;
+    double left = 0, top = 0, width = 0, height = 0;  ///< position of the top left corner, and size
 };
 
 /// A pinhole camera or parallel projection. right x up = toward, all of unit length.
@@ -37,15 +37,15 @@ struct PictureCamera {
 
 /// Camera settings of `render` for one object.
 struct CameraPlan {
-    View view;
+    View view;                          ///< view direction
     std::array<double, 3> up{0, 0, 1};  ///< upward direction of the object, of unit length
-    bool perspective = false;
-    double zoom = 1;  ///< magnification; 1 shows the whole object
-    PixelBox pane;    ///< the part of the picture where the object is drawn
+    bool perspective = false;           ///< true: pinhole camera; false: parallel projection
+    double zoom = 1;                    ///< magnification; 1 shows the whole object
+    PixelBox pane;                      ///< the part of the picture where the object is drawn
 };
 
-/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Linear. Throws Error (input) for
-/// a mesh without vertices.
+/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Takes linear time. Throws Error
+/// (input) for a mesh without vertices.
 PictureCamera fit_camera(const Mesh& mesh, const CameraPlan& plan);
 
 /// The pane of a single object in a picture of this size, with a scale bar and without legend and title.

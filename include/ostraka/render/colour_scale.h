@@ -11,9 +11,9 @@ namespace ostraka {
 /// Maps values in [minimum, maximum] to colours of uniformly increasing lightness (blue to yellow) or, if diverging, of lightness
 /// that decreases from the middle to both ends (blue, white, red). Values outside the range take the colour of the nearest end.
 struct ColourScale {
-    double minimum = 0, maximum = 1;
-    bool diverging = false;  ///< true: the scale diverges from its middle
-    std::string label;       ///< name of the quantity, with its unit
+    double minimum = 0, maximum = 1;  ///< values at the ends of the scale
+    bool diverging = false;           ///< true: the scale diverges from its middle
+    std::string label;                ///< name of the quantity, with its unit
 };
 
 /// A colour scale over the range of the finite values; if there are negative and positive values, the scale is diverging and
@@ -27,6 +27,7 @@ Rgb colour_of(const ColourScale& scale, double value);
 /// colour-blind readers, ordered so that the most different colours come first. Lighter and darker shades of the same hues follow
 /// in turn; after `category_count` categories the colours repeat.
 Rgb category_colour(std::size_t index);
+/// Number of different hues, and number of different colours.
 inline constexpr std::size_t category_hues = 9, category_count = 63;
 
 /// The largest number of the form 1, 2 or 5 times a power of ten that is at most `length`; 0 unless `length` is positive and

@@ -18,9 +18,10 @@ struct Rgb {
 
 /// Pixels of a picture, rows from the top; each pixel is 0xAARRGGBB with the colour premultiplied by alpha.
 struct Picture {
-    int width = 0, height = 0;
+    int width = 0, height = 0;        ///< pixels
     std::vector<std::uint32_t> argb;  ///< pixels, row by row
 
+    /// Pixel in this column and row.
     [[nodiscard]] std::uint32_t at(int column, int row) const {
         return argb[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
     }
@@ -28,7 +29,7 @@ struct Picture {
 
 /// Picture with 16 bits per channel, not premultiplied; rows from the top.
 struct DeepPicture {
-    int width = 0, height = 0;
+    int width = 0, height = 0;                       ///< pixels
     std::vector<std::array<std::uint16_t, 4>> rgba;  ///< red, green, blue, alpha of each pixel
 };
 

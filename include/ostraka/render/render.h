@@ -17,11 +17,12 @@ struct RenderOptions {
     std::string view = "30,20";     ///< view direction, as `parse_view` accepts
     std::string views;              ///< several views on one sheet: "six", or values of `view` separated by ";"; empty: one view
     std::string up = "auto";        ///< upward direction of the object, as `parse_up` accepts
+    /// Parallel projection, or perspective of a pinhole camera.
     enum class Projection { orthographic, perspective } projection = Projection::orthographic;
     double zoom = 1;  ///< magnification about the centre; 1 shows the whole object
     /// Scale of several objects: all at the same scale, or each as large as possible.
     enum class Fit { all, each } fit = Fit::all;
-    enum class Shading { smooth, flat } shading = Shading::smooth;
+    enum class Shading { smooth, flat } shading = Shading::smooth;  ///< whether normals are interpolated across edges
     double crease = 40;         ///< smooth shading: edges whose face normals differ by more than this angle (degrees) look sharp
     int ambient_occlusion = 0;  ///< number of ambient occlusion rays per pixel; 0: none
     int samples = 8;            ///< number of rays per pixel where colours change; 1: no additional rays
@@ -40,16 +41,16 @@ struct RenderOptions {
     bool no_legend = false;            ///< omit the legend and the colour bar
     std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Throws Error (usage) for options that `render` would refuse. Call it before reading the meshes.
+/// Throws Error (usage) for options that `render` would refuse. Call this function before reading the meshes.
 void check_render_options(const RenderOptions& options);
 
 /// A name written beside an object; coordinates in pixels of the whole picture.
 struct PaneLabel {
-    std::string text;
-    Rgb colour;
+    std::string text;                                 ///< the name
+    Rgb colour;                                       ///< colour of the labelled part
     double left = 0, top = 0, width = 0, height = 0;  ///< rectangle of the text
     double place_x = 0, place_y = 0;                  ///< visible point of the labelled part, where the leader line ends
 };
@@ -63,8 +64,8 @@ struct Pane {
     double bar_length = 0;                         ///< length that the scale bar represents, in the mesh's unit; 0: no scale bar
     double bar_pixels = 0;                         ///< length of the scale bar, pixels
     std::size_t markers_shown = 0;                 ///< number of markers that are visible
-    std::vector<PaneLabel> labels;
-    PictureCamera camera;  ///< in pixel coordinates of the whole picture
+    std::vector<PaneLabel> labels;                 ///< names beside the object
+    PictureCamera camera;                          ///< in pixel coordinates of the whole picture
 };
 
 /// A rendered picture or document.
@@ -81,9 +82,9 @@ struct Rendering {
 /// Draws the scenes side by side. Rays are traced through a bounding volume hierarchy (Embree); the first hit is shaded by a
 /// light near the viewer's head and a soft sky, with more rays where neighbouring pixels differ. Lines and markers are drawn
 /// where the ray to the viewer is unobstructed, with a tolerance of 0.2 % of the largest side of the bounding box. The picture is
-/// bit-identical for any number of threads. O((n + pixels) log n). In SVG and PDF the surface is an embedded image; everything
-/// else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a coordinate that
-/// is not finite or a list of the wrong length.
+/// bit-identical for any number of threads. Time: O((n + pixels) log n). In SVG and PDF the surface is an embedded image;
+/// everything else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a
+/// coordinate that is not finite or a list of the wrong length.
 Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {}, PictureKind kind = PictureKind::pixels);
 
 }  // namespace ostraka

@@ -12,7 +12,7 @@ namespace ostraka {
 
 /// A poly-line of points on or near the surface.
 struct SceneLine {
-    std::vector<std::array<double, 3>> points;
+    std::vector<std::array<double, 3>> points;  ///< successive points of the line
     Rgb colour;
     double width = 2.5;    ///< width in pixels, for a picture 900 pixels high
     bool cased = false;    ///< true: drawn with a dark outline, to be visible on any surface
@@ -30,7 +30,7 @@ struct SceneMarker {
 
 /// A label for a part of the object, written beside the object with a line to a visible point of the part.
 struct SceneLabel {
-    std::string text;
+    std::string text;  ///< the label
     Rgb colour;
     std::vector<Index> faces = {};                   ///< faces of the labelled region
     std::vector<std::array<double, 3>> points = {};  ///< points of the labelled poly-line or point; used if `faces` is empty
@@ -40,7 +40,7 @@ struct SceneLabel {
 /// One colour of a triangle that has several colours. A point in the triangle takes the colour with the largest interpolated
 /// weight.
 struct ScenePatch {
-    Index triangle = 0;
+    Index triangle = 0;  ///< index of the triangle
     Rgb colour;
     std::array<float, 3> weights{};  ///< weights of the colour at the corners
 };
@@ -48,15 +48,15 @@ struct ScenePatch {
 enum class LegendMark { area, line, point };  ///< symbol of a legend entry
 
 struct LegendEntry {
-    std::string text;
+    std::string text;  ///< description
     Rgb colour;
-    LegendMark mark = LegendMark::area;
+    LegendMark mark = LegendMark::area;  ///< symbol beside the description
 };
 
 /// An object and what is drawn on it. The triangles may be any triangle soup. At most one of the colour lists is used: the first
 /// that is not empty, in the order of declaration; without any, the surface has the colour of clay.
 struct Scene {
-    TriangleSoup mesh;
+    TriangleSoup mesh;                  ///< triangles of the object
     std::vector<double> vertex_values;  ///< one value per point, interpolated and coloured by RenderOptions::scale; or empty
     std::vector<double> face_values;    ///< one value per triangle, coloured by RenderOptions::scale; or empty
     std::vector<Rgb> face_colours;      ///< one colour per triangle; or empty

@@ -19,9 +19,9 @@ std::string to_string(AxesAgree agree);
 
 /// Axes of two joined fragments.
 struct JoinAxes {
-    std::size_t first = 0, second = 0;  ///< indices of the fragments in the group
-    AxesAgree agree = AxesAgree::unknown;
-    double angle = 0;   ///< angle between the fragments' own axes, in the poses of the group, degrees
+    std::size_t first = 0, second = 0;     ///< indices of the fragments in the group
+    AxesAgree agree = AxesAgree::unknown;  ///< whether the two axes agree
+    double angle = 0;                      ///< angle between the fragments' own axes, in the poses of the group, degrees
     double offset = 0;  ///< distance between the two axes midway between the fragments, as a share of the group's diagonal
 };
 

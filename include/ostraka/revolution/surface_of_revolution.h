@@ -22,7 +22,7 @@ struct RevolutionOptions {
     std::uint64_t vertices = 25000;  ///< approximate number of vertices of the template
     AxisOptions axis;                ///< options for estimating the axis of a sherd
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Which data of a sherd the template uses.
@@ -35,14 +35,14 @@ std::string to_string(SherdUse use);
 
 /// Contribution of a sherd to the template, and its position on the template.
 struct SherdOnProfile {
-    std::string name;
-    SherdUse use = SherdUse::used;
-    std::string reason;  ///< what a partly used sherd does not contribute, or why a sherd is left out; empty: used
-    std::string remedy;  ///< how to make the sherd usable, if possible
-    Axis axis;           ///< axis estimated from the sherd alone
-    double lean = 0;     ///< angle between the sherd's axis and the common axis, degrees
-    double aside = 0;    ///< distance between the sherd's axis and the common axis at the sherd's centroid
-    double weight = 0;   ///< share of the information on the common axis that comes from the sherd, 0 to 1
+    std::string name;               ///< name of the sherd
+    SherdUse use = SherdUse::used;  ///< which data of the sherd are used
+    std::string reason;             ///< what a partly used sherd does not contribute, or why a sherd is left out; empty: used
+    std::string remedy;             ///< how to make the sherd usable, if possible
+    Axis axis;                      ///< axis estimated from the sherd alone
+    double lean = 0;                ///< angle between the sherd's axis and the common axis, degrees
+    double aside = 0;               ///< distance between the sherd's axis and the common axis at the sherd's centroid
+    double weight = 0;              ///< share of the information on the common axis that comes from the sherd, 0 to 1
     /// Deviation of the sherd's axis from the common axis, in standard deviations of the axis and of the layout.
     double disagreement = 0;
     double on_template = 0;  ///< share of the sherd's area (without known fractures) that lies on the template
@@ -63,7 +63,7 @@ struct RevolutionTemplate : AnnotatedMesh {
     bool rim = false;                    ///< true: the wall ends at the same height in all directions where its top is preserved
     std::vector<double> present;         ///< angular extent of wall in degrees, at equal steps of the height
     std::vector<SherdOnProfile> sherds;  ///< contribution of each sherd
-    std::vector<std::string> notes;
+    std::vector<std::string> notes;      ///< remarks on the construction
 };
 
 /// Builds a template from sherds in their original relative positions in the vessel (all in one coordinate system), or from a

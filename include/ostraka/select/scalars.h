@@ -12,12 +12,13 @@ namespace ostraka {
 
 /// A scalar field on a mesh: one value per vertex or face; NaN where there is no value.
 struct ScalarMap {
-    std::vector<double> values;
-    bool on_faces = false;  ///< true: one value per face; false: one per vertex
+    std::vector<double> values;  ///< one value per vertex or face
+    bool on_faces = false;       ///< true: one value per face; false: one per vertex
 };
 
 /// Closed interval from `above` to `below`.
 struct ScalarRange {
+    /// Lower and upper bound; infinite: no bound.
     double above = -std::numeric_limits<double>::infinity(), below = std::numeric_limits<double>::infinity();
     [[nodiscard]] bool contains(double x) const { return above <= x && x <= below; }
 };
@@ -41,7 +42,7 @@ struct SegmentOptions {
     int clusters = 5;         ///< number of thickness levels
     double smoothing = 0.26;  ///< preference for short borders in concave places, 0 to 1
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Segments of similar thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements the algorithm). `thickness` has one value

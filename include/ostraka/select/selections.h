@@ -22,10 +22,10 @@ std::vector<bool> faces_within(const Mesh& mesh, const Volume& volume);
 /// Indices of the vertices within the volume that have a face, ascending.
 std::vector<Index> vertices_within(const Mesh& mesh, const Volume& volume);
 
-/// The vertex with a face that is nearest to the point; ties go to the lower index. Linear. Throws Error (input) on a mesh
-/// without faces.
+/// The vertex with a face that is nearest to the point; ties go to the lower index. Takes linear time. Throws Error (input) on a
+/// mesh without faces.
 Index nearest_vertex(const Mesh& mesh, const Point& point);
-/// The face nearest to the point; ties go to the lower index. Linear. Throws Error (input) on a mesh without faces.
+/// The face nearest to the point; ties go to the lower index. Takes linear time. Throws Error (input) on a mesh without faces.
 Index nearest_face(const Mesh& mesh, const Point& point);
 
 /// For each face, whether it is connected with `seed` across edges; if `within` is not empty, through faces marked in `within`

@@ -16,7 +16,7 @@ struct SliceSegmentOptions {
     bool size = false;          ///< also use the radius of the circle with the slice's area as a descriptor
     ClusterCountOptions count;  ///< criterion for the number of clusters
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A segment: consecutive slices of one cluster.

@@ -1,5 +1,5 @@
-// Edits of a shape through handles: selection of handles and operations on them (thesis, section 5.2.3; doc/deformation.md).
-// Files: doc/schema/edit.schema.json.
+// Edits of a shape through handles: selection of handles and operations on the handles (thesis, section 5.2.3;
+// doc/deformation.md). File format: doc/schema/edit.schema.json.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -14,104 +14,116 @@ namespace ostraka {
 
 /// One step of an edit: an operation on selected handles.
 struct EditStep {
-    /// An annotation by its id or tag.
+    /// An annotation, given by its id or tag.
     using AnnotationName = std::variant<int, std::string>;
+    /// Selects the vertices of annotations, or the cage vertices that influence them.
     struct Annotations {
-        std::vector<AnnotationName> names;
+        std::vector<AnnotationName> names;  ///< ids or tags of the annotations
     };
+    /// Selects vertices of the mesh, or the cage vertices that influence them.
     struct MeshVertices {
-        std::vector<Index> indices;
+        std::vector<Index> indices;  ///< indices of mesh vertices
     };
+    /// Selects vertices of the cage.
     struct CageVertices {
-        std::vector<Index> indices;
+        std::vector<Index> indices;  ///< indices of cage vertices
     };
+    /// Selects the handles within an axis-parallel box.
     struct Box {
-        Eigen::Vector3d min, max;
+        Eigen::Vector3d min, max;  ///< opposite corners of the box
     };
+    /// Selects all handles.
     struct All {};
+    /// Selection of the handles.
     std::variant<Annotations, MeshVertices, CageVertices, Box, All> select;
 
-    /// How much influence on a selected mesh vertex selects a cage vertex: a number or a rule (influence_threshold);
-    /// per_point: that of the largest weight of each vertex. Default: 0.4, or lower if a vertex would have no handle.
+    /// Min influence on a selected mesh vertex with which a cage vertex is selected: a number or a rule (influence_threshold);
+    /// per_point: the largest weight of each mesh vertex. Empty: 0.4, or lower if a mesh vertex would have no handle.
     enum class Rule { auto_mesh, auto_cage, per_point };
     std::optional<std::variant<double, Rule>> threshold = {};
-    bool rule_within_selection = false;  ///< the rule considers the selected vertices only, not all of the mesh
-    std::optional<std::size_t> level =
-        {};  ///< level of nested cages, 0: the outermost; default: the innermost around the vertices
+    bool rule_within_selection = false;  ///< true: the rule considers the selected vertices only; false: all vertices of the mesh
+    /// Level of nested cages in which handles are selected, 0: the outermost; empty: the innermost cage around the vertices.
+    std::optional<std::size_t> level = {};
 
+    /// Moves the handles by a vector.
     struct Translate {
-        Eigen::Vector3d by;
+        Eigen::Vector3d by;  ///< displacement
     };
     struct Rotate {
         Eigen::Vector3d axis;                        ///< unit vector
         double angle;                                ///< degrees
-        std::optional<Eigen::Vector3d> centre = {};  ///< default: the mean of the handles
+        std::optional<Eigen::Vector3d> centre = {};  ///< empty: the mean of the handles
     };
+    /// Scales the handles about a centre.
     struct Scale {
-        double factor;
-        std::optional<Eigen::Vector3d> centre = {};  ///< default: the mean of the handles
+        double factor;                               ///< scale factor
+        std::optional<Eigen::Vector3d> centre = {};  ///< empty: the mean of the handles
     };
+    /// Stretches the handles along a direction.
     struct Stretch {
-        Eigen::Vector3d direction;  ///< unit vector
-        double factor;
+        Eigen::Vector3d direction;                              ///< unit vector
+        double factor;                                          ///< stretch factor
         struct Base {};                                         ///< the lowest handle along the direction
         struct Middle {};                                       ///< the mean of the handles
-        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< position that stays in place
+        std::variant<Base, Middle, Eigen::Vector3d> from = {};  ///< the position that stays in place
     };
+    /// Moves each handle to a given position.
     struct MoveTo {
-        std::vector<Eigen::Vector3d> places;  ///< one for each handle, in the order of the vertices
+        std::vector<Eigen::Vector3d> places;  ///< one position per handle, in the order of the vertices
     };
+    /// Operation on the selected handles.
     std::variant<Translate, Rotate, Scale, Stretch, MoveTo> operation;
 };
 
+/// A sequence of steps.
 struct Edit {
-    std::vector<EditStep> steps;
+    std::vector<EditStep> steps;  ///< steps in the order of execution
 };
 
-/// Reads an edit. Throws Error (input) that names the step: schema not met, no way or several ways of selecting, no operation or
-/// several, zero axes and directions, numbers that are not finite or too large.
+/// Reads an edit from JSON. Throws Error (input) that names the step: schema violated, no selection or several selections, no
+/// operation or several operations, axes and directions of length zero, numbers that are not finite or too large.
 Edit edit_from_json(const JsonValue& document, const std::string& where);
 
-/// A direction of any length as a unit vector, as files are read.
+/// The unit vector of a direction of any length, computed as for directions in files.
 Eigen::Vector3d unit_direction(const Eigen::Vector3d& direction);
 
 /// The handles of a shape: the vertices of a cage with weights for the mesh, or without a cage the vertices of the mesh itself.
 struct HandleSpace : AnnotatedMeshView {
-    const Mesh* cage = nullptr;
-    const Coordinates* coordinates = nullptr;  ///< coordinates of the mesh in the cage
+    const Mesh* cage = nullptr;                ///< null: the handles are the mesh's vertices
+    const Coordinates* coordinates = nullptr;  ///< coordinates of the mesh in the cage; null without a cage
 };
 
-/// State after a step: positions of all handles, and the handles selected so far.
+/// State after a step of an edit: positions of all handles, and the handles selected so far.
 struct EditState {
-    std::vector<Point> handles;
-    std::vector<bool> touched;    ///< handles selected so far; vertices of nested cages that are only carried along do not
-                                  ///< count
-    std::vector<Index> selected;  ///< handles selected by this step
-    std::vector<bool> named;      ///< vertices of the mesh that steps so far referred to, by annotation or index
-    bool by_handles = false;      ///< true if a step so far selected vertices of the cage directly
-    double threshold = 0;         ///< influence threshold by which cage vertices were selected; 0 if none was
+    std::vector<Point> handles;  ///< positions of all handles
+    /// For each handle, whether a step so far selected it; vertices of nested cages that are only carried along are not marked.
+    std::vector<bool> touched;
+    std::vector<Index> selected;  ///< indices of the handles selected by this step
+    std::vector<bool> named;      ///< for each vertex of the mesh, whether a step so far referred to it, by annotation or index
+    bool by_handles = false;      ///< true: a step so far selected vertices of the cage directly
+    double threshold = 0;         ///< min influence with which cage vertices were selected; 0 if no threshold was used
 };
 
-/// The influence threshold from which cage vertices are assigned to a part (section 5.2.3): "auto-mesh" is the smallest row
-/// maximum, so that each mesh vertex has a cage vertex; "auto-cage" is the smallest column maximum, so that each cage vertex
-/// has a mesh vertex. `rows` restricts it to some mesh vertices (all if empty). Throws Error (usage) for another rule.
+/// The min influence with which cage vertices are assigned to a part (section 5.2.3). Rule "auto-mesh": the smallest row maximum
+/// of the weights, so that each mesh vertex has a cage vertex; "auto-cage": the smallest column maximum, so that each cage vertex
+/// has a mesh vertex. `rows` restricts the rule to these mesh vertices (all if empty). Throws Error (usage) for another rule.
 double influence_threshold(const WeightMatrix& weights, const std::string& rule, const std::vector<Index>& rows = {});
-/// Cage vertices with a weight of at least `threshold` on one of the mesh vertices, ascending.
+/// Cage vertices with a weight of at least `threshold` on one of the mesh vertices in `rows`, ascending.
 std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold);
 
-/// Cage vertices with at least `share` of the largest weight of one of the mesh vertices (a separate threshold for each mesh
-/// vertex), ascending.
+/// Cage vertices with at least `share` of the largest weight on one of the mesh vertices in `rows` (each mesh vertex has its own
+/// largest weight), ascending.
 std::vector<Index> strongest(const Coordinates& coordinates, const std::vector<Index>& rows, double share = 0.999999);
 
-/// Vertices of an annotation, ascending.
+/// Indices of the vertices of an annotation, ascending.
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation);
 
 /// True if the annotation selects all faces.
 bool is_whole(const Mesh& mesh, const Annotation& annotation);
 
-/// Executes an edit; returns a state for each step. Throws Error (input) that names the step: missing annotation or tag shared by
-/// several, indices out of range, nothing selected (with the largest influence available), handles moved too far, a wrong number
-/// of positions.
+/// Executes an edit; returns the state after each step. `where` names the edit in errors. Throws Error (input) that names the
+/// step: missing annotation or tag shared by several annotations, indices out of range, nothing selected (with the largest
+/// influence available), handles moved too far, a wrong number of positions.
 std::vector<EditState> follow_edit(const Edit& edit, const HandleSpace& space, const std::string& where);
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
-// Files of a learnt class: NAME.class.json (doc/schema/class.schema.json), with its mean and modes as NumPy arrays beside it.
+// Files of a learnt class: NAME.class.json (doc/schema/class.schema.json), and beside this file the mean and the modes as NumPy
+// arrays.
 #pragma once
 
 #include "ostraka/shape_classes/classify.h"
@@ -6,18 +7,18 @@
 
 namespace ostraka {
 
-/// Throws Error (usage) if the name is not a valid file name. Call it before any other work.
+/// Throws Error (usage) if the class name is not a valid file name. Call this function before any other work.
 void check_class_name(const std::string& name);
 
 /// Writes FOLDER/NAME.class.json, NAME.mean.npy (one row per vertex) and, if there are modes, NAME.modes.npy (one row per
 /// mode), each atomically; NAME is the name of the class. Throws Error (usage) if the name is not a valid file name.
 void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance);
 
-/// Reads a class and the arrays beside it. Throws Error (input), naming file and place, if the schema is violated, an array is
-/// missing or has the wrong size, the mean, modes and coefficients are inconsistent, or the archetype is not a member.
+/// Reads a class and the arrays beside the file. Throws Error (input), naming file and place, if the schema is violated, an array
+/// is missing or has the wrong size, the mean, modes and coefficients are inconsistent, or the archetype is not a member.
 ShapeClass read_class(const Path& file);
 
-/// The report of a classification (doc/schema/classification.schema.json).
+/// JSON of a classification (doc/schema/classification.schema.json).
 JsonValue classification_to_json(const Classification& classification, JsonAllocator& allocator);
 
 }  // namespace ostraka

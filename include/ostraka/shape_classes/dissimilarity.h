@@ -5,49 +5,51 @@
 
 namespace ostraka {
 
-/// Mean absolute deviation of the logarithms (logits for shares) of the quantities from the members' means, each in standard
-/// deviations of one more member: s sqrt(1 + 1/n), where s^2 includes `resolution` squared and is moderated by `priors`.
-/// Residuals count only above the mean. If `learnt.dependence` is known, the deviations are decorrelated first, so that
-/// dependent quantities are not counted several times: z becomes R^-1/2 z (zero-phase component analysis: Kessy, Lewin and
-/// Strimmer 2018). R is the within-class correlation weighted by its degrees of freedom, shrunk towards the identity with the
-/// number of quantities as weight. A missing quantity counts as the mean. The value is 0 for an object equal to the mean and
-/// near 1 for members.
+/// Dissimilarity of an object to the members: mean absolute deviation of the logarithms (logits for shares) of the quantities
+/// from the members' means, each in standard deviations of one more member: s sqrt(1 + 1/n), where s^2 includes `resolution`
+/// squared and is moderated by `priors`. Residuals count only above the mean. If `learnt.dependence` is known, the deviations are
+/// decorrelated first, so that dependent quantities are not counted several times: z becomes R^-1/2 z (zero-phase component
+/// analysis: Kessy, Lewin and Strimmer 2018). R is the within-class correlation weighted by its degrees of freedom, shrunk
+/// towards the identity with the number of quantities as weight. A missing quantity counts as the mean. The dissimilarity is 0
+/// for an object equal to the mean and near 1 for members.
 struct Dissimilarity {
-    double value = 0;
-    std::size_t count = 0;  ///< number of quantities
-    std::size_t worst = 0;  ///< index of the range that is farthest off, before decorrelation
-    double off = 0;         ///< signed deviation of that range, in standard deviations
+    double value = 0;       ///< the dissimilarity
+    std::size_t count = 0;  ///< number of quantities with a value
+    std::size_t worst = 0;  ///< index in `ranges` of the quantity that deviates most, before decorrelation
+    double off = 0;         ///< signed deviation of that quantity, in standard deviations
 };
 
-/// `values` has one entry per range. `without` leaves one member out of means and deviations. None unless at least three
-/// quantities have a value here and on at least two members.
+/// Dissimilarity of an object to the members of the class. `values`: value of the object for each range; `without`: index of a
+/// member that is excluded from means and deviations. Empty unless at least three quantities have a value on the object and on at
+/// least two members.
 std::optional<Dissimilarity> dissimilarity(const ShapeClass& learnt, const std::vector<std::optional<double>>& values,
                                            std::optional<std::size_t> without = {});
 
-/// Whether a quantity enters the dissimilarity: residuals of the fit and measures of the whole surface.
+/// Whether a quantity counts for the dissimilarity: residuals of the fit and measures of the whole surface do.
 bool counts_for_dissimilarity(const ClassQuantity& quantity);
-/// Mean and variance of the members' values on the scale that is assumed to be normal.
+/// Mean and variance of the members' values on the scale that is assumed to be normal; `without`: index of an excluded member.
 SampleMoments dissimilarity_moments(const LearntRange& range, std::optional<std::size_t> without = {});
 
-/// Dependence of the quantities that enter the dissimilarity, within classes that are queried together: cross products of the
+/// Dependence of the quantities that count for the dissimilarity, within classes that are queried together: cross products of the
 /// members' deviations from the means of their classes.
 Dependence dependence_of(const std::vector<ShapeClass>& classes);
 
-/// Name of the range of the members' own dissimilarities, computed leave-one-out.
+/// Name of the range that holds the members' own dissimilarities, computed leave-one-out.
 inline constexpr const char* unlike_the_members = "unlike the members";
 
-/// Sets the values of the members and out-of-class objects in that range, which is added if missing; does nothing for fewer
-/// than three members.
+/// Sets the values of the members and out-of-class objects in the range "unlike the members", which is added if missing; does
+/// nothing for fewer than three members.
 void measure_dissimilarity(ShapeClass& learnt);
 
-/// Logarithms of the values of the out-of-class objects.
+/// Logarithms of the out-of-class objects' values in a range.
 std::vector<double> out_of_class_logs(const LearntRange& range);
 
-/// Sets the dissimilarity up to which an object is recognised as a member; larger values alone do not reject it. With at least
-/// three out-of-class objects the bound is the value below which at most the share `accept` of them falls (classes that are
-/// queried together share this rate); otherwise it is the value that at most the share `unsure` of members exceeds, and at
-/// least half a deviation. `members` and `out_of_class` are the moments of the logarithms of their values. The bound never
-/// exceeds `range.high`, which out-of-class objects lower: objects as dissimilar as they are on average (geometric mean) are
+/// Sets `range.recognised`, the dissimilarity up to which an object is recognised as a member; larger values alone do not reject
+/// the object. With at least three out-of-class objects the bound is the value below which at most the share `accept` of
+/// out-of-class objects falls (classes that are queried together share this rate); otherwise the bound is the value that at most
+/// the share `unsure` of members exceeds, and at least half a standard deviation above their mean. `members` and `out_of_class` are
+/// the moments of the logarithms of the values of members and out-of-class objects. The bound never exceeds `range.high`, which
+/// out-of-class objects lower: objects as dissimilar as the out-of-class objects on average (geometric mean) are
 /// rejected.
 void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& out_of_class, double accept,
                     double unsure);

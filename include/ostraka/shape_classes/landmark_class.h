@@ -1,4 +1,4 @@
-// Landmark classes: members are landmark files with the same landmark names, without a surface.
+// Classes of landmark configurations: members are landmark files with the same landmark names, without a surface.
 #pragma once
 
 #include "ostraka/files/file.h"
@@ -6,24 +6,45 @@
 
 namespace ostraka {
 
-/// Tests the extension: .mrk.json, .fcsv, .tps, .pp.
+/// Whether the file has the extension of a landmark file: .mrk.json, .fcsv, .tps, .pp.
 bool is_landmark_file(const Path& file);
 
+<<<<<<< ours
 /// A template made of landmarks: one vertex per landmark, no faces, no annotations.
 struct LandmarkTemplate : AnnotatedMesh {
     std::vector<std::string> names;
     std::string unit;
     RelationGraph graph;  ///< empty
     [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }
+||||||| base
+/// A template made of landmarks: one vertex per landmark, no faces.
+struct LandmarkTemplate {
+    std::vector<std::string> names;
+    Mesh mesh;
+    std::string unit;
+    AnnotationSet set;    ///< empty
+    RelationGraph graph;  ///< empty
+    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
+=======
+/// A template that consists of landmarks: one vertex per landmark, no faces.
+struct LandmarkTemplate {
+    std::vector<std::string> names;                                           ///< name of each landmark
+    Mesh mesh;                                                                ///< one vertex per landmark, no faces
+    std::string unit;                                                         ///< unit of the coordinates
+    AnnotationSet set;                                                        ///< empty
+    RelationGraph graph;                                                      ///< empty
+    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }  ///< template of a class; refers to this object
+>>>>>>> theirs
 };
-/// Throws Error (input), naming the file, for fewer than four landmarks or two landmarks of the same name.
+/// Reads a landmark file as a template. Throws Error (input), naming the file, for fewer than four landmarks or two landmarks of
+/// the same name.
 LandmarkTemplate read_landmark_template(const Path& file);
 
-/// Reads a member and matches its landmarks to the template's by name; additional landmarks are noted. Throws Error (input),
-/// naming file and landmark, if a landmark is missing or the unit differs.
+/// Reads a landmark file as a member and matches its landmarks to the template's by name; a note lists additional landmarks.
+/// Throws Error (input), naming file and landmark, if a landmark is missing or the unit differs.
 LearntMember read_landmark_member(const Path& file, const LandmarkTemplate& landmark_template);
 
-/// Writes the mean as a landmark file (.mrk.json).
+/// Writes the mean configuration of a class as a landmark file (.mrk.json).
 void write_landmark_mean(const Path& file, const LandmarkTemplate& landmark_template, const Landmarks& mean,
                          const Provenance& provenance);
 

@@ -6,25 +6,26 @@
 
 namespace ostraka {
 
-/// The name of an object: its file name without folder and extension (".mrk.json" is one extension).
+/// The name of an object: its file name without folder and extension; ".mrk.json" counts as one extension.
 std::string object_name(const Path& file);
 /// Throws Error (usage) if two files have the same name without folder and extension.
 void check_object_names(const std::vector<std::string>& files);
 
-/// Reads a mesh file and the annotations beside it (NAME.ant.json), if they exist.
+/// Reads a mesh file and, if it exists, the annotation file beside it (NAME.ant.json).
 WholeObject read_member(const Path& file);
 
-/// The template of a class, from a template with a mesh. `package` must outlive the result.
+/// The class template of a template package with a mesh. `package` must outlive the result.
 ClassTemplate class_template(const Template& package);
 
-/// A class with its template or its landmarks.
+/// A learnt class with its template package or its landmark template.
 struct ClassWithTemplate {
-    ShapeClass learnt;
-    Template package;
-    std::optional<LandmarkTemplate> landmarks;
+    ShapeClass learnt;                          ///< the learnt class
+    Template package;                           ///< the template package of the class; without a mesh for landmark classes
+    std::optional<LandmarkTemplate> landmarks;  ///< landmark template; empty: the class has a template with a mesh
+    /// Template of the class; refers to this object.
     [[nodiscard]] ClassTemplate known() const { return landmarks ? landmarks->known() : class_template(package); }
 };
-/// Throws the Errors (input) of read_class, check_usable and check_topology.
+/// Reads a class file and the template beside it. Throws the Errors (input) of read_class, check_usable and check_topology.
 ClassWithTemplate read_class_with_template(const Path& file);
 
 }  // namespace ostraka

@@ -14,14 +14,14 @@
 namespace ostraka {
 
 struct MemberFitOptions {
-    PlacementOptions placement;
-    AlignOptions alignment;
-    NonRigidOptions fit;
-    AnnotationMatchOptions annotations;
-    bool ignore_landmarks = false;
-    int tries = 1;
-    double observed = 0.02;
-    double max_off = 0.125;
+    PlacementOptions placement;          ///< options for registering the template by landmarks
+    AlignOptions alignment;              ///< options for registering the template by its surface
+    NonRigidOptions fit;                 ///< options for the non-rigid fit
+    AnnotationMatchOptions annotations;  ///< options for matching annotations
+    bool ignore_landmarks = false;       ///< true: register the template by its surface even if there are landmarks
+    int tries = 1;                       ///< without landmarks: number of initial poses that are fitted; the best fit is kept
+    double observed = 0.02;              ///< max distance between surfaces that lie on each other, as a share of the diagonal
+    double max_off = 0.125;              ///< max value of FitResiduals::off with which a template lies on an object
     MemberFitOptions() {
         fit.counterparts = NonRigidOptions::Counterparts::surface;  // the thresholds of classes were measured with this setting
         alignment.shrinkage = 0.3;
@@ -29,75 +29,91 @@ struct MemberFitOptions {
         fit.last_search_radius = 0.05;
     }
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+<<<<<<< ours
 /// A whole object; it may have no annotations.
 struct WholeObject : AnnotatedMesh {
     std::string name;
+||||||| base
+/// A whole object.
+struct WholeObject {
+    std::string name;
+    Mesh mesh;
+    AnnotationSet annotations;  ///< may be empty
+=======
+/// A whole object, not a fragment.
+struct WholeObject {
+    std::string name;  ///< name of the object, see object_name
+    Mesh mesh;
+    AnnotationSet annotations;  ///< may be empty
+>>>>>>> theirs
 };
 
-/// Differences between template and object after the fit. Lengths are relative to the box diagonal of the template at the
-/// object's scale; areas are shares of the total area.
+/// Differences between template and object after the fit. Lengths are relative to the bounding box diagonal of the template at
+/// the object's scale; areas are shares of the total area, 0 to 1.
 struct FitResiduals {
     double distance = 0;     ///< area-weighted root mean square distance from the vertices of the fitted template to the object
-    double back = 0;         ///< the same from the object's surface to the fitted template
+    double back = 0;         ///< area-weighted root mean square distance from the object's surface to the fitted template
     double unmatched = 0;    ///< share of the template's area that does not lie on the object
     double unexplained = 0;  ///< share of the object's area on which no part of the template lies
-    double stretch = 0;      ///< root mean square logarithm of the principal stretches of the triangles,
-                             ///< relative to the scaled template: 0.1 is about ten per cent
-    double bend = 0;         ///< root mean square change of the dihedral angles, radians
-    /// Mean share of the two surfaces that is off the other surface.
+    /// Root mean square logarithm of the principal stretches of the triangles relative to the scaled template; 0.1 is about ten
+    /// per cent.
+    double stretch = 0;
+    double bend = 0;  ///< root mean square change of the dihedral angles relative to the scaled template, radians
+    /// Mean of the shares of the two surfaces that do not lie on the other surface.
     [[nodiscard]] double off() const { return 0.5 * (unmatched + unexplained); }
 };
 
-/// Whether an object with the template's triangles is used as given: automatic (if it has them), always, or never.
+/// Whether an object with the template's triangles is used as given: if it has the triangles (automatic), always, or never.
 enum class CorrespondenceChoice { automatic, given, fitted };
 
+/// Registration of a template to an object.
 struct MemberFit {
-    std::vector<Point> points;  ///< positions of the template's vertices on the object
-    double scale = 1;           ///< scale of the template
-    std::string placed_by;      ///< "correspondence", "landmarks" or "surface"
-    std::string problem;        ///< why it is not fitted, with the remedy; empty if it is fitted
-    std::vector<std::string> notes;
-    std::optional<FitResiduals> residuals;  ///< nullopt for members in correspondence
-    double contact_distance = 0;            ///< distance up to which surfaces lie on each other, in the object's unit
+    std::vector<Point> points;              ///< positions of the template's vertices on the object
+    double scale = 1;                       ///< scale of the template
+    std::string placed_by;                  ///< how the template was registered: by "correspondence", "landmarks" or "surface"
+    std::string problem;                    ///< why the template is not fitted, with the remedy; empty if it is fitted
+    std::vector<std::string> notes;         ///< remarks on the registration
+    std::optional<FitResiduals> residuals;  ///< empty for members in correspondence
+    double contact_distance = 0;            ///< max distance between surfaces that lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
-    /// (inner_wall_faces). It is excluded from the residuals and from the measures of the whole shape. `outer` is the object
-    /// without this inside, closed where it was cut off; null if there is no such inside.
+    /// (inner_wall_faces). The inside of the walls is excluded from the residuals and from the measures of the whole shape.
+    /// `outer` is the object without the inside, closed where it was cut off; null if there is no inside.
     double cavity = 0;
     std::shared_ptr<const Mesh> outer;
-    /// Regions of the object on which no part of the template lies, and regions of the fitted template that do not lie on the
-    /// object, in the object's coordinates. Empty in correspondence.
+    /// `foreign`: regions of the object on which no part of the template lies; `missing`: regions of the fitted template that do
+    /// not lie on the object; both in the object's coordinates. Empty in correspondence.
     std::vector<DeviatingRegion> foreign, missing;
 };
 
-/// Above this share of both surfaces off each other (FitResiduals::off) a fit is not informative.
+/// Value of FitResiduals::off above which a fit gives no information on the object.
 inline constexpr double uninformative_fit = 0.5;
 
-/// Message, with numbers, that the template does not lie on the object because `off()` is above `maximum`; empty if it does, or
-/// if there are no residuals.
+/// Message, with numbers, that the template does not lie on the object because `off()` is above `maximum`; empty if `off()` is
+/// not above, or if there are no residuals.
 std::string fit_off_message(const MemberFit& fit, double maximum);
 
-/// Messages, one per line: how much of the object the template explains, how much of the template lies on the object, the
-/// distance threshold, and for each region that is off its position, area, distance, and the nearest part of the template.
-/// Empty in correspondence.
+/// Messages that explain a fit, one per line: how much of the object the template explains, how much of the template lies on the
+/// object, the distance threshold, and for each deviating region its position, area, distance, and the nearest part of the
+/// template. Empty in correspondence.
 std::vector<std::string> fit_explanation(const MemberFit& fit);
 
-/// Whether an object has the template's triangles: the same number of vertices and the same faces in the same order.
+/// Whether a member has the template's triangles: the same number of vertices and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);
 
-/// Registers the template to the object by a similarity and then fits it (`fit_template`). The similarity comes from three or
-/// more common landmarks (`place_by_landmarks`) or, without them, from the surfaces: the template is scaled to the object's
-/// area and aligned by trimmed iterative closest points in both directions (`align`, with free scale within `shrinkage`),
-/// started from the four orientations of the principal axes and from the given pose. The residuals are measured on the
-/// surfaces. Throws Error (input) for an object or a template without area.
+/// Registers the template (`mesh`, `set`) to the object by a similarity and then fits it (`fit_template`). The similarity comes
+/// from three or more common landmarks (`place_by_landmarks`) or, without landmarks, from the surfaces: the template is scaled to
+/// the object's area and aligned by trimmed iterative closest points in both directions (`align`, with free scale within
+/// `shrinkage`), started from the four orientations of the principal axes and from the given pose. The residuals are measured on
+/// the surfaces. Throws Error (input) for an object or a template without area.
 MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const MemberFitOptions& options = {});
 
-/// Fit of a member in correspondence: its own points.
+/// Fit of a member in correspondence: the points are the member's own vertices.
 MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member);
 
-/// Sets stretch and bend of `points` relative to the mesh scaled by `scale`, as in FitResiduals.
+/// Sets the members stretch and bend of `residuals` for the deformation from the mesh scaled by `scale` to `points`.
 void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, double scale, FitResiduals& residuals);
 
 }  // namespace ostraka

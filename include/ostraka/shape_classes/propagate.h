@@ -1,4 +1,4 @@
-// Transfer of the template's annotations to the members of its class.
+// Transfer of the template's annotations to the members of the template's class.
 #pragma once
 
 #include "ostraka/shape_classes/shape_class.h"
@@ -7,9 +7,10 @@
 namespace ostraka {
 
 struct PropagateOptions {
-    MemberFitOptions fit;
+    MemberFitOptions fit;  ///< options for registering the template to the member
+    /// Whether a member with the template's triangles is used as given.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
-    TransferOptions transfer;
+    TransferOptions transfer;  ///< options for transferring annotations
     PropagateOptions() {
         transfer.correspondence.max_distance = 0.05;
         transfer.overlap = false;
@@ -17,19 +18,22 @@ struct PropagateOptions {
     }
 };
 
+/// Result of `propagate`.
 struct Propagated {
-    MemberFit fit;                           ///< `problem` is set if there is no other result
-    AnnotationSet on_template;               ///< annotations of the template, with measures taken on the fitted template
-    std::optional<AnnotationSet> on_member;  ///< annotations on the member's own mesh, with measures taken again
-    std::vector<std::string> notes;          ///< messages on losses and changes, and on whether the template lies on the member
-    std::size_t lost = 0;                    ///< number of annotations that are not on the member
-    bool lies_on = true;                     ///< whether at most MemberFitOptions::max_off is off
+    MemberFit fit;              ///< registration of the template to the member; if `problem` is set, the other members are empty
+    AnnotationSet on_template;  ///< annotations of the template, with measures computed on the fitted template
+    /// Annotations on the member's own mesh, with measures computed on that mesh; empty: not transferred.
+    std::optional<AnnotationSet> on_member;
+    std::vector<std::string> notes;  ///< messages on losses and changes, and on whether the template lies on the member
+    std::size_t lost = 0;            ///< number of annotations of the template that are not on the member
+    bool lies_on = true;             ///< true: FitResiduals::off is at most MemberFitOptions::max_off
+    /// True: all annotations were transferred reliably.
     [[nodiscard]] bool complete() const { return fit.problem.empty() && lost == 0 && lies_on; }
 };
 
-/// Registers the template to the member (fit_by_method) and transfers its annotations to the member's surface (`transfer`); in
-/// correspondence the annotations stay the same. Measures are taken again. Annotations are also transferred if the template
-/// does not lie on the member (`fit_off_message`), and a note reports it.
+/// Registers the template to the member (fit_by_method) and transfers the template's annotations to the member's surface
+/// (`transfer`); in correspondence the annotations stay the same. Measures are recomputed. Annotations are also transferred if
+/// the template does not lie on the member (`fit_off_message`), and a note reports this.
 Propagated propagate(const ClassTemplate& class_template, const WholeObject& member, const PropagateOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Quantities measured on a member of a class: its constraints, proportions, relations and attributes, and its geometry.
+// Quantities measured on a member of a class: its constraints, proportions, relations, attributes and geometry.
 #pragma once
 
 #include "ostraka/relation/graph.h"
@@ -8,49 +8,66 @@
 
 namespace ostraka {
 
-/// Ordered as reasons are reported.
+/// Kinds of quantities, in the order in which reasons are reported.
 enum class QuantityKind { proportion, constraint, relation, part, attribute, geometry };
 std::string to_string(QuantityKind kind);
-/// Throws Error (usage) for an unknown word.
+/// The kind named by a word. Throws Error (usage) for an unknown word.
 QuantityKind quantity_kind(const std::string& word);
 
-/// One measured value of a member.
+/// A quantity of a member, with its value.
 struct ClassQuantity {
-    QuantityKind kind = QuantityKind::geometry;
-    int id = -1;             ///< id of the relationship, or of the annotation of an attribute
-    std::string name;        ///< "little finger / ring finger", "height", "distance" ...
-    std::string subject;     ///< type of the relationship, tag of the annotation
-    std::string unit = {};   ///< empty for shares and ratios
-    bool one_sided = false;  ///< a residual: smaller is never worse
-    std::optional<double> value = {};
+    QuantityKind kind = QuantityKind::geometry;  ///< kind of quantity
+    int id = -1;                                 ///< id of the relationship, or of the annotation of an attribute; -1: none
+    std::string name;                            ///< "little finger / ring finger", "height", "distance" ...
+    std::string subject;                         ///< type of the relationship, or tag of the annotation
+    std::string unit = {};                       ///< empty for shares and ratios
+    bool one_sided = false;                      ///< true: a residual, for which smaller is never worse
+    std::optional<double> value = {};            ///< empty: the quantity cannot be measured
 
-    /// Identifies the same quantity on another member.
+    /// Text that identifies the same quantity on another member.
     [[nodiscard]] std::string key() const;
-    /// Display name.
+    /// Name for display.
     [[nodiscard]] std::string text() const;
 };
 
+<<<<<<< ours
 /// The template of a class. The referenced objects must outlive it.
 struct ClassTemplate : AnnotatedMeshView {
     const RelationGraph& graph;
+||||||| base
+/// The template of a class. The referenced objects must outlive it.
+struct ClassTemplate {
+    const Mesh& mesh;
+    const AnnotationSet& set;
+    const RelationGraph& graph;
+=======
+/// The template of a class. The template refers to objects, which must outlive it.
+struct ClassTemplate {
+    const Mesh& mesh;            ///< mesh of the template
+    const AnnotationSet& set;    ///< annotations of the template
+    const RelationGraph& graph;  ///< relationships between the annotations
+>>>>>>> theirs
 };
 
-/// Moves the points (one row per vertex) to the frame of the template by rotation and translation and, without `sizes`, scales
-/// them to its centroid size, so that relations, stated ranges and the up direction have the same meaning as on the template.
+/// Moves the points (one per vertex) to the coordinate system of the template by rotation and translation and, without `sizes`,
+/// scales them to the template's centroid size, so that relations, stated ranges and the upward direction have the same meaning
+/// as on the template.
 std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>& points, bool sizes);
+/// Converts points to a landmark configuration.
 Landmarks landmarks_of(const std::vector<Point>& points);
+/// Converts a landmark configuration to points.
 std::vector<Point> points_of(const Landmarks& landmarks);
 
-/// Measures everything defined on the annotations of the template at the given points: for each proportion the ratio of its
-/// measures and its deviation from the range (per cent); the deviations of the other constraints and of the geometric relations
-/// (these in the frame of the template); scalar measures and descriptors of the attributes, in the unit of the points. The list
-/// and its order depend only on the template. A quantity that cannot be measured has no value.
+/// Measures all quantities defined on the annotations of the template at the given points: for each proportion the ratio of its
+/// measures and the deviation of the ratio from the range (per cent); the deviations of the other constraints and of the
+/// geometric relations (both in the coordinate system of the template); scalar measures and descriptors of the attributes, in the
+/// unit of the points. The list and its order depend only on the template. A quantity that cannot be measured has no value.
 std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_template, const std::vector<Point>& points, bool sizes);
 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
 /// "bend"; without values in correspondence.
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
-/// Quantities of kind geometry of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic
+/// Measures of an object's own surface as quantities of kind geometry: "compactness", "geodesic mean", "geodesic most", "geodesic
 /// variation", "second", "fourth" and "sixth far point", "thickness mean", "thickness median", "thickness most".
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape);
 

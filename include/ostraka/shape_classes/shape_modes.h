@@ -7,47 +7,49 @@
 namespace ostraka {
 
 struct ModeOptions {
-    bool sizes = false;     ///< whether size is part of the shape
-    int maximum = 1000;     ///< maximum number of modes
-    double variance = 1.0;  ///< modes are kept up to this share of the variance
+    bool sizes = false;     ///< true: size is part of the shape
+    int maximum = 1000;     ///< max number of modes
+    double variance = 1.0;  ///< modes are kept until they explain this share of the variance
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+/// Mean shape and modes of variation.
 struct ShapeModes {
-    bool sizes = false;
-    Landmarks mean;                      ///< centred at the origin, oriented as the frame, with the members' mean centroid size
-    Eigen::MatrixXd modes;               ///< one mode per row: x, y, z of each vertex; rows are orthonormal
-    std::vector<double> variances;       ///< one per mode, divisor n - 1, in the squared unit
-    double total = 0;                    ///< total variance of all modes, kept or not
-    Eigen::MatrixXd coefficients;        ///< one row per member
-    std::vector<double> centroid_sizes;  ///< one per member
-    double mean_size = 0;
-    std::vector<double> distances;  ///< one per member: distance from the mean, relative to the mean size
-    /// One per member: distance from the mean of the others, and the part of it outside the span of the others' modes. Empty
-    /// for a single member.
+    bool sizes = false;             ///< true: size is part of the shape
+    Landmarks mean;                 ///< centred at the origin, oriented as the template, with the members' mean centroid size
+    Eigen::MatrixXd modes;          ///< one mode per row: x, y, z of each vertex; rows are orthonormal
+    std::vector<double> variances;  ///< variance of each mode, divisor n - 1, in the squared unit
+    double total = 0;               ///< total variance of all modes, including modes that were dropped
+    Eigen::MatrixXd coefficients;   ///< one row per member, one column per mode
+    std::vector<double> centroid_sizes;  ///< centroid size of each member
+    double mean_size = 0;                ///< mean of the members' centroid sizes
+    std::vector<double> distances;       ///< for each member, the distance from the mean, relative to the mean size
+    /// For each member, the distance from the mean of the other members, and the part of this distance outside the span of the
+    /// other members' modes. Empty for a single member.
     std::vector<double> left_out_distances, left_out_outside;
     std::size_t archetype = 0;  ///< index of the member nearest to the mean
 };
 
 /// Generalised Procrustes analysis of the members' vertices with equal weights; without `sizes` all members are scaled to the
 /// mean centroid size. The modes are the eigenvectors of the covariance, computed from the n x n matrix of inner products (n
-/// members): O(n^2 V + n^3). The mean is rotated onto `frame`. Leave-one-out values do not repeat the alignment. Throws the
-/// Errors (input) of generalised_procrustes.
+/// members): O(n^2 V + n^3). The mean is rotated onto `frame`, the template's vertices. Leave-one-out values are computed without
+/// repeating the alignment. Throws the Errors (input) of generalised_procrustes.
 ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& frame, const ModeOptions& options = {});
 
 /// Coordinates of a shape in the space of the modes.
 struct ShapeCoordinates {
-    SimilarityMap map;  ///< from the shape to the frame of the mean
-    std::vector<double> coefficients;
-    double distance = 0;     ///< distance from the mean, relative to the mean size
-    double outside = 0;      ///< part of the distance outside the span of the modes
-    double mahalanobis = 0;  ///< root of the sum of squared coefficients, each divided by the standard deviation of its mode
-    double centroid_size = 0;
+    SimilarityMap map;                 ///< maps the shape onto the mean
+    std::vector<double> coefficients;  ///< coefficient of each mode
+    double distance = 0;               ///< distance from the mean, relative to the mean size
+    double outside = 0;                ///< part of the distance from the mean outside the span of the modes
+    double mahalanobis = 0;    ///< root of the sum of squared coefficients, each divided by the standard deviation of its mode
+    double centroid_size = 0;  ///< centroid size of the shape
 };
+/// Registers a shape to the mean and computes its coordinates.
 ShapeCoordinates coordinates_in(const ShapeModes& modes, const Landmarks& shape);
 
-/// The mean plus the modes times the coefficients.
+/// The shape with these coefficients: the mean plus the modes times the coefficients.
 Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficients);
 
 }  // namespace ostraka

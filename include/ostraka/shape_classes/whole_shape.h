@@ -8,31 +8,35 @@
 
 namespace ostraka {
 
+/// Measures of a surface.
 struct WholeShape {
-    /// 6 sqrt(pi) V / A^1.5: 1 for a ball, less for any other shape. None for a surface that is open or inside out.
+    /// 6 sqrt(pi) V / A^1.5 of volume V and area A: 1 for a ball, less for any other shape. Empty for a surface that is open or
+    /// inside out.
     std::optional<double> compactness;
     /// Geodesic distances between points of the surface, relative to the square root of the area: mean, maximum, and standard
-    /// deviation over the mean. Bending does not change them.
+    /// deviation divided by the mean. Bending the surface does not change these distances.
     std::optional<double> geodesic_mean, geodesic_max, geodesic_variation;
-    /// Farthest-point sampling: distance of the second, fourth and sixth point from the points before it. The first point is
-    /// the farthest from the centre. Relative to the square root of the area.
+    /// Farthest-point sampling: geodesic distance of the second, fourth and sixth point from the points before, relative to the
+    /// square root of the area. The first point is the point farthest from the centre.
     std::optional<double> second_point, fourth_point, sixth_point;
     /// Shape diameter (`thickness`) over the surface: mean, relative to the square root of the area; median and 90th percentile
-    /// by area, relative to the mean. None if the rays from a tenth of the surface or more leave without a hit.
+    /// by area, relative to the mean. Empty if the rays from a tenth of the surface or more leave the object without a hit.
     std::optional<double> thickness_mean, thickness_median, thickness_most;
-    /// Volume relative to that of the convex hull, and compactness of the hull; none as for compactness. Posture changes them.
+    /// Volume of the object relative to the volume of its convex hull, and compactness of the hull; empty where compactness is.
+    /// Posture changes these values.
     std::optional<double> hull_share, hull_compactness;
-    /// Surface integrals, by face: mean curvature over the square root of the area (signed; 2 sqrt(pi) for a ball); the concave
-    /// part of its absolute value; absolute Gaussian curvature over 4 pi (1 for convex shapes). None without a volume.
+    /// Surface integrals by face: mean curvature divided by the square root of the area (signed; 2 sqrt(pi) for a ball); the
+    /// concave part of its absolute value; absolute Gaussian curvature divided by 4 pi (1 for convex shapes). Empty without a
+    /// volume.
     std::optional<double> curvature, concave, saddles;
-    /// `laplace_spectrum`: twelve values, or empty.
+    /// Spectrum of the surface by `laplace_spectrum`: twelve values, or empty.
     std::vector<double> spectrum;
-    static constexpr int spectrum_size = 12;
+    static constexpr int spectrum_size = 12;  ///< number of values in the spectrum
 };
 
-/// Geodesics start from 8 sources, by farthest-point sampling, on a copy simplified to 1500 vertices; curvature and spectrum
-/// use the same copy. Pairs in different components do not count. Thickness is measured on a copy simplified to 600 vertices.
-/// Throws Error (input) for a mesh without area.
+/// Measures a whole surface. Geodesics start from 8 sources, chosen by farthest-point sampling, on a copy simplified to 1500
+/// vertices; curvature and spectrum use the same copy. Pairs of points in different components do not count. Thickness is
+/// measured on a copy simplified to 600 vertices. Throws Error (input) for a mesh without area.
 WholeShape measure_whole_shape(const Mesh& mesh);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Clay volume of an object whose inside was scanned in part, or not at all.
+// Clay volume of an object whose inside was scanned only in part, or not at all.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,39 +10,44 @@
 namespace ostraka {
 
 struct ClayOptions {
-    int slices = 400;
+    int slices = 400;  ///< number of layers
+    /// Min wall thickness where the inside is not visible, in the mesh's unit; 0: derived from the visible walls.
     double wall = 0;
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Volumes in the mesh's unit cubed. NaN: unknown.
+/// Volumes in the cubed unit of the mesh. NaN: unknown.
 struct ClayVolume {
-    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    double maximum = 0;        ///< unseen regions count as clay; unknown if no slice has an outline
-    double minimum = unknown;  ///< unseen regions count as hollow except for a wall; unknown if no wall is visible or given
-    double envelope = 0;       ///< volume within the outer surface, cavities filled; unknown where contours cross
-    double wall = unknown;     ///< wall thickness used for `minimum`, in the mesh's unit
-    /// Wall thickness where both sides of the wall are visible: mean of the slices' means, 5 % quantile of the slices' minima, 95
-    /// % quantile of their maxima. Quantiles are used because a plane that grazes a floor or a rim does not show the wall
-    /// thickness.
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< value of unknown volumes and lengths (NaN)
+    double maximum = 0;  ///< volume if regions that were not scanned are clay; unknown if no slice has an outline
+    /// Volume if regions that were not scanned are hollow except for a wall; unknown if no wall is visible or given.
+    double minimum = unknown;
+    double envelope = 0;    ///< volume within the outer surface, including cavities; unknown where contours cross
+    double wall = unknown;  ///< wall thickness with which `minimum` was computed, in the mesh's unit
+    /// Wall thickness where both sides of the wall are visible: mean of the slices' mean thickness, 5 % quantile of the slices'
+    /// minima, 95 % quantile of the slices' maxima. Quantiles are used because a plane that grazes a floor or a rim does not show
+    /// the wall thickness.
     double wall_mean = unknown, wall_min = unknown, wall_max = unknown;
-    int slices = 0;           ///< number of slices that intersect the object
-    int with_cavity = 0;      ///< number of these slices with a hole whose whole outline is visible
-    int without_outline = 0;  ///< number of these slices whose outer contours are all open: interpolated from their neighbours
-                              ///< for `maximum` and `envelope`, zero for `minimum`
-    int crossing = 0;  ///< number of these slices whose contours cross, so that areas are undefined: `maximum` takes the sum of
-                       ///< all contours or their convex hull, whichever is smaller; zero for `minimum`
-    int turned = 0;    ///< number of these slices with contours whose orientation was reversed
-    bool reversed = false;  ///< whether the mesh is closed and inside out, and was reversed
+    int slices = 0;       ///< number of slices that intersect the object
+    int with_cavity = 0;  ///< number of slices with a hole whose whole outline is visible
+    /// Number of slices whose outer contours are all open; such slices are interpolated from their neighbours for `maximum` and
+    /// `envelope`, and count as zero for `minimum`.
+    int without_outline = 0;
+    /// Number of slices whose contours cross, so that areas are undefined; `maximum` takes the sum of all contours or their
+    /// convex hull, whichever is smaller; such slices count as zero for `minimum`.
+    int crossing = 0;
+    int turned = 0;         ///< number of slices with contours whose orientation was reversed
+    bool reversed = false;  ///< true: the mesh is closed and inside out, and was reversed
 };
 
 /// Sums over slices, the mid-planes of layers of equal height. In a slice whose cavity is visible, the area of the material
-/// counts. Elsewhere each outer contour of area A may hide a cavity: it holds between A and A - pi (r - t)^2 of clay, where r
-/// is the radius of the circle of area A and t the wall thickness. By the Brunn-Minkowski inequality no contour with a wall of
-/// at least t all around holds less, and a disc attains the bound. Everything within t of the lowest and of the highest point
-/// is wall. t is `wall_min` if none is given. Nested and open contours are ignored. Error of the sum: second order in the layer
-/// height, except at flat tops. Throws the errors of `slice_mesh`, and Error (usage) for invalid options.
+/// counts. In other slices each outer contour of area A may hide a cavity: the contour holds between A and A - pi (r - t)^2 of
+/// clay, where r is the radius of the circle of area A and t the wall thickness. By the Brunn-Minkowski inequality no contour
+/// with a wall of at least t all around holds less, and a disc attains the bound. Material within t of the lowest and of the
+/// highest point is wall. t is `wall_min` if the options give no wall. Nested and open contours are ignored. Error of the sum:
+/// second order in the layer height, except at flat tops. Throws the errors of `slice_mesh`, and Error (usage) for invalid
+/// options.
 ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options = {});
 
 }  // namespace ostraka

@@ -1,10 +1,10 @@
-// Parallel planes through a mesh: nested, oriented contours.
+// Slices of a mesh by parallel planes: nested, oriented contours.
 //
-// Vertices on a plane follow one rule: each vertex has a single signed height per frame. Within 1e-9 of the mesh's box diagonal
-// of a plane it is ON the plane, and contours pass through the vertex itself. ON counts as above, so that a slice is that of an
-// infinitesimally lower plane. If the plane passes through the lowest point of the cut faces, ON counts as below, so that an
-// object on a flat base has the outline of the base there. Contours that degenerate (to a point, or a curve traversed back and
-// forth) are removed.
+// Vertices on a plane follow one rule: each vertex has a single signed height per frame. A vertex within 1e-9 of the mesh's
+// bounding box diagonal of a plane is ON the plane, and contours pass through the vertex itself. ON counts as above, so that a
+// slice is the slice of an infinitesimally lower plane. If the plane passes through the lowest point of the cut faces, ON counts
+// as below, so that an object on a flat base has the outline of the base at this height. Contours that degenerate (to a point, or
+// a curve traversed back and forth) are removed.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -16,100 +16,110 @@
 
 namespace ostraka {
 
-/// Heights within this fraction of the box diagonal of a plane count as on it.
+/// Vertices whose distance from a plane is at most this share of the bounding box diagonal are on the plane.
 inline constexpr double on_plane_share = 1e-9;
 
-/// Frame of the slices: the point (x, y) at height h is origin + x u + y v + h normal. Right-handed, unit vectors.
+/// Coordinate system of slices: the point (x, y) at height h is origin + x u + y v + h normal. Right-handed, unit vectors.
 struct SliceFrame {
     Point origin{0, 0, 0};
     Vector u{1, 0, 0}, v{0, 1, 0}, normal{0, 0, 1};
 
-    [[nodiscard]] double height(const Point& p) const { return normal * (p - origin); }
+    [[nodiscard]] double height(const Point& p) const { return normal * (p - origin); }  ///< height of a point
+    /// Coordinates (x, y) of a point along u and v.
     [[nodiscard]] Eigen::Vector2d place(const Point& p) const { return {u * (p - origin), v * (p - origin)}; }
+    /// The point with coordinates (x, y) at a height.
     [[nodiscard]] Point point(const Eigen::Vector2d& at, double height) const {
         return origin + (at.x() * u + at.y() * v + height * normal);
     }
 };
 
-/// A contour of a slice. On a mesh oriented outwards the material lies to its left, seen from the side the normal points to.
+/// A contour of a slice. On a mesh oriented outwards the material lies to the left of the contour, seen from the side to which
+/// the normal points.
 struct Contour {
-    std::vector<Eigen::Vector2d> points;  ///< closed: the first point is not repeated; consecutive points differ
-    bool closed = true;        ///< an open contour ends at the border of the mesh or of the selected part, and encloses no area
-    bool hole = false;         ///< closed and clockwise: boundary of a hole in the material
-    int parent = -1;           ///< smallest closed contour of the slice that contains it (-1: none; always for open contours)
-    int depth = 0;             ///< number of closed contours that contain it
+    std::vector<Eigen::Vector2d> points;  ///< for a closed contour the first point is not repeated; consecutive points differ
+    bool closed = true;  ///< false: the contour ends at the border of the mesh or of the selected part, and encloses no area
+    bool hole = false;   ///< true: closed and clockwise, the boundary of a hole in the material
+    /// Index of the smallest closed contour of the slice that contains this contour; -1: none, as for open contours.
+    int parent = -1;
+    int depth = 0;             ///< number of closed contours that contain this contour
     std::vector<Index> faces;  ///< faces[i] contains the segment from points[i] to the next point
-    double length = 0;
-    double area = 0;       ///< closed: signed, positive counter-clockwise; 0 for open ones
-    double gap = 0;        ///< open: distance between its ends
-    bool crosses = false;  ///< closed: intersects another closed contour or itself
-    bool turned = false;   ///< closed: reversed because its orientation contradicted its nesting (a wrongly oriented shell)
+    double length = 0;         ///< length of the contour
+    double area = 0;           ///< signed area of a closed contour, positive if counter-clockwise; 0 for an open contour
+    double gap = 0;            ///< distance between the ends of an open contour
+    bool crosses = false;      ///< true: a closed contour that intersects another closed contour or itself
+    /// True: a closed contour that was reversed because its orientation contradicted its nesting (a wrongly oriented shell).
+    bool turned = false;
 };
 
-/// Contours that overlap by more than this fraction of the area have no area; folds of scans stay below it.
+/// Areas are reliable if intersecting contours affect at most this share of the outer contours' area; folds of scans stay below
+/// this share.
 inline constexpr double max_doubtful = 1e-3;
 
-/// Completeness and soundness of a slice's outline. The gap of an open contour is unknown: its ends are never joined. If the
-/// open contours are the longer part and lie on a circle, `share` is the covered fraction of that circle.
+/// Completeness and soundness of a slice's outline. The gap of an open contour is unknown: its ends are never joined. If the open
+/// contours are longer than the closed ones and lie on a circle, `share` is the covered fraction of that circle.
 struct Completeness {
     double closed_share = 1;  ///< length of closed contours / length of all contours
-    /// Preserved fraction of the outline: 1 if all contours are closed; covered angle of the circle over the full turn; NaN if
-    /// it is undetermined: the open contours lie on no circle, or beside a longer closed contour.
+    /// Preserved fraction of the outline: 1 if all contours are closed; covered angle of the circle divided by the full turn; NaN
+    /// if undetermined: the open contours lie on no circle, or beside a longer closed contour.
     double share = 1;
-    double share_low = 1, share_high = 1;  ///< 95 % confidence interval of `share` (`ArcFit`); NaN where `share` is
-    /// Upper bound for any shape: length / (length + the minimum length that joins the ends of open contours).
+    /// Bounds of the 95 % confidence interval of `share` (`ArcFit`); NaN where `share` is NaN.
+    double share_low = 1, share_high = 1;
+    /// Upper bound of the preserved fraction for any shape: length / (length + min length that joins the ends of open contours).
     double share_at_most = 1;
-    int crossing = 0;  ///< number of closed contours that intersect others or themselves: the mesh intersects itself
-    int turned = 0;    ///< number of closed contours that were reversed because their nesting contradicted their orientation
-    /// Upper bound of the area that intersections may count twice or not at all, over the area of the outer contours.
+    int crossing = 0;  ///< number of closed contours that intersect other contours or themselves: the mesh intersects itself
+    int turned = 0;    ///< number of closed contours that were reversed because their orientation contradicted their nesting
+    /// Upper bound of the area that intersections may count twice or not at all, divided by the area of the outer contours.
     double doubtful = 0;
 
+    /// Whether all contours are closed.
     [[nodiscard]] bool complete() const { return closed_share == 1; }
-    /// Covered angle of the circle of the open contours, radians; NaN if there is none.
+    /// Covered angle of the circle on which the open contours lie, radians; NaN if they lie on no circle.
     [[nodiscard]] double angle() const { return 2 * 3.141592653589793 * share; }
-    /// Whether areas are reliable.
+    /// Whether the areas of the slice are reliable.
     [[nodiscard]] bool has_areas() const { return doubtful <= max_doubtful; }
 };
 
 /// The contours at one height: closed contours by decreasing area, then open contours by decreasing length.
 struct Slice {
-    double height = 0;
+    double height = 0;  ///< height of the plane above the frame's origin
     std::vector<Contour> contours;
-    Completeness completeness;  ///< for a slice without contours all 1, although it encloses nothing
+    Completeness completeness;  ///< all values 1 for a slice without contours, although it encloses nothing
 };
 
+/// Slices of a mesh by parallel planes.
 struct SliceStack {
-    SliceFrame frame;
-    std::vector<Slice> slices;  ///< one per height, in the given order
-    bool reversed = false;      ///< the mesh is closed and inside out: all contours were reversed
+    SliceFrame frame;           ///< frame of all slices
+    std::vector<Slice> slices;  ///< one slice per height, in the given order
+    bool reversed = false;      ///< true: the mesh is closed and inside out, and all contours were reversed
 };
 
-/// Slices the mesh (or the given faces) at `heights` above the frame's origin. Faces are sorted into the planes that cross them
-/// and joined by their shared edges, without comparing coordinates: O(faces log heights + output log output), in parallel,
-/// independent of the number of threads. A plane that misses the mesh gives a slice without contours. Open and
-/// self-intersecting meshes are sliced as well: contours may be open or intersect; a contour that intersects another one is
-/// nested in it if most of five of its points lie inside. Shells are reversed if most of their contours contradict their
-/// nesting (oriented like their parent, or an outermost hole of a closed mesh). Throws Error (usage) for a frame that is not
-/// right-handed with unit vectors, a height that is not finite, or a face that is not in the mesh; Error (input) for a mesh (or
-/// part) without faces.
+/// Slices the mesh (or the given faces) at `heights` above the frame's origin. Faces are sorted into the planes that cross them,
+/// and segments are joined by shared edges, without comparing coordinates: O(faces log heights + output log output), in parallel,
+/// independent of the number of threads. A plane that misses the mesh gives a slice without contours. Open and self-intersecting
+/// meshes are sliced as well: contours may be open or intersect; a contour that intersects another contour is nested in it if
+/// most of five of its points lie inside. A shell is reversed if most of its contours contradict their nesting (oriented like
+/// their parent, or an outermost hole of a closed mesh). Throws Error (usage) for a frame that is not right-handed with unit
+/// vectors, a height that is not finite, or a face that is not in the mesh; Error (input) for a mesh (or part) without faces.
 SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights,
                       const std::vector<Index>& faces = {});
 
-/// A frame with this normal (of any length): u is the x axis projected into the plane (the y axis if the normal is nearly along
-/// x), so that (0, 0, 1) gives u = x, v = y. Throws Error (usage) for a direction without length.
+/// A frame whose normal has this direction (of any length): u is the x axis projected into the plane (the y axis if the normal is
+/// nearly along x), so that (0, 0, 1) gives u = x, v = y. Throws Error (usage) for a direction without length.
 SliceFrame slice_frame(const Point& origin, const Vector& direction);
 
-/// Minimum and maximum height of the faces (all, if none are given) above the frame's origin.
+/// Min and max height of the faces (of all faces if the list is empty) above the frame's origin.
 std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame, const std::vector<Index>& faces = {});
 
-/// The mid-planes of `count` equal layers between `lowest` and `highest`. Throws Error (usage) below 1 or above a million.
+/// The heights of the mid-planes of `count` equal layers between `lowest` and `highest`. Throws Error (usage) for a count below 1
+/// or above a million.
 std::vector<double> slice_heights(double lowest, double highest, int count);
-/// lowest, lowest + spacing, ... up to `highest`. Throws Error (usage) for a spacing that is not positive or gives more than a
-/// million heights.
+/// The heights lowest, lowest + spacing, ... up to `highest`. Throws Error (usage) for a spacing that is not positive or gives
+/// more than a million heights.
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing);
 
-/// Each outer contour with the holes directly in it, as a separate slice (an island in a hole is a component too; its
-/// completeness is that of its closed contours). Open contours, and holes outside all outer contours, belong to no component.
+/// Splits a slice into components: each outer contour with the holes directly in it, as a separate slice (an island in a hole is
+/// a component too; the completeness of a component is the completeness of its closed contours). Open contours, and holes outside
+/// all outer contours, belong to no component.
 std::vector<Slice> components(const Slice& slice);
 
 }  // namespace ostraka

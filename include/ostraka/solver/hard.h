@@ -1,5 +1,5 @@
-// Hard constraints, which must hold to a tolerance, combined with soft ones: an augmented Lagrangian around the local/global
-// solver.
+// Hard constraints, which must hold to a tolerance, combined with soft constraints: an augmented Lagrangian method around the
+// local/global solver.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -8,40 +8,46 @@
 namespace ostraka {
 
 struct HardOptions {
-    SolveOptions inner{30, 1e-7, 0, 5};  ///< options of the inner solve in each round
-    int rounds = 100;
-    /// Initial penalty as a multiple of the weights; HardSummary::scale of an earlier solve of nearly the same system is a good
-    /// value.
+    SolveOptions inner{30, 1e-7, 0, 5};  ///< options of the solve in each round
+    int rounds = 100;                    ///< max number of rounds
+    /// Initial penalty as a multiple of the constraints' weights. HardSummary::scale of an earlier solve of nearly the same
+    /// system is a good value.
     double start = 1;
-    double tolerance = 1e-6;  ///< a hard constraint is met if the distance of each of its rows is at most this share of the
-                              ///< diagonal
+    /// Max distance of a row of a satisfied hard constraint from its projection, as a share of the diagonal of the points.
+    double tolerance = 1e-6;
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+/// Result of a solve with hard constraints.
 struct HardSummary {
-    bool met = false;  ///< all hard constraints are met to the tolerance; if not, the points are those of the smallest
-                       ///< violation
-    int rounds = 0;
-    std::vector<double> violation;      ///< maximum distance of a hard row from its projection per round, in the points' unit
-    std::vector<double> of_constraint;  ///< the same at the end, for each constraint; 0 for soft ones
-    double tolerance = 0;               ///< in the points' unit
-    double scale = 1;                   ///< maximum penalty weight reached, as a multiple of the constraint's weight
-    SolveSummary last;                  ///< summary of the last round
+    /// True: all hard constraints are satisfied to the tolerance; false: the points are those of the round with the smallest
+    /// violation.
+    bool met = false;
+    int rounds = 0;                 ///< number of rounds
+    std::vector<double> violation;  ///< for each round, the max distance of a hard row from its projection, in the points' unit
+    /// For each constraint, the max distance of a row from its projection at the end; 0 for soft constraints.
+    std::vector<double> of_constraint;
+    double tolerance = 0;  ///< max distance of a row of a satisfied hard constraint, in the points' unit
+    double scale = 1;      ///< largest penalty reached, as a multiple of the constraint's weight
+    SolveSummary last;     ///< summary of the last round
 };
 
-/// Solves over the points of a mesh. Contradictory hard constraints are not met; the summary gives the violation.
+/// Solves hard and soft constraints over the points of a mesh. Contradictory hard constraints are not satisfied; the summary
+/// gives the violation.
 class HardSolver {
 public:
-    /// `hard`: one flag per constraint. Throws Error (usage) for a wrong number of flags, and as MeshSpaceSolver does. Hard
-    /// constraints need a positive weight, which scales their initial penalty.
+    /// `hard`: for each constraint, whether it is hard; `rest`: points at rest. Throws Error (usage) for a wrong number of flags,
+    /// and as MeshSpaceSolver does. Hard constraints need a positive weight, which scales their initial penalty.
     HardSolver(std::vector<std::unique_ptr<Constraint>> constraints, const std::vector<bool>& hard, const Points& rest);
     ~HardSolver();
 
+    /// Number of constraints.
     [[nodiscard]] std::size_t size() const;
-    /// The original constraint: its projection and weight are those passed to the constructor.
+    /// The constraint that was passed to the constructor, with its original projection and weight.
     [[nodiscard]] const Constraint& constraint(std::size_t i) const;
 
+    /// Solves from the initial `points` and stores the result in `points`.
     HardSummary solve(Points& points, const HardOptions& options = {});
 
 private:

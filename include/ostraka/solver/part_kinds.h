@@ -1,6 +1,6 @@
-// Kinds of constraints on the parts of an object: axes, levels, mirror images, proportions (the thesis, sections 5.2 and 5.3.2).
-// Some of them admit the points "as they are": the projection moves or stretches the current points, so that what is admitted
-// depends on them. See kinds.h for the convention.
+// Kinds of constraints on the parts of an object: axes, levels, mirror images, proportions (thesis, sections 5.2 and 5.3.2). Some
+// kinds admit moved or stretched copies of the current points, so that the admitted rows depend on the points. kinds.h explains
+// rows and ids.
 #pragma once
 
 #include "ostraka/solver/kinds.h"
@@ -9,101 +9,108 @@
 
 namespace ostraka::kinds {
 
-/// The points as they are, rotated about their mean so that their fitted plane has a given normal, up to sign. Rows: the centred
-/// points.
+/// The points have a fitted plane with a given normal, up to sign: the projection rotates the current points about their mean.
+/// Rows: the centred points.
 struct FittedPlaneOrientation {
-    static constexpr KindInfo kind{"FittedPlaneOrientation", 3};
-    Eigen::Vector3d normal;  ///< of any length
+    static constexpr KindInfo kind{"FittedPlaneOrientation", 3};  ///< name of the kind, and min number of points
+    Eigen::Vector3d normal;                                       ///< normal of any length
 };
 
-/// The points as they are, moved rigidly so that their axis lies on a line (section 5.2.2). The axis is given in the rest state
-/// and carried by the best rigid motion; the closest motion has a closed form. Rows: the points.
+/// The axis of the points lies on a line (section 5.2.2): the projection moves the current points rigidly. The axis is given in
+/// the rest state and carried to the current points by the best rigid motion; the closest motion has a closed form. Rows: the
+/// points.
 struct CoAxiality {
-    static constexpr KindInfo kind{"CoAxiality", 2};
-    Eigen::Vector3d direction, point;  ///< the line
-    /// The axis at rest; default: the longest principal axis of the rest points, through their mean.
+    static constexpr KindInfo kind{"CoAxiality", 2};  ///< name of the kind, and min number of points
+    Eigen::Vector3d direction, point;                 ///< direction and a point of the line
+    /// The axis at rest; empty: the longest principal axis of the rest positions, through their mean.
     std::optional<Eigen::Vector3d> rest_direction = {}, rest_point = {};
 };
 
-/// The points as they are, rotated about their mean so that the angle between their axis (carried as for CoAxiality, without
-/// sign) and a direction is in a range. The closest rotation is a top eigenvector in unit quaternions: the joint range of the
-/// two quadratic forms is convex (Brickman 1961). Rows: the centred points.
+/// The angle between the axis of the points (carried as for CoAxiality, without sign) and a direction is in a range: the
+/// projection rotates the current points about their mean. The closest rotation is a top eigenvector in unit quaternions: the
+/// joint range of the two quadratic forms is convex (Brickman 1961). Rows: the centred points.
 struct AxisDirection {
-    static constexpr KindInfo kind{"AxisDirection", 2};
-    Eigen::Vector3d direction;  ///< of any length
-    Interval angle{0, 0};       ///< radians, at most pi / 2
+    static constexpr KindInfo kind{"AxisDirection", 2};  ///< name of the kind, and min number of points
+    Eigen::Vector3d direction;                           ///< direction of any length
+    Interval angle{0, 0};                                ///< range of the angle, radians, at most pi / 2
+    /// Direction of the axis at rest; empty: the longest principal axis of the rest positions.
     std::optional<Eigen::Vector3d> rest_direction = {};
-    /// The points are kept at least half as large as this shape, so that contradictory constraints do not shrink them to a point.
+    /// Shape of which the points keep at least half the size, so that contradictory constraints do not shrink them to a point;
+    /// empty: no bound.
     std::optional<Points> min_size = {};
 };
 
-/// The means of groups of points, the stations of an axis, lie on a given line; the surface follows. Rows: the means.
+/// The means of groups of points, which are stations of an axis, lie on a given line; the surface follows. Rows: the means.
 struct AxisOnLine {
-    static constexpr KindInfo kind{"AxisOnLine", 1};
-    Eigen::Vector3d direction, point;  ///< the line
-    std::vector<int> stations = {};    ///< station of each point, from 0 on; default: a separate one for each
-    /// Share of each point that counts for the next station, 0 to 1, the rest for its own: hat functions, which avoid waves of
-    /// the length of a group. Default: 0.
+    static constexpr KindInfo kind{"AxisOnLine", 1};  ///< name of the kind, and min number of points
+    Eigen::Vector3d direction, point;                 ///< direction and a point of the line
+    std::vector<int> stations = {};  ///< for each point, its station, from 0 on; empty: a separate station for each point
+    /// For each point, the share (0 to 1) that counts for the next station; the rest counts for the point's own station. The
+    /// shares form hat functions, which avoid waves of the length of a group. Empty: 0.
     std::vector<double> shares = {};
 };
 
-/// The means of groups of points have one height, the mean of theirs, or given differences of height. Rows: the means.
+/// The means of groups of points have the same height, the mean of their heights, or given differences of height. Rows: the
+/// means.
 struct MeansOnLevel {
-    static constexpr KindInfo kind{"MeansOnLevel", 2};
-    Eigen::Vector3d up;                 ///< of any length
-    std::vector<int> groups = {};       ///< group of each point, from 0 on; default: a separate one for each
-    std::vector<double> weights = {};   ///< weights of the points in the means of their groups; default: 1
-    std::optional<Points> places = {};  ///< one per group, whose differences of height are kept; default: none
+    static constexpr KindInfo kind{"MeansOnLevel", 2};  ///< name of the kind, and min number of points
+    Eigen::Vector3d up;                                 ///< upward direction of any length
+    std::vector<int> groups = {};      ///< for each point, its group, from 0 on; empty: a separate group for each point
+    std::vector<double> weights = {};  ///< for each point, its weight in the mean of its group; empty: 1
+    /// One place per group; the differences of their heights are the given differences; empty: the same height.
+    std::optional<Points> places = {};
 };
 
-/// The mean of the points is at a given place. Row: the mean.
+/// The weighted mean of the points is at a given place. Row: the mean.
 struct MeanPosition {
-    static constexpr KindInfo kind{"MeanPosition", 1};
-    Eigen::Vector3d place;
-    std::vector<double> weights = {};  ///< weights of the points; default: 1
+    static constexpr KindInfo kind{"MeanPosition", 1};  ///< name of the kind, and min number of points
+    Eigen::Vector3d place;                              ///< position of the mean
+    std::vector<double> weights = {};                   ///< weight of each point; empty: 1
 };
 
+/// A plane of reflection.
 struct MirrorPlane {
-    Eigen::Vector3d normal, point;  ///< the normal of any length
+    Eigen::Vector3d normal, point;  ///< normal of any length; a point of the plane
 };
 
-/// Pairs p, q of points (two ids each) that mirror each other: both are replaced by the mean of p and the image of q, and its
-/// image. Rows: the points; without a plane the centred points, and the best plane's normal is the last eigenvector of the
-/// symmetric part of sum p q^T.
+/// Pairs p, q of points (two ids each) mirror each other: p is replaced by the mean of p and the image of q, and q by the image
+/// of this mean. Rows: the points; without a plane the centred points, and the optimal plane's normal is the last eigenvector of
+/// the symmetric part of sum p q^T.
 struct MirrorSymmetry {
-    static constexpr KindInfo kind{"MirrorSymmetry", 2};
-    std::optional<MirrorPlane> plane = {};
+    static constexpr KindInfo kind{"MirrorSymmetry", 2};  ///< name of the kind, and min number of points
+    std::optional<MirrorPlane> plane = {};                ///< plane of reflection; empty: the optimal plane
 };
 
-/// The same for points whose partners lie within triangles. Ids: for each group a point and the corners of the triangle. Rows:
-/// the point and its partner.
+/// Points mirror partners that lie within triangles. Ids: for each group a point and the corners of the triangle of its partner.
+/// Rows: the point and its partner.
 struct MirrorInTriangles {
-    static constexpr KindInfo kind{"MirrorInTriangles", 4};
-    MirrorPlane plane;
-    std::vector<double> barycentric;           ///< three coordinates for each group
-    std::optional<Points> discrepancies = {};  ///< for each group the mirrored point minus its partner, preserved; default: zero
+    static constexpr KindInfo kind{"MirrorInTriangles", 4};  ///< name of the kind, and min number of points
+    MirrorPlane plane;                                       ///< plane of reflection
+    std::vector<double> barycentric;                         ///< for each group, three barycentric coordinates of the partner
+    /// For each group, the mirrored point minus its partner, a difference that is preserved; empty: zero.
+    std::optional<Points> discrepancies = {};
 };
 
 /// A measure of a part: the distance of two points, or the component of their difference along a direction.
 struct PinnedMeasure {
-    std::array<int, 2> pins;                        ///< positions in ids
-    std::optional<Eigen::Vector3d> direction = {};  ///< of any length
+    std::array<int, 2> pins;                        ///< positions of the two points in ids()
+    std::optional<Eigen::Vector3d> direction = {};  ///< direction of any length; empty: the distance of the points is measured
 };
 
-/// A part as it is, stretched along its measure so that the measure, or its ratio to a second measure, is in a range (section
-/// 5.3.2). It is stretched about its mean (rows: the centred points of the part) or about the mean of its anchors (rows: the
-/// points). The second measure is one more row, which is only observed. With a shape the part is a rotated copy of that shape
-/// instead, stretched along the measure or scaled uniformly; the set of such copies does not depend on the points, so that
-/// conflicting constraints cannot degrade the shape over the iterations.
+/// The measure of a part, or its ratio to a second measure, is in a range (section 5.3.2): the projection stretches the current
+/// part along the direction of its measure, about the mean of the part (rows: the centred points of the part) or about the mean
+/// of its anchors (rows: the points). The second measure is an additional row, which is only observed. With a shape, the part
+/// becomes a rotated copy of this shape, stretched along the measure or scaled uniformly; the set of such copies does not depend
+/// on the points, so that conflicting constraints cannot degrade the shape over the iterations.
 struct Proportion {
-    static constexpr KindInfo kind{"Proportion", 2};
-    Interval range;         ///< range of measure / second or, without a second measure, of the measure in the points' unit
-    PinnedMeasure measure;  ///< pins within the part
-    std::optional<PinnedMeasure> second = {};
-    int part = 0;                      ///< number of leading ids that form the part; 0: all
-    std::vector<int> anchors = {};     ///< positions in ids, within the part
-    std::optional<Points> shape = {};  ///< shape of the part
-    bool uniform = false;              ///< the shape is scaled instead of stretched
+    static constexpr KindInfo kind{"Proportion", 2};  ///< name of the kind, and min number of points
+    Interval range;  ///< range of the ratio measure / second or, without a second measure, of the measure in the points' unit
+    PinnedMeasure measure;                     ///< measure of the part; its pins belong to the part
+    std::optional<PinnedMeasure> second = {};  ///< second measure; empty: the measure itself is in the range
+    int part = 0;                              ///< number of leading ids that form the part; 0: all
+    std::vector<int> anchors = {};     ///< positions in ids() of the anchors, within the part; empty: the mean of the part
+    std::optional<Points> shape = {};  ///< shape of the part; empty: the current points
+    bool uniform = false;              ///< true: the shape is scaled uniformly; false: stretched along the measure
 };
 
 }  // namespace ostraka::kinds

@@ -1,4 +1,4 @@
-// Synthetic fragments of a mesh, with known pose and position on the object.
+// Synthetic fragments of a mesh, with known pose and known position on the object.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,27 +10,28 @@
 namespace ostraka {
 
 struct FragmentOptions {
-    double share = 0.25;     ///< fraction of the surface area
-    double roughness = 0.1;  ///< amplitude of the waves of the fracture line, relative to the fragment's size
-    double noise = 0;  ///< standard deviation of the vertex displacement along the normal, relative to the diagonal of the object
-    double erosion = 0;  ///< width of the eroded strip along the fracture, relative to the diagonal of the object
-    bool moved = true;   ///< apply a random rigid motion
-    std::uint64_t seed = 1;
+    double share = 0.25;     ///< share of the object's surface area that the fragment covers
+    double roughness = 0.1;  ///< amplitude of the waves of the fracture line, as a share of the fragment's size
+    double noise = 0;    ///< standard deviation of the vertex displacement along the normal, as a share of the object's diagonal
+    double erosion = 0;  ///< width of the eroded strip along the fracture, as a share of the object's diagonal
+    bool moved = true;   ///< apply a random rigid motion to the fragment
+    std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+/// A generated fragment with its ground truth.
 struct SyntheticFragment {
-    Mesh mesh;                    ///< a single piece, open at the fracture
-    std::vector<Index> vertices;  ///< one per vertex: index of the vertex of the object
-    std::vector<Index> faces;     ///< one per face: index of the face of the object
-    Motion pose;                  ///< motion from the piece back to the object
+    Mesh mesh;                    ///< a single connected piece, open at the fracture
+    std::vector<Index> vertices;  ///< for each vertex of `mesh`, index of the vertex of the object
+    std::vector<Index> faces;     ///< for each face of `mesh`, index of the face of the object
+    Motion pose;                  ///< motion from the fragment back to the object
 };
 
-/// Selects the faces nearest to `centre`, by a distance distorted by random waves, until they cover the requested share of the
-/// area, and keeps the connected piece that contains the nearest face. Then removes the eroded strip along the fracture and
-/// applies noise and motion. Throws Error (input) for a mesh without area, (usage) for options out of range, (failure) if
-/// nothing is left.
+/// Generates a fragment: selects the faces nearest to `centre`, by a distance distorted by random waves, until they cover the
+/// requested share of the area, and keeps the connected piece that contains the nearest face. Then removes the eroded strip along
+/// the fracture and applies noise and motion. Throws Error (input) for a mesh without area, (usage) for options out of range,
+/// (failure) if no face remains.
 SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, const FragmentOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Casts of heads as they are found: each individually pressed, shrunk, worn, scanned and cut.
+// Synthetic casts of heads: individually pressed, shrunk, worn, scanned and cut, as heads are found.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -9,58 +9,59 @@
 
 namespace ostraka {
 
-/// Height of a head without hat and neck, mm. Values relative to the head's height refer to it.
+/// Height of a head without hat and neck, mm, to which shares of the head's height refer.
 inline constexpr double head_height = 44;
 
 struct CastOptions {
-    double wear = 0;       ///< standard deviation of the smoothing, relative to the head's height
-    double pressure = 0;   ///< stretching and bending of the soft clay
-    double shrinkage = 0;  ///< linear shrinkage of the cast relative to its archetype
-    double noise = 0;      ///< scan noise, relative to the head's height
-    double beard = 0;      ///< fraction of the casts with a beard
-    double chunk = 0;      ///< fraction of the casts with a missing piece
-    int dents = 0;         ///< maximum number of dents on the front
-    bool body = false;     ///< the head has its own body, and nothing is broken off
-    bool keep_pose = false;
-    std::uint64_t vertices = 10000;
-    std::uint64_t seed = 1;
+    double wear = 0;         ///< max wear: standard deviation of the smoothing, as a share of the head's height
+    double pressure = 0;     ///< standard deviation of stretches along the axes and of a bend of the soft clay, as a share
+    double shrinkage = 0;    ///< max linear shrinkage of the cast, as a share of the archetype's size
+    double noise = 0;        ///< standard deviation of the scan noise, as a share of the head's height
+    double beard = 0;        ///< share of the casts that have a beard, 0 to 1
+    double chunk = 0;        ///< share of the casts with a missing piece, 0 to 1
+    int dents = 0;           ///< max number of dents on the front
+    bool body = false;       ///< true: the head has its own body, and no piece is broken off
+    bool keep_pose = false;  ///< true: no rigid motion is applied
+    std::uint64_t vertices = 10000;  ///< target number of vertices
+    std::uint64_t seed = 1;          ///< random seed
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A cast with its random parameters.
 struct HeadCast {
-    Mesh mesh;  ///< closed except at the neck, where it was broken off from its body, and at a missing piece
-    std::vector<std::int32_t> face_labels;  ///< indices into head_part_names()
-    double wear = 0, shrinkage = 0;         ///< as drawn
-    bool beard = false, chunk = false;
-    std::array<double, 3> up{0, 0, 1};  ///< up direction in its pose
+    Mesh mesh;  ///< closed except at the neck, where the head was broken off from its body, and at a missing piece
+    std::vector<std::int32_t> face_labels;  ///< for each face, index of its part in head_part_names()
+    double wear = 0, shrinkage = 0;         ///< wear and shrinkage as drawn for this cast
+    bool beard = false, chunk = false;      ///< true: the cast has a beard; a piece is missing
+    std::array<double, 3> up{0, 0, 1};      ///< upward direction of the cast in its pose
 };
 
-/// Generates one cast. Its front is the archetype's; its back, beard and dents are new for every cast. Order of operations:
-/// dents and beard in the solid, meshing, wear, bending and stretching, shrinkage, scan noise, breakage, rigid motion. Throws
-/// Error (usage) for options out of range or too few vertices.
+/// Generates one cast of an archetype. The front of the cast is the archetype's; back, beard and dents are new for every cast.
+/// Order of operations: dents and beard in the solid, meshing, wear, bending and stretching, shrinkage, scan noise, breakage,
+/// rigid motion. Throws Error (usage) for options out of range or too few vertices.
 HeadCast cast_head(const HeadShape& shape, const CastOptions& options = {});
 
-/// Options of a population.
+/// Options of a population of heads from several moulds.
 struct MouldPopulationOptions {
-    int objects = 40;
-    int moulds = 4;
-    int hand_made = 0;
-    double difference = 1;
-    std::uint64_t seed = 1;
+    int objects = 40;        ///< number of moulded heads
+    int moulds = 4;          ///< number of moulds
+    int hand_made = 0;       ///< number of additional hand-formed heads
+    double difference = 1;   ///< variation between the archetypes of the moulds, see ArchetypeOptions
+    std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Specification of one head of a population.
+/// Specification of one head of a population, before it is generated.
 struct PlannedHead {
-    std::string name;   ///< head-001 ...
-    std::string mould;  ///< mould-1 ...; "hand" and the hat for hand-formed heads
-    HeadShape shape;
-    CastOptions cast;
+    std::string name;   ///< head-001, head-002 ...
+    std::string mould;  ///< mould-1, mould-2 ...; for hand-formed heads "hand" and the hat
+    HeadShape shape;    ///< archetype of the mould
+    CastOptions cast;   ///< options of the cast
 };
-/// Plans a population: heads are assigned to the moulds cyclically and named in random order, so that names carry no information.
+/// Plans a population: heads are assigned to the moulds cyclically and named in random order, so that their names carry no
+/// information.
 std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, const CastOptions& cast);
 
 }  // namespace ostraka

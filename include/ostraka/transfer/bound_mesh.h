@@ -1,4 +1,4 @@
-// A mesh with its annotations, colours and labels, which are preserved when its resolution changes.
+// A mesh with annotations, colours and labels, which are preserved when the resolution of the mesh changes.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -12,55 +12,76 @@
 
 namespace ostraka {
 
-/// All data of the mesh are updated by each call of `simplify` and `refine`, which may be called repeatedly. Per-corner texture
-/// coordinates are dropped; a note reports it.
+/// A mesh with all data bound to it. The data are updated by each call of `simplify` and `refine`, which may be called
+/// repeatedly. Per-corner texture coordinates are dropped; a note reports this.
 class BoundMesh {
 public:
-    /// `annotated`: annotations of the mesh, if any.
+    /// `annotated`: annotations of the mesh; empty: none.
     explicit BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated = {});
 
-    /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as meaningful parts; with `options.outlines`
-    /// = protect, the pins of measures as well. Throws as ostraka::simplify does.
+    /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as parts to be preserved; with
+    /// `options.outlines` = protect, the pins of measures are marked as well. Throws as ostraka::simplify does.
     SimplifyResult simplify(const SimplifyOptions& options);
-    /// Refines the mesh. New vertices get the mean of the colours and texture coordinates of the two vertices that they lie
-    /// between, and the label of one of them. Throws as ostraka::refine does.
+    /// Refines the mesh. A new vertex gets the mean of the colours and texture coordinates of the two vertices between which it
+    /// lies, and the label of one of the two. Throws as ostraka::refine does.
     RefineResult refine(const RefineOptions& options);
 
-    /// Current state. Measures and known descriptors of the annotations are recomputed after each step.
+    /// Current state of the mesh and its data. Measures and known descriptors of the annotations are recomputed after each step.
     Mesh mesh;
-    MeshExtras extras;
-    std::optional<AnnotationSet> annotations;
-    std::vector<std::string> notes;
+    MeshExtras extras;                         ///< colours, labels and texture coordinates
+    std::optional<AnnotationSet> annotations;  ///< annotations of the mesh; empty: none
+    std::vector<std::string> notes;            ///< remarks on data that could not be preserved
 
+    /// Size of the mesh.
     struct Totals {
         std::size_t vertices = 0, faces = 0;
-        double area = 0;
+        double area = 0;  ///< surface area
     };
-    /// At construction, and now.
+    /// Size of the mesh at construction, and now.
     Totals before, after;
 
+    /// Size of an annotation.
     struct Size {
         std::size_t elements = 0;     ///< number of faces, segments or points
-        double area = 0, length = 0;  ///< length: perimeter of a region, length of a line
+        double area = 0, length = 0;  ///< length: perimeter of a region, or length of a line
     };
     /// Change of an annotation since construction.
     struct Change {
-        int id = 0;
-        std::string tag;
-        AnnotationType type = AnnotationType::region;  ///< at construction
-        Size before, after;
-        bool degenerate = false;  ///< it has another type now, for example because a region lost all its faces
-        std::string note;         ///< "lost", or a description of the change
+        int id = 0;                                    ///< id of the annotation
+        std::string tag;                               ///< tag of the annotation
+        AnnotationType type = AnnotationType::region;  ///< type at construction
+        Size before, after;                            ///< size at construction, and now
+        bool degenerate = false;  ///< true: the annotation has another type now, for example because a region lost all its faces
+        std::string note;         ///< "lost", or a description of the change; empty: no remark
     };
-    std::vector<Change> changes;  ///< in the order of the annotations at construction
+    std::vector<Change> changes;  ///< one entry per annotation, in the order at construction
 
 private:
+<<<<<<< ours
+||||||| base
+    /// Mesh and annotations before a step, kept if some annotations are free: their curves are projected onto the resulting
+    /// mesh.
+    struct Curved {
+        Mesh mesh;
+        AnnotationSet annotations;
+    };
+=======
+    /// Mesh and annotations before a step, kept if some annotations are free: the curves of free annotations are projected onto
+    /// the resulting mesh.
+    struct Curved {
+        Mesh mesh;
+        AnnotationSet annotations;
+    };
+    /// Keeps the mesh and the annotations before a step, if some annotations are free.
+>>>>>>> theirs
     void keep_curved();
+    /// Attaches the annotations to the elements of the mesh, so that they follow changes of the mesh.
     AnnotationTable attach();
-    /// Reads back the annotations attached by `attach`; `vertex_map` maps the vertices of the mesh at that time.
+    /// Reads back the annotations attached by `attach`; `vertex_map`: for each vertex of the mesh at that time, its vertex now.
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
+    /// Elements to be preserved; `pins`: true to mark the pins of measures as well.
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
-    [[nodiscard]] Size size_of(const Annotation& annotation) const;
+    [[nodiscard]] Size size_of(const Annotation& annotation) const;  ///< current size of an annotation
 
     /// The object before a step, kept if some annotations are free: their curves are projected onto the resulting mesh.
     std::shared_ptr<const AnnotatedMesh> curved_;

@@ -1,4 +1,4 @@
-// Projection of curves from one mesh onto another, across the triangles of both.
+// Projection of curves from one mesh onto another, across the triangles of both meshes.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -11,27 +11,28 @@ namespace ostraka {
 
 /// Result of projecting one annotation onto another mesh.
 struct ProjectedAnnotation {
-    Annotation annotation;  ///< id, tag, colour, type, note, curves and the elements that follow from these; no attributes
+    Annotation annotation;  ///< id, tag, colour, type, note, curves and the elements that follow from the curves; no attributes
+    /// Number of places in total; projected along a normal; projected to the closest point; without a corresponding place.
     std::size_t places = 0, by_ray = 0, by_closest_point = 0, without_place = 0;
-    std::size_t detours = 0;  ///< pairs of consecutive places connected along edges because no trace connected them
-    bool untangled = false;   ///< its outlines intersected; the interior was computed by winding numbers
-    bool lost = false;        ///< no part of it has a corresponding place on the target
-    std::string note;         ///< further remarks, for example that the number of its outlines changed
+    std::size_t detours = 0;  ///< number of pairs of consecutive places connected along edges, because no trace connected them
+    bool untangled = false;   ///< true: the outlines intersected, and the interior was computed by winding numbers
+    bool lost = false;        ///< true: no part of the annotation has a corresponding place on the target
+    std::string note;         ///< further remarks, for example that the number of outlines changed
 };
 
-/// Projects annotations of `source`, given by their curves or edge paths, onto the target, without adding vertices. Places
-/// correspond along the interpolated vertex normals of the coarser of the two meshes, so that the mapping is invertible; where
-/// no such line meets the other surface, the nearest place with a compatible normal is used. Segments longer than an edge of
-/// the target are subdivided first. Consecutive places are connected by traces on the target, which are computed once per
-/// segment, so that common borders stay common. Between nearby places, small loops and places in folds (where the normal meets
-/// the surface elsewhere first) are dropped. Regions that partition the whole source partition the whole target. Places closer
-/// than a ten-thousandth of an edge to the straight segment between their neighbours are dropped. Regions that are the whole
-/// mesh (`all`) stay so. O(k log n) for k places. The result does not depend on the number of threads.
+/// Projects annotations of `source`, given by curves or edge paths, onto the target, without adding vertices. Places correspond
+/// along the interpolated vertex normals of the coarser of the two meshes, so that the mapping is invertible; where no such line
+/// meets the other surface, the nearest place with a compatible normal is used. Segments longer than an edge of the target are
+/// subdivided first. Consecutive places are connected by traces on the target, which are computed once per segment, so that
+/// common borders stay common. Small loops between nearby places, and places in folds (where the normal meets the surface
+/// elsewhere first), are dropped. Regions that partition the whole source partition the whole target. Places closer than a
+/// ten-thousandth of an edge to the straight segment between their neighbours are dropped. Regions that are the whole mesh
+/// (`all`) stay the whole mesh. Time: O(k log n) for k places. The result does not depend on the number of threads.
 std::vector<ProjectedAnnotation> project_curves(const Mesh& source, const std::vector<const Annotation*>& annotations,
                                                 const SurfaceSearch& target, const CorrespondenceOptions& options = {});
 
 /// Sets the curves of the free annotations of `to`, a set on the target with the same ids as `source`, by projection,
-/// and adds missing ones that have corresponding places. Returns notes.
+/// and adds annotations missing in `to` that have corresponding places. Returns notes.
 std::vector<std::string> project_free_annotations(AnnotatedMeshView source, const Mesh& target, AnnotationSet& to,
                                                   const CorrespondenceOptions& options = {});
 

@@ -14,64 +14,78 @@
 namespace ostraka {
 
 struct TransferOptions {
-    CorrespondenceOptions correspondence;
-    PathMetric metric = PathMetric::euclidean;
+    CorrespondenceOptions correspondence;       ///< options for finding corresponding points
+    PathMetric metric = PathMetric::euclidean;  ///< quantity that paths between corresponding vertices minimise
+    /// How spikes of an outline are treated: removed, avoided while tracing, or kept.
     enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
+    /// Assignment of faces that the true outline crosses: by the edge paths; to the side with most of their area; or so that area
+    /// and perimeter are preserved.
     enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
+    /// Whether a transferred region overlaps the source region, encloses it or is enclosed by it.
     enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
+    /// Course of outlines and lines on the target. partitions: regions that partition the surface become free, the others keep
+    /// their kind; kept: all keep their kind; free: all become free; edges: all run along edges of the target.
     enum class Outlines { partitions, kept, free, edges } outlines = Outlines::partitions;
-    bool refine = false;
-    bool overlap = true;
-    bool force = false;
-    void list_options(OptionList& list);
+    bool refine = false;               ///< true: insert vertices on the target so that outlines are exact
+    bool overlap = true;               ///< true: measure the overlap with the source region
+    bool force = false;                ///< true: continue although the meshes differ in size or position
+    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+/// Outcome of the transfer of an annotation: kept, reduced to a line or point, or lost.
 enum class TransferOutcome { kept, became_line, became_point, lost };
 std::string to_string(TransferOutcome outcome);
 
 /// Accuracy of the transfer of one annotation.
 struct TransferScore {
-    int id = 0;
-    std::string tag;
+    int id = 0;       ///< id of the annotation
+    std::string tag;  ///< tag of the annotation
+    /// Types before and after the transfer.
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    TransferOutcome outcome = TransferOutcome::kept;
-    std::string note;                             ///< further remarks
-    double source_area = 0, target_area = 0;      ///< areas of regions
-    double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
-    std::optional<double> hausdorff;   ///< two-sided, between the outlines (lines, points); nullopt if one of them is empty
-    std::optional<double> overlap;     ///< intersection over union of the areas
-    std::optional<double> wrong_side;  ///< area on the wrong side of the outline, summed over both sides
-    std::size_t vertices = 0;          ///< outline vertices, line vertices or points of the source
+    TransferOutcome outcome = TransferOutcome::kept;  ///< whether the annotation was kept
+    std::string note;                                 ///< further remarks
+    double source_area = 0, target_area = 0;          ///< areas of regions
+    double source_length = 0, target_length = 0;      ///< perimeter of regions, length of lines
+    /// Two-sided Hausdorff distance between the outlines (lines, points); empty if one of them is empty.
+    std::optional<double> hausdorff;
+    std::optional<double> overlap;  ///< intersection over union of the areas; empty: not measured
+    /// Area on the wrong side of the outline, summed over source and target; empty: not measured.
+    std::optional<double> wrong_side;
+    std::size_t vertices = 0;  ///< number of outline vertices, line vertices or points of the source
+    /// Number of source vertices with each kind of correspondence (CorrespondenceKind), and of those assigned another candidate.
     std::size_t by_ray = 0, by_closest_point = 0, without_place = 0, relocated = 0;
-    std::size_t detours = 0;          ///< pairs of consecutive vertices not connected by a short path
-    bool crossings_resolved = false;  ///< outlines intersected; the interior was computed by winding numbers
-    bool voted = false;               ///< the interior was computed face by face instead of from outlines
+    std::size_t detours = 0;          ///< number of pairs of consecutive vertices that no short path connects
+    bool crossings_resolved = false;  ///< true: outlines intersected, and the interior was computed by winding numbers
+    bool voted = false;               ///< true: the interior was computed face by face instead of from outlines
 };
 
-/// Distortions of a region as in Table 2.1 of the thesis: |target / source - 1| of area A, perimeter P, P / A, A / P and
-/// circularity P^2 / A, and their mean.
+/// Distortions of a region as in Table 2.1 of the thesis: |target / source - 1| for area A, perimeter P, P / A, A / P and
+/// circularity P^2 / A, and the mean of these values.
 struct Distortions {
     double area, perimeter, perimeter_by_area, area_by_perimeter, circularity, mean;
 };
-Distortions distortions(const TransferScore& score);
+Distortions distortions(const TransferScore& score);  ///< distortions of the region that the score describes
 
+/// Computing times of a transfer.
 struct TransferTimes {
     double checks = 0, correspondence = 0, paths = 0, regions = 0, scores = 0;  ///< seconds
 };
 
+/// Result of a transfer.
 struct TransferResult {
-    AnnotationSet annotations;              ///< on the target, or on `refined->mesh`
-    std::vector<TransferScore> scores;      ///< one per annotation of the source, in their order
-    std::optional<InsertedCurves> refined;  ///< with options.refine
-    TransferTimes times;
+    AnnotationSet annotations;              ///< annotations on the target, or on `refined->mesh`
+    std::vector<TransferScore> scores;      ///< one score per annotation of the source, in the order of the source
+    std::optional<InsertedCurves> refined;  ///< the refined target, with options.refine; otherwise empty
+    TransferTimes times;                    ///< computing times
 };
 
-/// Transfers all annotations. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
-/// corresponding vertices; regions are the faces to the left of their outlines; measures move with their pins and are
-/// recomputed. A region too small for the target becomes a line or a point, and its note reports it. Three kinds of annotations
-/// are projected by their curves (project_curves.h) and keep their type, however small: free annotations; with `outlines` = free,
-/// all annotations; with `outlines` = partitions, regions that partition the whole surface (unless `refine` or `cover` require
-/// edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
+/// Transfers all annotations. Points are transferred to the corresponding vertices; poly-lines and outlines become edge paths
+/// between corresponding vertices; regions are the faces to the left of their outlines; measures are transferred with their pins
+/// and recomputed. A region too small for the target becomes a line or a point, and the note of its score reports this. Three
+/// kinds of annotations are projected by their curves (project_curves.h) and keep their type, however small: free annotations;
+/// with `outlines` = free, all annotations; with `outlines` = partitions, regions that partition the whole surface (unless
+/// `refine` or `cover` require edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless
+/// options.force.
 TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options = {});
 
 }  // namespace ostraka

@@ -8,26 +8,26 @@
 
 namespace ostraka {
 
-/// Normalised text: lower case (Latin, Greek and Cyrillic letters), runs of blanks reduced to one, none at the ends. Accents
-/// stay. Input and output are UTF-8.
+/// The text in normal form: lower case (Latin, Greek and Cyrillic letters), runs of blanks reduced to one blank, no blanks at the
+/// ends. Accents are kept. Input and output are UTF-8.
 std::string folded(std::string_view text);
 
-/// Up to `maximum` of the candidates whose edit distance to the text, both folded, is at most one per three letters; closest
-/// first, then in the given order. Empty for texts of more than 200 bytes.
+/// Up to `maximum` of the candidates whose edit distance to the text, both in normal form, is at most one per three letters;
+/// closest first, then in the given order. Empty for texts of more than 200 bytes.
 std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates,
                                      std::size_t maximum = 3);
 
-/// ": did you mean 'a', 'b' or 'c'?", or an empty text.
+/// Text that offers suggestions: ": did you mean 'a', 'b' or 'c'?"; empty without suggestions.
 std::string did_you_mean(const std::vector<std::string>& suggestions);
 
-/// The list as text: "'a', 'b' or 'c'".
+/// A list of names as text: "'a', 'b' or 'c'".
 std::string alternatives(const std::vector<std::string>& names);
 
-/// A folded text without a blank and number at its end.
+/// A text in normal form without a blank and a number at its end.
 std::string without_number(const std::string& folded_text);
 
 /// Converts a value to another unit: lengths (um, mm, cm, dm, m, km, in, ft), their squares, cubes and reciprocals ("mm^2",
-/// "1/mm", "1/mm^2"), angles (deg, rad); nothing for units of different dimensions.
+/// "1/mm", "1/mm^2"), angles (deg, rad). Empty for units of different dimensions.
 std::optional<double> converted(double value, const std::string& from, const std::string& to);
 
 }  // namespace ostraka

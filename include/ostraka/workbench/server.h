@@ -7,22 +7,24 @@
 
 namespace ostraka {
 
-/// Limits of the server. Unauthenticated connections are counted separately, so that they cannot lock out a page.
+/// Limits of the server. Unauthenticated connections are counted separately, so that they cannot prevent the page from
+/// connecting.
 struct ServerLimits {
-    std::size_t unauthenticated = 128;      ///< unauthenticated connections; beyond this, the oldest is dropped
-    std::size_t pages = 32;                 ///< authenticated connections; beyond this, new ones are refused
+    std::size_t unauthenticated = 128;      ///< max number of unauthenticated connections; beyond this, the oldest is dropped
+    std::size_t pages = 32;                 ///< max number of authenticated connections; beyond this, new ones are refused
     std::size_t header = 8192;              ///< max size of a request head in bytes
     std::size_t message = 4'000'000;        ///< max size of a message from the page in bytes
     std::size_t waiting = 64;               ///< max number of unanswered requests of one page
-    std::size_t waiting_bytes = 8'000'000;  ///< max total size of these requests in bytes
-    std::size_t queue_bytes = 64'000'000;   ///< max total size of the requests of all pages, including closed ones, in bytes
-    std::size_t unsent = 4'000'000;         ///< bytes of unread answers of a page above which none of its requests is started
-    double seconds = 5;                     ///< time limit for a request head and for closing, in seconds
-    double stalled = 30;                    ///< seconds without progress of an answer after which the page is dropped
+    std::size_t waiting_bytes = 8'000'000;  ///< max total size of the unanswered requests of one page, bytes
+    std::size_t queue_bytes = 64'000'000;   ///< max total size of the requests of all pages, including closed pages, bytes
+    /// Max size of unread answers of a page, bytes; above it no further request of the page is started.
+    std::size_t unsent = 4'000'000;
+    double seconds = 5;   ///< time limit for a request head and for closing, in seconds
+    double stalled = 30;  ///< time without progress of an answer after which the page is dropped, in seconds
 };
 
-/// Listens on the loopback address. Serves pages that present the token; their messages are processed by the workbench one at a
-/// time, on a separate thread. Per page the server buffers at most `waiting_bytes`, `unsent`, and one answer.
+/// Listens on the loopback address. Serves pages that present the secret token; the workbench processes their messages one at a
+/// time, on a separate thread. For each page the server buffers at most `waiting_bytes`, `unsent`, and one answer.
 class WorkbenchServer {
 public:
     /// `port` 0: any free port. Throws Error (failure) if the port is not available.
@@ -31,15 +33,17 @@ public:
 
     /// URL that opens the page, "http://127.0.0.1:PORT/?token=TOKEN"; it contains the secret token.
     [[nodiscard]] std::string address() const;
+    /// Port on which the server listens.
     [[nodiscard]] std::uint16_t port() const;
+    /// Secret token that a page must present.
     [[nodiscard]] const std::string& token() const;
 
-    /// Called once, on the server's thread, when the first page connects. Set it before `run`.
+    /// Called once, on the server's thread, when the first page connects. Must be set before `run`.
     std::function<void()> on_first_page;
 
-    /// Serves until `stop`; a request in progress is completed first.
+    /// Serves pages until `stop` is called; a request in progress is completed first.
     void run();
-    /// May be called from any thread.
+    /// Stops the server. May be called from any thread.
     void stop();
 
     struct State;  ///< defined in server.cpp
@@ -48,7 +52,7 @@ private:
     std::shared_ptr<State> state_;
 };
 
-/// The built page (web/README.md), embedded in the command.
+/// Text of the built HTML page (web/README.md), which is embedded in the command.
 std::string_view workbench_page();
 
 }  // namespace ostraka

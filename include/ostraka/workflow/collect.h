@@ -1,4 +1,4 @@
-// Collects results of a study: tables and plots from the reports of its steps, and one page.
+// Collects the results of a study: tables and plots from the reports of its steps, and one page.
 #pragma once
 
 #include "ostraka/figures/table.h"
@@ -6,27 +6,29 @@
 
 namespace ostraka {
 
-/// Checks the tables, plots and the page of a study against the report declarations of its steps. Throws Error (input) with the
-/// place and a remedy.
+/// Checks the tables, plots and page that a study requests against the report declarations of its steps. Throws Error (input)
+/// with the place in the study file and a remedy.
 void check_collected(const StudyPlan& plan);
 
-/// A table that keeps the values of its cells, for plots.
+/// A table of a study; it keeps the values of its cells, for plots.
 struct StudyTable {
-    std::string name, title, note;
-    std::vector<std::string> columns;
-    std::vector<std::vector<Json>> cells;  ///< null: empty cell
-    std::vector<int> digits;
-    std::vector<bool> percent;
+    std::string name, title, note;         ///< name of the files, title, and remark below the table
+    std::vector<std::string> columns;      ///< titles of the columns
+    std::vector<std::vector<Json>> cells;  ///< cells of each row; null: empty cell
+    std::vector<int> digits;               ///< for each column, number of significant digits
+    std::vector<bool> percent;             ///< for each column, whether values are shown in per cent
 
+    /// The table with cells as texts.
     [[nodiscard]] TextTable text() const;
+    /// Index of the column with this title; the number of columns if there is none.
     [[nodiscard]] std::size_t column(const std::string& title) const;
 };
 
-/// Builds the tables from the reports in the run folder; uses instances that are done or unchanged.
+/// Builds the tables of a study from the reports in the run folder; uses instances that are done or unchanged.
 std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder);
 
-/// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: maps a file name
-/// to the path to write. Returns the names of the files written.
+/// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: returns the path to
+/// write for a file name. Returns the names of the files written.
 std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
                                          const std::function<Path(const std::string&)>& write);
 

@@ -1,4 +1,4 @@
-// Study files: steps that each name an operation of the table, its inputs, options and parameter grids.
+// Study files: steps, each of which names an operation with its inputs and options, and grids of parameters.
 #pragma once
 
 #include "ostraka/files/json.h"
@@ -11,93 +11,100 @@
 
 namespace ostraka {
 
-/// "${name}" or "${name.member}": refers to the value of a parameter or an output of a step.
+/// A reference "${name}" or "${name.member}" to the value of a parameter or to an output of a step.
 struct StudyReference {
-    std::string name, member;
+    std::string name, member;  ///< member: empty for "${name}"
 };
 /// A text that may contain references.
 struct StudyText {
-    std::vector<std::variant<std::string, StudyReference>> parts;
-    /// The reference, if the text consists of exactly one; otherwise null.
+    std::vector<std::variant<std::string, StudyReference>> parts;  ///< plain texts and references, in order
+    /// The reference, if the text consists of exactly one reference; otherwise null.
     [[nodiscard]] const StudyReference* single() const;
-    [[nodiscard]] std::vector<StudyReference> references() const;
+    [[nodiscard]] std::vector<StudyReference> references() const;  ///< all references in the text
 };
-/// Throws Error (input) if "${" is not followed by a name and "}".
+/// Parses a text with references. Throws Error (input) if "${" is not followed by a name and "}".
 StudyText study_text(const std::string& text, const std::string& where);
 
-/// One value of a parameter: its members by name, with "" for the parameter itself. Members are texts, numbers or booleans.
+/// One value of a parameter: its members by name, with "" for the value itself. Members are texts, numbers or booleans.
 struct ParameterValue {
-    std::map<std::string, std::shared_ptr<const Json>> members;
-    std::string label;  ///< label in tables and folder names
-    [[nodiscard]] const JsonValue* find(const std::string& member) const;
+    std::map<std::string, std::shared_ptr<const Json>> members;            ///< from the name of a member to its value
+    std::string label;                                                     ///< text for the value in tables and folder names
+    [[nodiscard]] const JsonValue* find(const std::string& member) const;  ///< value of a member; null: no such member
 };
+/// A parameter of a study with its values.
 struct StudyParameter {
-    std::string name;
-    std::vector<ParameterValue> values;
-    bool by_caller = false;  ///< the values come from the caller, not from the file
-    bool varies = false;     ///< given as a list, a range or files: steps run once per value
+    std::string name;                    ///< name of the parameter
+    std::vector<ParameterValue> values;  ///< values for which steps run
+    bool by_caller = false;              ///< true: the values come from the caller, not from the study file
+    bool varies = false;                 ///< true: given as a list, a range or files, so that steps run once per value
 };
 
-/// An input or option of a step, as in the file.
+/// An input or option of a step, as in the study file.
 struct StudySetting {
-    std::string name;
-    const JsonValue* value = nullptr;
-    std::string place;  ///< JSON pointer
+    std::string name;                  ///< name of the input or option
+    const JsonValue* value = nullptr;  ///< JSON value of the setting
+    std::string place;                 ///< JSON pointer of the setting
 };
 
+/// A step of a study.
 struct StudyStep {
-    std::string name, place;                    ///< JSON pointer "/steps/NAME"
-    const OperationEntry* operation = nullptr;  ///< null: a program
-    std::vector<StudySetting> settings;         ///< settings of an operation
-    std::vector<StudySetting> program, reads;   ///< words of a program, and the files it reads
-    std::map<std::string, StudyText> keep;      ///< outputs to write, with their file names; empty name: default
-    bool is_slow = false;                       ///< left out of quick runs
-    std::vector<std::size_t> needs;             ///< steps whose outputs it uses
-    std::vector<std::size_t> gathers;           ///< the needed steps of which it uses all instances
-    std::vector<bool> parameters;               ///< whether it varies with each parameter of the study
+    std::string name, place;                    ///< name of the step; its JSON pointer, "/steps/NAME"
+    const OperationEntry* operation = nullptr;  ///< null: the step runs a program
+    std::vector<StudySetting> settings;         ///< inputs and options of the operation
+    std::vector<StudySetting> program, reads;   ///< words of the program's command, and the files that the program reads
+    /// From the name of an output to be written to its file name; empty file name: default name.
+    std::map<std::string, StudyText> keep;
+    bool is_slow = false;              ///< true: quick runs omit the step
+    std::vector<std::size_t> needs;    ///< indices of the steps whose outputs the step uses
+    std::vector<std::size_t> gathers;  ///< indices of the needed steps of which the step uses all instances
+    std::vector<bool> parameters;      ///< for each parameter of the study, whether the step varies with it
 };
 
+/// A study, read from its file.
 struct Study {
-    Path file, folder;
-    bool allow_programs = false;
-    std::vector<Path> readable;  ///< folders and files from which inputs may be read: the study's, and the caller's
-    std::string sha256;
-    std::shared_ptr<const Json> document;
-    std::string title;
+    Path file, folder;            ///< path of the study file, and folder to which names are relative
+    bool allow_programs = false;  ///< true: steps may start external programs
+    /// Folders and files from which inputs may be read: those of the study, and those that the caller permits.
+    std::vector<Path> readable;
+    std::string sha256;                    ///< SHA-256 of the study file
+    std::shared_ptr<const Json> document;  ///< JSON document of the study file
+    std::string title;                     ///< title of the study
     std::vector<StudyParameter> parameters;
-    std::vector<StudyStep> steps;  ///< sorted so that each follows those it needs
+    std::vector<StudyStep> steps;  ///< sorted so that each step follows the steps that it needs
 
+    /// The parameter with this name; null: there is none.
     [[nodiscard]] const StudyParameter* parameter(const std::string& name) const;
+    /// Index of the parameter with this name; the number of parameters if there is none.
     [[nodiscard]] std::size_t parameter_index(const std::string& name) const;
-    /// Index of the step, or the number of steps.
+    /// Index of the step with this name; the number of steps if there is none.
     [[nodiscard]] std::size_t step(const std::string& name) const;
-    /// Throws Error (input) unless the file, with links resolved, lies in a readable folder. `pointer`: JSON pointer that names
-    /// it.
+    /// Throws Error (input) unless the file `named`, with links resolved, lies in a readable folder. `pointer`: JSON pointer in
+    /// the study file that names the file.
     void require_readable(const Path& named, const std::string& pointer) const;
-    /// The name of a file relative to the study's folder.
+    /// The path of a file relative to the study's folder.
     [[nodiscard]] std::string relative(const Path& file) const;
-    /// "FILE, at POINTER".
+    /// Place in the study file for messages: "FILE, at POINTER".
     [[nodiscard]] std::string at(const std::string& pointer) const { return file.string() + ", at " + pointer; }
 };
 
 struct StudyOptions {
-    bool quick = false;                 ///< use the parameters of "quick" and omit slow steps
-    Path folder = {};                   ///< folder to which names are relative; empty: that of the file
-    std::vector<std::string> set = {};  ///< "NAME=VALUE" or "NAME=VALUE,VALUE": replaces values of the file
-    bool set_from_file = false;         ///< `set` comes from a file: its paths are not trusted like the caller's
-    std::vector<Path> reads = {};       ///< further folders from which inputs may be read
-    bool reads_folder = true;           ///< inputs may also be read from `folder`
-    bool allow_programs = false;        ///< steps may start external programs
+    bool quick = false;                 ///< true: use the parameters of "quick" and omit slow steps
+    Path folder = {};                   ///< folder to which names are relative; empty: the folder of the study file
+    std::vector<std::string> set = {};  ///< "NAME=VALUE" or "NAME=VALUE,VALUE": replaces the values of a parameter
+    bool set_from_file = false;    ///< true: `set` comes from a file, so that its paths are not trusted like paths of the caller
+    std::vector<Path> reads = {};  ///< additional folders from which inputs may be read
+    bool reads_folder = true;      ///< true: inputs may also be read from `folder`
+    bool allow_programs = false;   ///< true: steps may start external programs
 };
 
-/// Reads a study file and performs the checks that do not require running it: schema, names, references, cycles. Operations are
-/// looked up with `find`. Throws Error (input) with the file, the place in it and a remedy.
+/// Reads a study file and performs the checks that do not require running the study: schema, names, references, cycles. `find`
+/// returns the operation with a given name. Throws Error (input) with the file, the place in the file and a remedy.
 Study read_study(const Path& file, const FindOperation& find, const StudyOptions& options = {});
 
-/// Whether a program with this name belongs to the toolkit, so that studies may start it.
+/// Whether a program with this name belongs to the toolkit, so that every study may start it.
 bool is_own_program(const std::string& name);
 
-/// Text form of a parameter value.
+/// A parameter value as text.
 std::string scalar_text(const JsonValue& value);
 
 }  // namespace ostraka
