@@ -384,8 +384,7 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
 }
 
 void ReadAnnotationsOptions::describe(OptionList& visit) {
-    visit("force-mesh", force_mesh,
-          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+    visit("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
           Anything{});
 }
 

@@ -140,7 +140,7 @@ void CageOptions::describe(OptionList& visit) {
           "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
           "requires it",
           Range{0, 1}, "share of the diagonal");
-    visit("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
+    visit("offset", offset, "distance of the mesh from the wrap that becomes the cage", Range{1e-4, 0.5},
           "share of the diagonal");
     visit("genus", genus,
           "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",

@@ -174,11 +174,10 @@ Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string
 void CompareOptions::describe(OptionList& visit) {
     features.describe(visit);
     matches.describe(visit);
-    visit("loose-ratio", loose_ratio, "as --ratio, but for the matches among which geometrically consistent matches are searched",
+    visit("loose-ratio", loose_ratio, "as --ratio, for matches among which geometrically consistent matches are searched",
           Range{0, 1});
     consistent.describe(visit);  // shrinkage holds for the registration as well
-    visit("trim", align.trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
-          Range{0.1, 1});
+    visit("trim", align.trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
     visit("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
 }
 

@@ -270,10 +270,9 @@ TechniqueMeasures technique_from_json(const JsonValue& json) {
 
 void TechniqueOptions::describe(OptionList& visit) {
     visit("slices", slices, "number of slices per object", Range{2, 100000});
-    visit("from", from, "lower end of the part of each object that is sliced", Range{0, 1}, "share of the height");
-    visit("to", to, "upper end of the part of each object that is sliced (thesis: the lowest two fifths)", Range{0, 1},
-          "share of the height");
-    visit("min-turn", min_turn, "minimum share of the full turn that an open outline of a usable slice covers", Range{0.5, 1},
+    visit("from", from, "lower end of the sliced range of each object", Range{0, 1}, "share of the height");
+    visit("to", to, "upper end of the sliced range of each object (thesis: 0.4)", Range{0, 1}, "share of the height");
+    visit("min-turn", min_turn, "minimum share that an open outline of a usable slice covers", Range{0.5, 1},
           "share of the full turn");
     visit("min-slices", min_slices, "minimum number of usable slices per object", Range{2, 100000});
 }

@@ -182,7 +182,7 @@ double Coordinates::stored_share() const {
 }
 
 void CoordinateOptions::describe(OptionList& visit) {
-    visit("snap", snap, "maximum distance at which a point counts as lying on the cage", Range{0, 1e-6},
+    visit("snap", snap, "maximum distance of points that count as lying on the cage", Range{0, 1e-6},
           "share of the cage's diagonal");
     visit("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage",
           Range{100, 5e6});

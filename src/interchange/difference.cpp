@@ -112,13 +112,11 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
 }
 
 void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer,
-          "which set's value to keep where both sets changed the same field differently; none: report a conflict",
+    visit("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict",
           Choices{"none", "ours", "theirs"});
-    visit("merge-faces", merge_faces,
-          "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
-    visit("renumber", renumber,
-          "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
+    visit("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",
+          Anything{});
+    visit("renumber", renumber, "where both sets added an annotation with one id, renumber the second instead of a conflict",
           Anything{});
 }
 

@@ -248,7 +248,7 @@ void LandmarkFileOptions::describe(OptionList& visit) {
 }
 
 void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "maximum distance between a point of the file and the surface of the mesh", Range{0, 1},
+    visit("tolerance", tolerance, "maximum distance of a point of the file from the mesh surface", Range{0, 1},
           "share of the box diagonal");
     visit("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",
           Anything{});

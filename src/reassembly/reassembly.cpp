@@ -167,9 +167,7 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
 
 void ReassemblyOptions::describe(OptionList& visit) {
     visit("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
-    visit("partners", partners,
-          "number of other fragments with which each fragment is fully registered, selected by a coarse comparison",
-          Range{1, 100000});
+    visit("partners", partners, "number of fragments with which each fragment is fully registered, best first", Range{1, 100000});
     visit("min-faces", min_faces, "minimum number of faces of a fragment; smaller fragments are not joined", Range{4, 1e9});
     pairs.describe(visit);
 }

@@ -207,17 +207,15 @@ void NonRigidOptions::describe(OptionList& visit) {
           "unknowns of the fit: vertices of the template (mesh), vertices of a cage around the template (cage: fewer degrees of "
           "freedom, no folds by noise), or first the cage and in the last level the template (both)",
           Choices{"mesh", "cage", "both"});
-    visit("smoothing", start, "smoothing length of the first level: shorter details are not fitted", Range{1e-3, 10},
-          "share of the template's diagonal");
-    visit("detail", end, "smoothing length of the last level: shorter details are not fitted", Range{1e-4, 10});
+    visit("smoothing", start, "smoothing length of the first level", Range{1e-3, 10}, "share of the template's diagonal");
+    visit("detail", end, "smoothing length of the last level, as a share of the diagonal: shorter details are not fitted",
+          Range{1e-4, 10});
     visit("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
     visit("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    visit("transition", stay, "distance from the observed surface over which the deformation of the first level fades",
-          Range{1e-3, 1e3}, "share of the diagonal");
-    visit(
-        "fade", fade,
-        "distance from the observed surface over which the deformation of later levels fades, in smoothing lengths of the level",
-        Range{0.1, 1e3});
+    visit("transition", stay, "first level: distance over which the deformation fades", Range{1e-3, 1e3},
+          "share of the diagonal");
+    visit("fade", fade, "later levels: distance over which the deformation fades, in smoothing lengths of the level",
+          Range{0.1, 1e3});
     visit("reach", search_radius, "maximum distance between a vertex and its match in the first level", Range{0, 10},
           "share of the diagonal");
     visit("last-reach", last_search_radius, "maximum distance between a vertex and its match in the last level", Range{0, 10});
@@ -227,8 +225,8 @@ void NonRigidOptions::describe(OptionList& visit) {
           "the curve (sliding); closest surface points (surface); or vertices of matched annotations by equation 5.1, each used "
           "any number of times (best) or at most once (one-to-one)",
           Choices{"sliding", "surface", "best", "one-to-one"});
-    visit("boundary-weight", vertices.boundary,
-          "equation 5.1: weight of vertices on an outline relative to vertices inside the annotation", Range{0, 1e6});
+    visit("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on outlines relative to interior vertices",
+          Range{0, 1e6});
     visit("distance-weight", vertices.distance, "equation 5.1: weight of the distance between matched vertices", Range{0, 1e6});
     visit("outline-weight", vertices.outline, "equation 5.1: weight of the difference of positions along the outline",
           Range{0, 1e6});

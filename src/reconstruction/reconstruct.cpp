@@ -426,16 +426,14 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
 void ReconstructOptions::describe(OptionList& visit) {
     placement.describe(visit);
     search.describe(visit);
-    visit("refine", refine, "refine the poses of fragments by iterative closest points, with the landmarks as anchors",
-          Anything{});
+    visit("refine", refine, "refine poses of fragments by iterative closest points, with landmarks as anchors", Anything{});
     alignment.describe(visit);
     rotations.describe(visit);
     annotations.describe(visit);
     prior.describe(visit);
     fit.describe(visit);
     completion.describe(visit);
-    visit("observed", observed,
-          "maximum distance from the fragments at which a template vertex counts as observed, as a share of the diagonal",
+    visit("observed", observed, "maximum distance of an observed template vertex from the fragments, share of the diagonal",
           Range{0, 1});
     visit("scale-tolerance", scale_tolerance,
           "maximum difference, in per cent, between the template's scale from one fragment and from the other fragments",

@@ -322,7 +322,7 @@ PriorFit fit_prior(const Mesh& scaled, const AnnotationSet& set, const std::vect
 void PriorOptions::describe(OptionList& visit) {
     visit("class-iterations", iterations, "maximum number of iterations that fit the modes of variation of --class",
           Range{1, 1000});
-    visit("class-limit", maximum, "maximum deviation of a mode of variation from the mean of the class, in standard deviations",
+    visit("class-limit", maximum, "maximum deviation of a mode of variation from the class mean, in standard deviations",
           Range{0, 100});
     visit("class-samples", samples,
           "minimum number of independent samples that the observed surface counts for, relative to the prior of the class",

@@ -288,14 +288,13 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
 }
 
 void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length to which --first-scale is relative; 0: the square root of the area", Range{0, 1e60},
+    visit("feature-size", size, "length to which --first-scale is relative; 0: square root of the area", Range{0, 1e60},
           "the mesh's unit");
-    visit("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing level", Range{1e-4, 0.5},
+    visit("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing", Range{1e-4, 0.5},
           "share of the size");
     visit("scales", scales, "number of smoothing levels", Range{4, 20});
     visit("scales-per-octave", per_octave, "number of smoothing levels over which the standard deviation doubles", Range{1, 8});
-    visit("border", border,
-          "minimum distance of features from the border of the mesh, in standard deviations of their smoothing level",
+    visit("border", border, "minimum distance of features from the mesh border, in standard deviations of their level",
           Range{0, 10});
     visit("contrast", contrast,
           "minimum contrast of a feature: difference of curvature between two smoothing levels, times the standard deviation",
@@ -307,8 +306,7 @@ void SiftOptions::describe(OptionList& visit) {
 }
 
 void MatchOptions::describe(OptionList& visit) {
-    visit("ratio", ratio, "maximum ratio of the descriptor angle of a match to the descriptor angle of the second best match",
-          Range{0, 1});
+    visit("ratio", ratio, "maximum ratio of the descriptor angle of a match to that of the second best match", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -171,11 +171,10 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
 
 void RemeshOptions::describe(OptionList& visit) {
     visit("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
-    visit("iterations", iterations,
-          "number of rounds, in each of which edges are split, collapsed and flipped, and vertices smoothed and projected",
+    visit("iterations", iterations, "number of rounds of splitting, collapsing and flipping edges and smoothing vertices",
           Range{1, 100});
-    visit("feature-angle", feature_angle,
-          "minimum dihedral angle, in degrees, of edges that are kept as sharp features; 0: no edge is kept", Range{0, 180});
+    visit("feature-angle", feature_angle, "minimum dihedral angle, in degrees, of edges that are kept sharp; 0: none is kept",
+          Range{0, 180});
 }
 
 }  // namespace ostraka

@@ -290,11 +290,10 @@ void SimplifyOptions::describe(OptionList& visit) {
           "maximum rotation of a face normal in one edge collapse, in degrees (relaxed up to 90 if the target number of vertices "
           "cannot be reached otherwise)",
           Range{1, 90});
-    visit("outline-weight", outline_weight,
-          "qem: weight of the distance to the outlines that --outlines follow keeps, relative to the weight of the surface",
+    visit("outline-weight", outline_weight, "qem: weight of the distance to outlines, relative to the distance to the surface",
           Range{0, 1e6});
-    visit("border-weight", border_weight,
-          "qem: weight of the distance to the border of the mesh, relative to the weight of the surface", Range{0, 1e6});
+    visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the distance to the surface",
+          Range{0, 1e6});
 }
 
 }  // namespace ostraka

@@ -358,8 +358,7 @@ RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sh
 void RevolutionOptions::describe(OptionList& visit) {
     visit("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
     visit("columns", columns, "number of directions around the axis at which the walls are sampled", Range{8, 7200});
-    visit("presence", presence,
-          "minimum angle, in degrees around the axis, that the sherds cover at a height for the profile to be defined there",
+    visit("presence", presence, "minimum angle, in degrees about the axis, that sherds must cover at a height of the profile",
           Range{0, 360});
     visit("profile-smoothing", smoothing, "standard deviation of the Gaussian that smooths the profile, in rows", Range{0, 50});
     visit("layout-angle", layout_angle, "standard deviation of the error of a sherd's tilt in the given poses, in degrees",

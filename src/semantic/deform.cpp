@@ -144,8 +144,8 @@ void DeformOptions::describe(OptionList& visit) {
           "shape whose Laplacian displacements the surface approaches: the edited shape (edited) or the shape before the edit "
           "(rest, as in the thesis)",
           Choices{"edited", "rest"});
-    visit("spread", spread, "distance from the constrained part over which the displacement by a constraint fades out",
-          Range{1e-4, 1e4}, "share of the diagonal");
+    visit("spread", spread, "distance over which the displacement by a constraint fades out", Range{1e-4, 1e4},
+          "share of the diagonal");
     visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
     visit("handles", handles,
           "weight of the positions of handles that the edit moves, and of joints of stretched parts; lower for handles that a "
@@ -162,8 +162,7 @@ void DeformOptions::describe(OptionList& visit) {
           "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many passes "
           "while violated hard constraints improve",
           Range{1, 100});
-    visit("conflicts", conflicts,
-          "maximum number of constraints that are omitted, one at a time, to find conflicts if a constraint fails; 0: no search",
+    visit("conflicts", conflicts, "maximum number of constraints omitted, one at a time, to find conflicts; 0: no search",
           Range{0, 1000});
 }
 

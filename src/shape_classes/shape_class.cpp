@@ -518,8 +518,7 @@ void LearnOptions::describe(OptionList& visit) {
           "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
           "template (auto); all as they are (given); all by fitting the template (fitted)",
           Choices{"auto", "given", "fitted"});
-    visit("false-reject", reject,
-          "maximum share of true members that all thresholds together reject, if the quantities are normal or log-normal",
+    visit("false-reject", reject, "maximum share of true members that all thresholds together reject (log-normal quantities)",
           Range{1e-6, 0.5});
     visit("unsure", unsure,
           "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "

@@ -216,10 +216,10 @@ void CastOptions::describe(OptionList& visit) {
           "maximum wear of a cast: standard deviation of the Gaussian that smooths the surface; the wear of a cast is 50 to 100 "
           "% of this value, and half as large at some places",
           Range{0, 0.1}, "share of the head's height");
-    visit("pressure", pressure,
-          "deformation of soft clay: standard deviation of the relative stretch along each axis and of a bend", Range{0, 0.1});
+    visit("pressure", pressure, "deformation of soft clay: standard deviation of relative stretches and of a bend",
+          Range{0, 0.1});
     visit("shrinkage", shrinkage, "maximum linear shrinkage of a cast, as a fraction of its size", Range{0, 0.3});
-    visit("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.01},
+    visit("noise", noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.01},
           "share of the head's height");
     visit("beard", beard, "share of the casts with a beard added by hand", Range{0, 1});
     visit("chunk", chunk, "share of the casts that lack a piece of the face", Range{0, 1});

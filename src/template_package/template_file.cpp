@@ -102,8 +102,7 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
 
 void TemplateOptions::describe(OptionList& visit) {
     visit("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
-    visit("force-mesh", force_mesh,
-          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+    visit("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
           Anything{});
 }
 

@@ -244,8 +244,8 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
 }
 
 void CorrespondenceOptions::describe(OptionList& visit) {
-    visit("max-distance", max_distance, "maximum distance between a vertex and its corresponding point on the target",
-          Range{1e-9, 1}, "share of the box diagonal");
+    visit("max-distance", max_distance, "maximum distance of a vertex from its point on the target", Range{1e-9, 1},
+          "share of the box diagonal");
     visit("max-angle", max_angle, "maximum angle between the normal of a vertex and the normal of the target face", Range{0, 180},
           "degrees");
     visit("vertex", vertex,

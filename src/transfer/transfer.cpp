@@ -267,7 +267,7 @@ void TransferOptions::describe(OptionList& visit) {
     correspondence.describe(visit);
     visit("metric", metric, "length that paths between corresponding vertices minimise",
           Choices{"euclidean", "segment", "combined"});
-    visit("spikes", spikes, "spikes of outlines: prune (remove them), avoid (do not visit a vertex twice while tracing) or keep",
+    visit("spikes", spikes, "spikes of outlines: prune (remove), avoid (visit no vertex twice) or keep",
           Choices{"prune", "avoid", "keep"});
     visit("outlines", outlines,
           "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "

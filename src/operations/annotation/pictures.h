@@ -15,9 +15,9 @@ struct AnnotationPictures {
 
     void describe(Parameters& p) {
         p.output_option("ply", Kind::mesh, coloured,
-                        "write the mesh in the colours of its annotations (PLY or another format with colours)");
+                        "mesh file to write, coloured by its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,
-                        "label file to write: for each face, the id of the smallest region that contains the face, or -1");
+                        "label file to write: for each face, the id of its smallest region, or -1");
     }
     void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
         if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));

@@ -32,8 +32,7 @@ void SelectStep::describe(OptionList& visit) {
     visit("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
     visit("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
     visit("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
-    visit("halfspace", halfspace,
-          "selects one side of a plane: a point of the plane and the normal towards that side, as six numbers");
+    visit("halfspace", halfspace, "selects one side of a plane: a point and the normal towards this side, as six numbers");
     visit("nearest", nearest, "selects the vertex nearest to x,y,z");
     visit("threshold", threshold,
           "selects places where this quantity lies between --above and --below; distance is measured from --seed",
@@ -60,7 +59,7 @@ void SelectStep::describe(OptionList& visit) {
           "file)");
     visit("below", below, "with --threshold: maximum value, in the unit of --above");
     visit("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
-    visit("scale", scale, "with --threshold of a curvature: radius of averaging; 0: chosen from the mesh resolution", Range{0, 1},
+    visit("scale", scale, "with --threshold of a curvature: radius of averaging; 0: automatic", Range{0, 1},
           "share of the diagonal");
     visit("smoothing", smoothing, "with --segment: preference for short borders in concave places", Range{0, 1});
     visit("grow", grow, "number of rings of neighbours by which the selection is dilated", Range{0, 1000000});
@@ -72,11 +71,9 @@ void SelectStep::describe(OptionList& visit) {
           Choices{"mesh", "box"});
 
     visit.group("Camera (that of 'ostraka render' without legend and title)");
-    visit("camera", camera_text,
-          "name of a camera in the recipe, or a camera as JSON (as reported by 'render --json'); replaces --view to --size");
+    visit("camera", camera_text, "camera: a name in the recipe, or JSON (from 'render --json'); replaces --view to --size");
     visit("view", view, "view direction", view_words());
-    visit("up", up, "upward direction, stored in a new file; by default the upward direction of the annotations, or 0,0,1",
-          direction_words("--up"));
+    visit("up", up, "upward direction, stored in new files; default: that of the annotations, or 0,0,1", direction_words("--up"));
     visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
     visit("size", size, "width and height of the picture in pixels, such as 1200x900");
@@ -92,7 +89,7 @@ void SelectStep::describe(OptionList& visit) {
           "distance), and lines follow edges",
           Choices{"edges", "free"});
     visit("colour", colour, "colour of the annotation, as red,green,blue", Range{0, 255});
-    visit("action", action, "what the selection does to the annotation with --id",
+    visit("action", action, "effect of the selection on the annotation with --id",
           Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
 }
 

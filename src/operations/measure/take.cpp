@@ -28,8 +28,7 @@ struct MeasureTake final : Operation {
         p.options("direction", direction,
                   "direction of a bounding measure; without pins the whole annotation is measured along this direction",
                   direction_words("--direction"));
-        p.options("geodesic", geodesic,
-                  "how a tape runs: along edges (edges) or as the exact shortest curve over the faces (exact)",
+        p.options("geodesic", geodesic, "course of a tape: along edges, or the exact shortest curve over the faces (exact)",
                   Choices{"edges", "exact"});
         p.options("repeat", repeats,
                   "pins of a repeated picking, as vertex indices like 12,88; given once per picking, and the value is the mean "

@@ -18,7 +18,7 @@ struct MeshRegister final : Operation {
                 "mesh of the same object, in any unit and pose, at any resolution; it stays unchanged");
         p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: the source registered onto the target").optional();
         p.output_option("matrix", Kind::pose, matrix,
-                        "JSON file to write: the transformation of the source as the rows of a 4 x 4 matrix");
+                        "JSON file to write: transformation of the source, as the rows of a 4 x 4 matrix");
         options.describe(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),

@@ -28,7 +28,7 @@ constexpr const char* statuette_measures = R"({
 
 struct StudyMakeProportions final : StudyMakeStatuettes {
     void describe(Parameters& p) override {
-        describe_folder(p, "folder to write: meshes, annotations, measure definitions and the known answers (truth.csv)");
+        describe_folder(p, "folder to write: meshes, annotations, measure definitions, known answers (truth.csv)");
         options.describe(p.options);
         p.report.values(text("folder"), integer("objects"), text("fixed"));
     }
