@@ -178,7 +178,7 @@ void AxisOptions::describe(OptionList& visit) {
     visit("slices", slices, "slices: number of planes that slice the part", Range{4, 10000});
     visit("trials", trials, "rotation: number of random sets of normals from which an axis is computed (RANSAC)",
           Range{0, 1000000});
-    visit("smoothing", smoothing, "rotation: number of rounds in which normals are averaged over their neighbours",
+    visit("smoothing", smoothing, "rotation: number of rounds in which each normal is averaged with its neighbours",
           Range{0, 100});
     visit("seed", seed, "rotation: random seed");
 }

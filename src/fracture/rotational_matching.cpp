@@ -298,7 +298,7 @@ void RotationMatchOptions::describe(OptionList& visit) {
     visit("turn-samples", samples, "number of sample points on each fracture surface", Range{50, 1e6});
     visit("turn-candidates", candidates, "number of rotations of two sherds, best first, that are refined", Range{1, 1000});
     visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
-    visit("turn-hold", hold, "weight of a sherd's position on the template relative to its fracture surfaces", Range{0, 1000});
+    visit("turn-hold", hold, "weight of the template relative to the fracture surfaces for a sherd's position", Range{0, 1000});
     visit("min-joint", min_joint, "minimum confidence of a joint; with a lower confidence the joint is undecided", Range{0, 1});
 }
 

@@ -116,7 +116,7 @@ void MergeOptions::describe(OptionList& visit) {
           Choices{"none", "ours", "theirs"});
     visit("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",
           Anything{});
-    visit("renumber", renumber, "where both sets added an annotation with one id, renumber the second instead of a conflict",
+    visit("renumber", renumber, "give a new id to the second of two annotations added with the same id, instead of a conflict",
           Anything{});
 }
 

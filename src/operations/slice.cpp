@@ -96,7 +96,7 @@ struct SliceObject final : Operation {
         p.options("axes", axes, "also report the straightness of the object relative to the axes that `ostraka axis` computes");
         p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of the annotations");
         p.options("title", title, "title of the drawings; by default the name of the mesh file");
-        p.options("profile-angle", angle, "direction of the profile's section around the axis; default: a typical one",
+        p.options("profile-angle", angle, "direction of the profile's section about the axis; default: automatic",
                   Range{-360, 360}, "degrees");
         p.options("drawn", drawn, "maximum number of slices that the drawing shows", Range{1, 10000});
         p.options("colour-by", colour_by,

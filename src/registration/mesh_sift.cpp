@@ -306,7 +306,7 @@ void SiftOptions::describe(OptionList& visit) {
 }
 
 void MatchOptions::describe(OptionList& visit) {
-    visit("ratio", ratio, "maximum ratio of the descriptor angle of a match to that of the second best match", Range{0, 1});
+    visit("ratio", ratio, "maximum ratio of the descriptor angles of the best and the second best match", Range{0, 1});
 }
 
 }  // namespace ostraka

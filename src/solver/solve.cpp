@@ -150,8 +150,7 @@ void SolveOptions::describe(OptionList& visit) {
     visit("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
     visit("tolerance", tolerance, "stop when no point moves by more than this distance per iteration", Range{0, 1},
           "share of the diagonal");
-    visit("residual", residual, "stop when the weighted root mean square distance from the projections falls to this",
-          Range{0, 1e300});
+    visit("residual", residual, "stop when the weighted rms distance from the projections falls to this value", Range{0, 1e300});
     visit("window", window, "number of previous iterations from which the acceleration extrapolates; 0: no acceleration",
           Range{0, 50});
 }

@@ -14,7 +14,8 @@ struct AnnotationImport final : Operation {
         p.input("input", Kind::text, input, "file to read");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
-        p.input_option("onto", Kind::annotations, onto, "annotations to which those in the file, or its attributes, are added");
+        p.input_option("onto", Kind::annotations, onto,
+                       "annotations to which the annotations or attributes in the file are added");
         options.describe(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),

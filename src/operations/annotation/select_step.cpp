@@ -55,8 +55,8 @@ void SelectStep::describe(OptionList& visit) {
     visit("radius", radius, "with --brush: geodesic radius, in the unit of --frame");
     visit("stroke", stroke, "with --brush: paint along the path through the picks");
     visit("above", above,
-          "with --threshold: minimum value (lengths in the unit of --frame, curvature in its inverse, values of a file as in the "
-          "file)");
+          "with --threshold: minimum value; lengths in the unit of --frame, curvature in the inverse of this unit, values of a "
+          "file unchanged");
     visit("below", below, "with --threshold: maximum value, in the unit of --above");
     visit("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
     visit("scale", scale, "with --threshold of a curvature: radius of averaging; 0: automatic", Range{0, 1},
@@ -80,13 +80,13 @@ void SelectStep::describe(OptionList& visit) {
 
     visit.group("Annotation");
     visit("tag", tag, "tag of the annotation");
-    visit("id", id, "id of the annotation; without it, a new annotation gets an unused id");
+    visit("id", id, "id of the annotation; if left out, a new annotation gets an unused id");
     visit("type", type, "type of a new annotation; by default the type that the selection has",
           Choices{"point", "line", "region"});
     visit("outline", outline,
-          "course of outlines: through the faces (free) or along edges (edges); by default edited outlines keep their kind, new "
-          "ones are free if the selection has a border between vertices (volume, polygon, threshold on vertices, brush, lasso, "
-          "distance), and lines follow edges",
+          "course of outlines: through the faces (free) or along edges (edges); by default an edited outline keeps its kind, and "
+          "a new outline is free if the selection has a border between vertices (volume, polygon, threshold on vertices, brush, "
+          "lasso or distance)",
           Choices{"edges", "free"});
     visit("colour", colour, "colour of the annotation, as red,green,blue", Range{0, 255});
     visit("action", action, "effect of the selection on the annotation with --id",

@@ -24,7 +24,7 @@ struct MeasureTake final : Operation {
             .required();
         p.options("points", points, "pins (the points between which the tool measures) as vertex indices, like 12,88",
                   Range{0, largest_index});
-        p.options("at", pin_positions, "one pin, as coordinates x,y,z: the vertex nearest to them; repeated for each pin");
+        p.options("at", pin_positions, "pin as a point x,y,z, of which the nearest vertex is used; given once per pin");
         p.options("direction", direction,
                   "direction of a bounding measure; without pins the whole annotation is measured along this direction",
                   direction_words("--direction"));
