@@ -158,7 +158,7 @@ def main():
         return mean_and_maximum
 
     target_count = max(300, n // 20)
-    simplify = Task(f"{counts} simplified to {target_count:,}", "Off: distance of the original's vertices from the simplified surface.")
+    simplify = Task(f"{counts} simplified to {target_count:,}", "\"Off\" is the distance of the vertices of the original mesh from the simplified surface.")
     simplify.peer("Ostraka", [ostraka, "mesh", "simplify", large, "so.ply", "--vertices", str(target_count), "--quiet"], error_of("so.ply"))
     simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(target_count)], error_of("sc.ply"))
     simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(target_count)], error_of("sm.ply"))
@@ -174,7 +174,7 @@ def main():
         return f"mean {document['mean']:.6g}, maximum {document['maximum']:.6g} mm"
 
     closest = Task(f"Nearest points on {counts} to the vertices of {max(300, n // 10):,}",
-                   "Work alone: tree and queries. VTK is queried from Python, one query per call.")
+                   "\"Work alone\" comprises building the tree and the queries. VTK is queried from Python, one query per call.")
     closest.peer("Ostraka (library, 2 threads)", [peers, "closest", "ours", large, middle], distances)
     closest.peer("CGAL 5.5 (1 thread)", [peers, "closest", "cgal", large, middle], distances)
     closest.peer("VTK 9.1", [*vtk, "closest", large, middle], distances)
@@ -203,7 +203,7 @@ def main():
         return largest_error
 
     weights = Task(f"Mean value coordinates of {target_count:,} vertices in a cage of 200",
-                   "Off: distance of W c from the vertex. VTK is called from Python, one point per call.")
+                   "\"Off\" is the distance of a vertex from its reconstruction W c by the coordinates. VTK is called from Python, one point per call.")
     weights.peer("Ostraka (2 threads)", [ostraka, "cage", "weights", small, "cage.ply", "wo.npy", "--quiet"], reproduction("wo.npy"))
     weights.peer("VTK 9.1 (1 thread)", [*vtk, "weights", small, "cage.ply", "wv.npy"], reproduction("wv.npy"))
 
@@ -234,7 +234,7 @@ def main():
         return region_labels(module, "transferred.ant.json", "large.ply", len(numpy.loadtxt("large.labels", dtype=int)))
 
     labels = Task(f"Parts of {target_count:,} vertices transferred to {counts}",
-                  "Wrong: compared with the known parts of the object. Ostraka transfers outlines and scores them; VTK gives each face "
+                  "\"Wrong\" is relative to the known parts of the object. Ostraka transfers outlines and scores them; VTK gives each face "
                   "the part of the face nearest to its centroid, from Python, one query per call.")
     labels.peer("Ostraka", [ostraka, "annotation", "transfer", "small.ply", "small.ant.json", "large.ply", "transferred.ant.json",
                             "--quiet"], wrong(ours))

@@ -408,7 +408,7 @@ void ShatterOptions::list_options(OptionList& list) {
     list("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
     list("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
     list("patchiness", patchiness, "how far erosion differs over the surface", Range{0, 1});
-    list("noise", noise, "scan noise: standard deviation of the displacement of each vertex along its normal", Range{0, 0.1},
+    list("noise", noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.1},
          "share of the diagonal");
     list("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
 }

@@ -156,8 +156,8 @@ void SyntheticMeasuresOptions::list_options(OptionList& list) {
     list("measures", measures, "number of measures", Range{1, 60});
     list("groups", groups, "number of groups of measures with fixed ratios among each other", Range{0, 30});
     list("group-size", group_size, "number of measures in each group with fixed ratios", Range{2, 60});
-    list("ratio-deviation", ratio_deviation,
-         "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 2});
+    list("ratio-deviation", ratio_deviation, "standard deviation over the statuettes of the logarithm of ratios that vary",
+         Range{0, 2});
     list("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
          Range{0, 2});
     list("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});

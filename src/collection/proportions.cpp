@@ -363,13 +363,13 @@ ProportionStudy study_proportions(const MeasureTable& measured, const Proportion
 }
 
 void ProportionOptions::list_options(OptionList& list) {
-    list("false-discoveries", false_discoveries,
-         "maximum expected share of false discoveries among the ratios that are reported as fixed", Range{1e-6, 0.5});
+    list("false-discoveries", false_discoveries, "maximum expected share of false discoveries among ratios reported as fixed",
+         Range{1e-6, 0.5});
     list("correction", correction,
          "correction for multiple tests: bh (Benjamini and Hochberg) or by (Benjamini and Yekutieli, under any dependence)",
          Choices{"bh", "by"});
-    list("permutations", permutations,
-         "number of random permutations per test; more permutations if the number of ratios requires them", Range{99, 1000000});
+    list("permutations", permutations, "number of random permutations per test; increased if many ratios require it",
+         Range{99, 1000000});
     list("range", range, "fraction of the observed values of a ratio that a proposed range covers", Range{0.01, 1});
     list("confidence", confidence, "confidence level of the reported intervals", Range{0.5, 0.999});
     list("seed", seed, "random seed", Range{0, 1e18});

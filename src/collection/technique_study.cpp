@@ -289,10 +289,10 @@ void TechniqueStudyOptions::list_options(OptionList& list) {
     list("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
     list("folds", folds, "number of folds of the cross-validation of classifiers", Range{2, 1000});
     list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 1000});
-    list("resamples", resamples, "number of resampled collections from which classifiers are learnt to classify each object",
+    list("resamples", resamples, "number of resampled collections from which each object is classified",
          Range{10, 100000});
-    list("simulations", simulations,
-         "number of simulated collections with one group, with which a division into two groups is compared", Range{19, 100000});
+    list("simulations", simulations, "number of simulated one-group collections with which two groups are compared",
+         Range{19, 100000});
     list("unlike-from", min_outlier_distance,
          "minimum distance of any descriptor of an object from the collection, in robust standard deviations, at which the "
          "object gets no answer",

@@ -182,7 +182,7 @@ double Coordinates::stored_share() const {
 }
 
 void CoordinateOptions::list_options(OptionList& list) {
-    list("snap", snap, "maximum distance at which a point counts as lying on the cage", Range{0, 1e-6},
+    list("snap", snap, "maximum distance of points that count as lying on the cage", Range{0, 1e-6},
          "share of the cage's diagonal");
     list("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage", Range{100, 5e6});
     list("drop", drop, "weights below this value are set to zero (not with mean-value or green)", Range{0, 0.01});

@@ -248,7 +248,7 @@ void LandmarkFileOptions::list_options(OptionList& list) {
 }
 
 void PlaceOptions::list_options(OptionList& list) {
-    list("tolerance", tolerance, "maximum distance between a point of the file and the surface of the mesh", Range{0, 1},
+    list("tolerance", tolerance, "maximum distance of a point of the file from the mesh surface", Range{0, 1},
          "share of the box diagonal");
     list("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",
          Anything{});

@@ -11,8 +11,7 @@ namespace {
 
 struct Deform final : Operation {
     void declare(Parameters& p) override {
-        p.input("template", Kind::template_package, package,
-                "template (.template.json) with its graph, cage and coordinates; replaces mesh and annotations")
+        p.input("template", Kind::template_package, package, "template (.template.json), instead of mesh and annotations")
             .optional();
         p.input("mesh", Kind::mesh, mesh, "mesh file").optional();
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)").optional();
@@ -26,19 +25,16 @@ struct Deform final : Operation {
         p.order({"template", "edit", "output"});
         p.order({"template", "output"});
         p.input_option("graph", Kind::graph, graph,
-                       "relationships (.graph.json) with the constraints to satisfy; replaces the graph of the template");
-        p.input_option(
-            "cage", Kind::cage, cage,
-            "cage whose vertices are the handles of the edit; without a cage, the vertices of the mesh are the handles");
+                       "relationships (.graph.json) with the constraints; replaces the template's graph");
+        p.input_option("cage", Kind::cage, cage, "cage whose vertices are the handles of the edit; by default mesh vertices");
         p.input_option("weights", Kind::coordinates, weights, "weights written by 'cage weights' (.npy)");
         p.input_option("deformed-cage", Kind::cage, deformed_cage,
                        "deformed cage, with the same number and order of vertices: the first step of the edit moves the cage "
                        "vertices to these positions");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
-                        "annotations of the deformed mesh to write (.ant.json), with recomputed measures");
+                        "annotations to write for the deformed mesh, with recomputed measures");
         p.output_option("cage-out", Kind::cage, cage_out, "cage after the deformation, to write");
-        p.options("states", states,
-                  "also write the shape after each step of the edit, before the constraints are solved, as output-step1, ...");
+        p.options("states", states, "also write the shape after each step of the edit, before solving, as output-step1, ...");
         words.list_options(p.options);
         options.list_options(p.options);
         tolerances.list_options(p.options);

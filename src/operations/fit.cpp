@@ -31,13 +31,12 @@ struct Fit final : Operation {
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; created if missing")
             .flag();
         p.input_option("assembly", Kind::assembly, assembly,
-                       "assembly file whose matches of annotations with \"stated\": true are used unchanged");
+                       "assembly file: its annotation matches with \"stated\": true are used unchanged");
         p.input_option(
             "class", Kind::shape_class, class_file,
             "class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is completed "
             "from members of the class that resemble the fragments; thresholds without an option are those of the class");
-        p.options("fresh", fresh,
-                  "search the poses of fragments again, instead of using the results of an earlier fit in the output folder")
+        p.options("fresh", fresh, "search poses again, instead of using results of an earlier fit in the output folder")
             .unrecorded();
         p.options("placed", placed, "also write each fragment in the pose that was found, as NAME.placed.ply");
         vocabulary.declare(p, as_template_words);

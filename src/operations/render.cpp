@@ -29,18 +29,16 @@ struct Render final : Operation {
                        "map: one number per vertex or face (.npy, or text with one number per line); given once per mesh; 'none' "
                        "for a mesh without a map")
             .many_or_none();
-        p.input_option("cage", Kind::mesh, cages,
-                       "cage to draw around an object; given once per mesh; 'none' for a mesh without a cage")
+        p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once per mesh; 'none' for no cage")
             .many_or_none();
         p.options("measures", measures, "draw measures of the annotations with their pins and values");
-        p.options("outlines", outlines,
-                  "how borders of regions and lines are drawn: along mesh edges (exact) or smoothed (smooth)",
+        p.options("outlines", outlines, "drawing of lines and borders of regions: along mesh edges (exact) or smoothed",
                   Choices{"exact", "smooth"});
         p.output_option("turntable", Kind::folder, turntable,
                         "folder to write: pictures of the object during a full turn (0001.png, ...)");
         p.options("frames", frames, "number of pictures of a full turn, for --turntable", Range{2, 3600});
         p.options("title", titles, "title under the object; given once per mesh; 'none' for a mesh without a title");
-        p.options("map-on", map_on, "whether the map has values per vertex or per face; auto: determined by the number of values",
+        p.options("map-on", map_on, "whether a map has values per vertex or per face; auto: by the number of values",
                   Choices{"auto", "vertex", "face"});
         p.options("map-label", map_label, "label of the colour bar, including the unit");
         p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");

@@ -75,31 +75,29 @@ struct SliceObject final : Operation {
                         "(drawing), .ply (slices on the mesh)")
             .many();
         p.output_option("profile", Kind::picture, profile, "profile drawing to write (.svg, .pdf, .png)");
-        p.options("annotation", names,
-                  "id or tag of a region to slice; several for the union of the regions; the whole object if left out")
+        p.options("annotation", names, "id or tag of a region to slice; several for their union; the whole object if left out")
             .words();
         p.options.group("Planes");
         p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
-        up.declare(p, "upward direction; by default the upward direction of the annotations, or 0,0,1");
+        up.declare(p, "upward direction; by default that of the annotations, or 0,0,1");
         p.options("count", count, "number of layers of equal height, with a slice in the middle of each (default 50)",
                   Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, counted upwards from the lowest point", Anything{},
                   "the mesh's unit");
         p.options("heights", heights, "heights of the slices above the lowest point, separated by commas", Anything{},
                   "the mesh's unit");
-        p.options("range", range,
-                  "for --count and --spacing: lower and upper end of the sliced range, as fractions of the height", Range{0, 1});
+        p.options("range", range, "for --count and --spacing: lower and upper end of the sliced range, fractions of the height",
+                  Range{0, 1});
         p.options("plane", plane, "one slice only, in the plane given by a point and the normal: x,y,z,nx,ny,nz");
         p.options.group("What is reported and drawn");
         p.options("medial-axis", residues,
-                  "also compute the medial axes of the slices, pruned at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
+                  "also compute medial axes of the slices, pruned at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
         p.options("axes", axes, "also report the straightness of the object relative to the axes that `ostraka axis` computes");
         p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of the annotations");
         p.options("title", title, "title of the drawings; by default the name of the mesh file");
-        p.options("profile-angle", angle,
-                  "direction, around the axis, of the section of the profile; by default a typical section", Range{-360, 360},
-                  "degrees");
+        p.options("profile-angle", angle, "direction of the profile's section about the axis; default: automatic",
+                  Range{-360, 360}, "degrees");
         p.options("drawn", drawn, "maximum number of slices that the drawing shows", Range{1, 10000});
         p.options("colour-by", colour_by,
                   "quantity that colours the .ply output: height, or a descriptor by its name in the .csv output",

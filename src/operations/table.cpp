@@ -98,14 +98,14 @@ constexpr OperationEntry entries[]{
     {"deform", "deform a shape and preserve the constraints on its parts (exit code 3: the result is not acceptable)", make_deform, 2},
     {"fit", "complete an object from fragments with a template of its class, and report whether the fragments are compatible with each other and the template (exit code 3: incompatible or undecided)", make_fit, 3},
     {"pair", "register two fragments along their common fracture surface; exit code 3 if there is no answer", make_pair},
-    {"assemble", "join fragments along their fracture surfaces, leave out unrelated ones, and report the probability of each join; exit code 3 if nothing is joined", make_assemble, 2},
+    {"assemble", "join fragments along their fracture surfaces, leave out unrelated fragments, and report the probability of each join; exit code 3 if no fragments are joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
     {"publish", "write an annotated object as a folder for any web server: IIIF manifest, GLB with features, annotations and an HTML page", make_publish},
     {"report", "make one self-contained HTML page of results: objects in 3D, tables, drawings", make_report, 2},
     {"run", "run the steps of a study file, except steps that are unchanged since the last run (exit code 3: a step failed)", make_run, 1, true},
     {"replay", "repeat a run of a study and compare every output with the first run, bit by bit; exit code 3 if an output differs", make_replay, 1, true},
     {"conformance run", "run the golden cases with another program, and report which results agree (exit code 3: some differ)", make_conformance_run, 1, true},
-    {"conformance self", "run the golden cases with this command; exit code 3 if one differs", make_conformance_self, 1, true},
+    {"conformance self", "run the golden cases with this command; exit code 3 if a result differs", make_conformance_self, 1, true},
     {"operations", "list every operation with the inputs, outputs and options, and the range, default and unit of each option", make_operations},
 };
 // clang-format on

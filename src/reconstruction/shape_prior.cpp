@@ -320,7 +320,7 @@ PriorFit fit_prior(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& 
 void PriorOptions::list_options(OptionList& list) {
     list("class-iterations", iterations, "maximum number of iterations that fit the modes of variation of --class",
          Range{1, 1000});
-    list("class-limit", maximum, "maximum deviation of a mode of variation from the mean of the class, in standard deviations",
+    list("class-limit", maximum, "maximum deviation of a mode of variation from the class mean, in standard deviations",
          Range{0, 100});
     list("class-samples", samples,
          "minimum number of independent samples that the observed surface counts for, relative to the prior of the class",

@@ -396,8 +396,8 @@ void PoseSearchOptions::list_options(OptionList& list) {
     list("search-tolerance", tolerance,
          "maximum distance at which a point of a fragment counts as lying on the template in the search for poses",
          Range{1e-6, 1}, "share of the fragment's size");
-    list("min-confidence", min_confidence,
-         "minimum confidence of a searched pose; with a lower confidence the fragment is not placed", Range{0, 1});
+    list("min-confidence", min_confidence, "minimum confidence of a searched pose; below it, the fragment is not placed",
+         Range{0, 1});
     list("search-points", points, "number of points sampled on the template in the search for poses", Range{50, 4000});
     list("search-references", references, "number of reference points of a fragment in the search for poses", Range{1, 4000});
     list("search-partners", partners, "number of further points of the fragment that vote for each reference point",

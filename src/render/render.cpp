@@ -449,7 +449,7 @@ void RenderOptions::list_options(OptionList& list) {
                    candidate.views = text;
                    static_cast<void>(views_of(candidate));
                }});
-    list("up", up, "upward axis of the object; auto: the upward direction of the annotations, or z",
+    list("up", up, "upward axis of the object; auto: that of the annotations, or z",
          Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
                    static_cast<void>(parse_up(text));
                }});

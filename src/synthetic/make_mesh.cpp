@@ -128,7 +128,7 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
 
 void MakeOptions::list_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices (reached to 1 %)", Range{4, 5e7});
-    list("seed", seed, "random seed of the mesh and of the noise: another seed gives another mesh of the same object",
+    list("seed", seed, "random seed of mesh and noise: another seed gives another mesh of the same object",
          Range{0, 9007199254740992.0});
     list("noise", noise, "maximum displacement of a vertex along its normal, as a share of the mean edge length", Range{0, 0.25});
 }

@@ -97,12 +97,13 @@ void ProportionedOptions::list_options(OptionList& list) {
     list("objects", objects, "number of statuettes", Range{1, 100000});
     list("size-deviation", size_deviation, "standard deviation, over the statuettes, of the logarithm of the overall size",
          Range{0, 0.2});
-    list("ratio-deviation", ratio_deviation,
-         "standard deviation, over the statuettes, of the logarithm of ratios that are not fixed", Range{0, 0.2});
+    list("ratio-deviation", ratio_deviation, "standard deviation over the statuettes of the logarithm of ratios that vary",
+         Range{0, 0.2});
     list("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
          Range{0, 0.2});
-    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-         Range{0, 0.5}, "mm");
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals",
+         Range{0, 0.5},
+          "mm");
     list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
     list("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
 }

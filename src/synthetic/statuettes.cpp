@@ -322,8 +322,9 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("cavity-seen", cavity_seen, "share of the depth of the cavity that is scanned", Range{0.1, 1});
     list("interior", interior, "how the mesh of the cavity ends where the scan ends: closed by a flat wall, or open",
          Choices{"closed", "open"});
-    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-         Range{0, 0.5}, "mm");
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals",
+         Range{0, 0.5},
+          "mm");
     list("holes", holes, "number of patches that are missing in the scan", Range{0, 20});
     list("hole-radius", hole_radius, "radius of the patches that are missing in the scan", Range{1, 20}, "mm");
     list("pose", pose, "pose of the arms", Choices{"forward", "offering", "raised", "down"});
@@ -333,6 +334,7 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("vertices", vertices, "number of vertices of the mesh, before patches are removed", Range{4000, 5e6});
 }
 
+<<<<<<< ours
 void PopulationOptions::list_options(OptionList& list) {
     list("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
     list("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
@@ -348,6 +350,38 @@ void PopulationOptions::list_options(OptionList& list) {
     list("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
     list("size-spread", size_spread,
          "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
+||||||| base
+void PopulationOptions::describe(OptionList& visit) {
+    visit("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
+    visit("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
+    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
+    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
+    visit("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
+          Range{0, 0.5}, "mm");
+    visit("interior", interior,
+          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
+          "bodies each)",
+          Choices{"mixed", "closed", "open"});
+    visit("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
+    visit("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
+    visit("size-spread", size_spread,
+          "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
+=======
+void PopulationOptions::describe(OptionList& visit) {
+    visit("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
+    visit("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
+    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
+    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
+    visit("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
+          "mm");
+    visit("interior", interior,
+          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
+          "bodies each)",
+          Choices{"mixed", "closed", "open"});
+    visit("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
+    visit("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
+    visit("size-spread", size_spread, "standard deviation over the statuettes of the logarithm of each size", Range{0, 0.15});
+>>>>>>> theirs
 }
 
 }  // namespace ostraka

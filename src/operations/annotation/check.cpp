@@ -21,8 +21,8 @@ struct AnnotationCheck final : Operation {
         words.list_options(p.options);
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("graph", Kind::graph, graph,
-                       "relationships that the rules refer to (.graph.json); without it containment and adjacency are computed "
-                       "from the mesh");
+                       "relationships to which the rules refer (.graph.json); if left out, containment and adjacency are "
+                       "computed from the mesh");
         p.report.checks = true;
     }
 

@@ -45,8 +45,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         p.output("output", Kind::annotations, output, "annotations to write");
         p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "annotation to edit: its id, or its tag if no other annotation has the same tag");
-        p.options("merge", merge,
-                  "id or tag of an annotation that is merged into the annotation of --annotation; may be given more than once");
+        p.options("merge", merge, "id or tag of an annotation that is merged into that of --annotation; repeatable");
         p.options("tag", tag, "new tag");
         p.options("note", note, "new note");
         p.options("colour", colour, "new colour: 200,30,60 or #c81e3c");
@@ -57,14 +56,11 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
                   "KIND=VALUE with KIND text, image, link or file: information to which the annotation refers; the checksum of a "
                   "local file is stored; may be given more than once");
         p.options("remove-information", remove_information,
-                  "text, link or file that the annotation no longer refers to; may be given more than once");
-        p.options("set-class", object_class, "class of the object, stored for the whole file; '' removes it");
-        p.options("set-unit", unit,
-                  "unit of the coordinates (any text, such as mm), stored for the whole file; numbers are not converted; '' "
-                  "removes it");
-        p.options("set-up", up, "upward direction, stored for the whole file; '' removes it", direction_words("--set-up"));
-        p.options("duplicate", duplicate,
-                  "add a copy of the annotation; the other changes apply to the copy, and the original is unchanged");
+                  "text, link or file to remove from the annotation; may be given more than once");
+        p.options("set-class", object_class, "class of the object of the whole file; '' removes it");
+        p.options("set-unit", unit, "unit of the coordinates (any text, such as mm); numbers are not converted; '' removes it");
+        p.options("set-up", up, "upward direction of the whole file; '' removes it", direction_words("--set-up"));
+        p.options("duplicate", duplicate, "add a copy of the annotation; the other changes apply only to the copy");
         p.options("split", split, "make each patch, poly-line or point a separate annotation");
         p.options("remove", remove, "remove the annotation");
         p.report.values(integer("annotations"));

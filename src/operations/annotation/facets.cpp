@@ -13,14 +13,14 @@ struct AnnotationFacets final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
-                "annotations (.ant.json) to update or create, with regions \"outer\", \"inner\" and \"fracture\"; for a mesh "
-                "NAME.ply, 'fit' and 'pair' read them from NAME.ant.json");
+                "annotations (.ant.json) to update or create, with regions \"outer\", \"inner\" and \"fracture\"; 'fit' and "
+                "'pair' read the regions of NAME.ply from NAME.ant.json");
         p.output_option("output", Kind::annotations, output,
                         "write the annotations to this file, and leave the input file unchanged")
             .updates(annotations);
         p.output_option("probability", Kind::values, probability,
-                        "file to write (.npy, or text; see 'render --map'): for each face, its probability of belonging to a "
-                        "fracture, without its neighbours");
+                        "file to write (.npy, or text): for each face, its probability of being fracture surface, from the "
+                        "features of this face alone");
         p.options("unit", unit, "unit of the mesh's coordinates for a new file, e.g. mm");
         options.list_options(p.options);
         p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));

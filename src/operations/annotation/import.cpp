@@ -15,7 +15,7 @@ struct AnnotationImport final : Operation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
         p.input_option("onto", Kind::annotations, onto,
-                       "annotations of the mesh, to which the annotations or attributes in the file are added");
+                       "annotations to which the annotations or attributes in the file are added");
         options.list_options(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),

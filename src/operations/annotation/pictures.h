@@ -15,9 +15,9 @@ struct AnnotationPictures {
 
     void declare(Parameters& p) {
         p.output_option("ply", Kind::mesh, coloured,
-                        "write the mesh in the colours of its annotations (PLY or another format with colours)");
+                        "mesh file to write, coloured by its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,
-                        "label file to write: for each face, the id of the smallest region that contains the face, or -1");
+                        "labels to write: for each face, the id of the smallest region on it, or -1");
     }
     void write(AnnotatedMeshView object, Report& report) const {
         if (coloured) coloured.write(object.mesh, colour_by_annotation(object));

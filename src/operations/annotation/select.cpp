@@ -17,7 +17,7 @@ struct AnnotationSelect final : Operation {
                         "write the annotations to this file, and leave the input file unchanged")
             .updates(annotations);
         p.input_option("record", Kind::recipe, record,
-                       "recipe to which this selection is appended as a step; created if the file does not exist");
+                       "recipe to which this selection is appended as a step; created if missing");
         p.output_option("recipe", Kind::recipe, recipe,
                         "write the recipe to this file, and leave the recipe of --record unchanged")
             .updates(record);

@@ -41,17 +41,15 @@ struct AnnotationTransfer final : Operation {
         p.input("target", Kind::mesh, target, "mesh of the same object at another resolution");
         p.output("output", Kind::annotations, output, "annotations of the target mesh to write (.ant.json)");
         p.output_option("back", Kind::annotations, back,
-                        "file to write: the result transferred back to the source mesh; the report scores the difference");
+                        "file to write: the result transferred back to the source, which is also scored");
         p.output_option("ply", Kind::mesh, coloured,
-                        "write the target in the colours of its annotations (PLY or another format with colours)");
+                        "target mesh to write, coloured by its annotations (PLY or another format with colours)");
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
         p.output_option("map", Kind::index_map, map,
                         "with --refine: JSON file to write: for each new face, the index of the old face");
         options.list_options(p.options);
-        p.options(
-            "register", registers,
-            "first register the source mesh onto the target mesh: the meshes may differ in unit and pose (see 'mesh register')",
-            Anything{});
+        p.options("register", registers, "first register the source onto the target, which may differ in unit and pose",
+                  Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));
         for (const char* direction : {"annotations", "back"})

@@ -20,9 +20,9 @@ struct CheckOfCage final : Operation {
             "graph", Kind::graph, graph,
             "relationships (.graph.json): report which constraints the cage can satisfy and where control points are missing");
         p.input_option("weights", Kind::coordinates, weights,
-                       "weights written by 'cage weights' (.npy), for --graph; by default mean-value coordinates");
+                       "weights of 'cage weights' (.npy), for --graph; default: mean-value");
         p.input_option("edit", Kind::edit, edit,
-                       "edit of the object (.edit.json), for --graph; by default a stretch by a tenth along x, y and z");
+                       "edit (.edit.json), for --graph; by default a stretch by a tenth along x, y and z");
         p.report.checks = true;
         declare_reach(p.report);
     }

@@ -15,7 +15,7 @@ namespace {
 struct CageEdit final : Operation {
     void declare(Parameters& p) override {
         p.input("cage", Kind::cage, cage, "cage file");
-        p.input("edit", Kind::edit, edit, "edit of the cage vertices (.edit.json); its selections are cageVertices, box or all");
+        p.input("edit", Kind::edit, edit, "edit of the cage vertices (.edit.json), which selects by cageVertices, box or all");
         p.output("output", Kind::cage, output, "cage to write");
         p.report.values(integer("steps"), integer("moved"), boolean("intersects"));
     }

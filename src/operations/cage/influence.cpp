@@ -25,11 +25,8 @@ struct CageInfluence final : Operation {
                  "the mesh; by default coloured by how many cage vertices carry 95 % of the weight of each mesh vertex");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.options("cage-vertex", cage_vertex, "index of a cage vertex: colour the mesh by the weights of this cage vertex");
-        p.options("annotation", annotation,
-                  "id or tag of an annotation: colour the cage by the influence of each cage vertex on the vertices of this "
-                  "annotation");
-        p.options("by", by,
-                  "influence of a cage vertex on --annotation: maximum or sum of its weights over the vertices of the annotation",
+        p.options("annotation", annotation, "id or tag of an annotation: colour the cage by the influence on this annotation");
+        p.options("by", by, "influence of a cage vertex: maximum or sum of its weights over the annotation",
                   Choices{"max", "sum"});
         p.options("threshold", threshold, "list the cage vertices whose influence exceeds this value");
         p.report.values(text("what", "what"), text("on", "on the"), number("min", "min"), number("max", "max"), any("above"),

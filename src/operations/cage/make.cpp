@@ -32,10 +32,8 @@ struct CageMake final : Operation {
                        "constraint cannot be satisfied)");
         vocabulary.declare(p, "by which tags of annotations are matched with --parts");
         options.list_options(p.options);
-        p.options(
-            "levels", levels,
-            "numbers of vertices, separated by commas: write nested cages, each around the next finer one, as output-NUMBER",
-            Range{4, 1000000});
+        p.options("levels", levels, "numbers of vertices, separated by commas, of nested cages, written as output-NUMBER",
+                  Range{4, 1000000});
         p.options("together", one_file,
                   "write the cages of --levels to one file, in which each of the nested cages can be edited");
         p.options("parts", parts, "ids or tags of regions that get cages of their own, nested in the cage of the whole object")
@@ -47,7 +45,7 @@ struct CageMake final : Operation {
                             if (text != "auto") static_cast<void>(plane_of(text));
                         }});
         p.options("detail", details,
-                  "ANNOTATION=FACTOR: factor on the vertex density of the cage near this annotation; may be given several times");
+                  "ANNOTATION=FACTOR: factor on the vertex density of the cage near an annotation; repeatable");
         p.report.table("cages", text("file", "cage"), integer("level"), text("part"), integer("vertices", "vertices"),
                        integer("faces", "faces"), boolean("reached"), integer("genus", "genus"),
                        number("clearance", "clearance", "length"), number("alpha", "alpha"));

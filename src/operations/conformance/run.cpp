@@ -12,8 +12,7 @@ namespace {
 struct ConformanceRun final : Conformance {
     void declare(Parameters& p) override {
         p.options("command", command, "program to test and its first arguments, after --").positional().words();
-        p.options("lines", lines,
-                  "start the program once, and send each case as one line of JSON to its standard input (doc/conformance.md)");
+        p.options("lines", lines, "start the program once, and send it each case as a line of JSON (doc/conformance.md)");
         describe_kit(p);
     }
 

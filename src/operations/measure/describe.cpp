@@ -14,12 +14,10 @@ namespace {
 struct MeasureDescribe final : Operation {
     void declare(Parameters& p) override {
         object.declare(p);
-        p.input_option("map", Kind::values, maps,
-                       "NAME=FILE: a map with one value per vertex (.npy, or text with one number per line)")
+        p.input_option("map", Kind::values, maps, "NAME=FILE: a map: one value per vertex (.npy, or text, one number per line)")
             .many()
             .named();
-        p.options("annotation", chosen,
-                  "id or tag of an annotation to describe; may be given more than once; all annotations if left out");
+        p.options("annotation", chosen, "id or tag of an annotation to describe; repeatable; all annotations if left out");
         options.list_options(p.options);
         p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
         p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});

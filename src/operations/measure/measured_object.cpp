@@ -7,7 +7,7 @@ namespace ostraka {
 Slot& MeasuredObject::declare(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
     Slot& annotations_slot = p.input_option("annotations", Kind::annotations, annotations,
-                                            "annotations of the mesh (.ant.json); the whole object is measured if left out");
+                                            "annotations of the mesh (.ant.json); if left out, the whole object is measured");
     p.output_option("output", Kind::annotations, output,
                     "annotations to write (.ant.json), with the computed values as attributes");
     p.options("unit", unit, "unit of the coordinates (any text, such as mm), if the annotations do not state a unit");

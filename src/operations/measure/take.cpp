@@ -24,12 +24,11 @@ struct MeasureTake final : Operation {
             .required();
         p.options("points", points, "pins (the points between which the tool measures) as vertex indices, like 12,88",
                   Range{0, largest_index});
-        p.options("at", pin_positions, "one pin, as coordinates x,y,z: the vertex nearest to them; repeated for each pin");
+        p.options("at", pin_positions, "pin as a point x,y,z, of which the nearest vertex is used; given once per pin");
         p.options("direction", direction,
                   "direction of a bounding measure; without pins the whole annotation is measured along this direction",
                   direction_words("--direction"));
-        p.options("geodesic", geodesic,
-                  "how a tape runs: along edges (edges) or as the exact shortest curve over the faces (exact)",
+        p.options("geodesic", geodesic, "course of a tape: along edges, or the exact shortest curve over the faces (exact)",
                   Choices{"edges", "exact"});
         p.options("repeat", repeats,
                   "pins of a repeated picking, as vertex indices like 12,88; given once per picking, and the value is the mean "

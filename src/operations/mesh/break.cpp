@@ -21,7 +21,7 @@ struct MeshBreak final : Operation {
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the whole object (.ant.json)");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the fragment to write");
         p.output_option("pose-out", Kind::pose, pose_out,
-                        "JSON file to write: 4 x 4 matrix that transforms the fragment back to its place on the whole object");
+                        "JSON file to write: 4 x 4 matrix that moves the fragment back to its place");
         options.list_options(p.options);
         p.options("at", at, "centre of the fragment: coordinates x,y,z, or the tag of an annotation").required();
         p.report.values(integer("vertices"), integer("faces"), any("pose"));

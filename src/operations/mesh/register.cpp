@@ -19,7 +19,7 @@ struct MeshRegister final : Operation {
         p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: the source registered onto the target")
             .optional();
         p.output_option("matrix", Kind::pose, matrix,
-                        "JSON file to write: the transformation of the source as the rows of a 4 x 4 matrix");
+                        "JSON file to write: transformation of the source, as the rows of a 4 x 4 matrix");
         options.list_options(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),

@@ -16,9 +16,9 @@ struct MeshRepair final : Operation {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
         p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
         p.output_option("vertex-map", Kind::index_map, vertex_map,
-                        "JSON file to write: for each old vertex, the index of the new vertex, or -1 if it was dropped");
+                        "JSON file to write: new index of each old vertex, -1 if it was dropped");
         p.output_option("face-map", Kind::index_map, face_map,
-                        "JSON file to write: for each old triangle, the index of the new triangle, or -1 if it was dropped");
+                        "JSON file to write: new index of each old triangle, -1 if it was dropped");
         p.output_option("report", Kind::report, report_file, "JSON file to write: the same report as --json prints");
         options.list_options(p.options);
         p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));

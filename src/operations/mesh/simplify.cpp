@@ -14,7 +14,7 @@ struct MeshSimplify final : MeshResizeBound {
         p.output_option("vertex-map", Kind::index_map, vertex_map,
                         "JSON file to write: for each old vertex, the index of the new vertex");
         p.output_option("face-map", Kind::index_map, face_map,
-                        "JSON file to write: for each old face, the index of the new face, or -1 if it vanished");
+                        "JSON file to write: new index of each old face, -1 if it vanished");
         options.list_options(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");

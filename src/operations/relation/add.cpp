@@ -23,8 +23,7 @@ struct RelationAdd final : RelationOperation {
         Words known{{}, "a type of your own with --own-type"};
         for (const RelationType& one : relation_types()) known.names.push_back(one.name);
         p.options("type", type, "type of the relationship", std::move(known));
-        p.options("annotation", members,
-                  "id or tag of a member of the relationship; given once per member; the first member is the subject")
+        p.options("annotation", members, "id or tag of a member of the relationship, once per member; the first is the subject")
             .words();
         p.options("relation", several,
                   "TYPE: A, B, ...: type and members of a relationship, instead of --type and --annotation; may be given more "

@@ -25,8 +25,8 @@ struct RelationExtract final : RelationOperation {
                   std::move(told))
             .words();
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: an annotation inside an annotation "
-                       "of its whole is related to it as 'part of'");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: adds 'part of' between a part and "
+                       "the annotated whole around it");
         tolerances.list_options(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);

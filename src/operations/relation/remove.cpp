@@ -12,9 +12,7 @@ struct RelationRemove final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         describe_output(p);
-        p.options("id", ids, "id of a relationship to remove, as shown by 'relation list'; may be given more than once")
-            .words()
-            .required();
+        p.options("id", ids, "id of a relationship to remove, as shown by 'relation list'; repeatable").words().required();
         describe_relationships(p.report);
     }
 

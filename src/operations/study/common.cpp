@@ -8,14 +8,9 @@ namespace ostraka {
 
 void StudyFiles::declare(Parameters& p, bool labels, const std::string& collections) {
     p.input("collection", Kind::collection, collection, collections);
-    p.output(
-         "output", Kind::folder, output,
-         "folder for tables, plots and the report; results of finished objects are stored in the folder and not computed again")
-        .flag();
+    p.output("output", Kind::folder, output, "folder for tables, plots and report; finished results in it are reused").flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "pdf", "png"}).unrecorded();
-    p.options("shard", shard_,
-              "K/N: process the K-th of N shards of the objects and store the results in the folder; without this option the "
-              "results of all shards are gathered")
+    p.options("shard", shard_, "K/N: process and store the K-th of N shards of the objects; if left out, results are gathered")
         .unrecorded();
     p.report.table("failed", text("name"), text("problem"));
     p.report.values(integer("part.objects"), integer("part.failed"));

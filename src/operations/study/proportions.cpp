@@ -118,7 +118,7 @@ struct StudyProportions final : StudyOperation {
         p.input_option("template-graph", Kind::graph, graph_in,
                        "relationships of the template (.graph.json), to which the proposed constraints are added");
         p.output_option("graph", Kind::graph, graph,
-                        "graph to write (.graph.json), with fixed proportions as constraints on the template");
+                        "graph to write (.graph.json): fixed proportions as constraints on the template");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the template to write (.ant.json), with the measures to which the constraints refer");
         options.list_options(p.options);

@@ -19,7 +19,7 @@ struct TemplateClassify final : Operation {
             .many();
         vocabulary.declare(p, as_template_words);
         p.output_option("report", Kind::report, answer,
-                        "file to write: the complete answer as JSON (doc/schema/classification.schema.json)");
+                        "JSON file to write: the complete answer (doc/schema/classification.schema.json)");
         options.list_options(p.options);
         p.report.schema = "classification";
         p.report.people_table("", {"object", "class", "verdict", "score", "against"});
