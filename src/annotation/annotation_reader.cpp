@@ -383,21 +383,9 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     return set;
 }
 
-<<<<<<< ours
 void ReadAnnotationsOptions::list_options(OptionList& list) {
-    list("force-mesh", force_mesh,
-         "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+    list("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
          Anything{});
-||||||| base
-void ReadAnnotationsOptions::describe(OptionList& visit) {
-    visit("force-mesh", force_mesh,
-          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
-          Anything{});
-=======
-void ReadAnnotationsOptions::describe(OptionList& visit) {
-    visit("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
-          Anything{});
->>>>>>> theirs
 }
 
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options) {

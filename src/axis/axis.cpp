@@ -178,7 +178,8 @@ void AxisOptions::list_options(OptionList& list) {
     list("slices", slices, "slices: number of planes that slice the part", Range{4, 10000});
     list("trials", trials, "rotation: number of random sets of normals from which an axis is computed (RANSAC)",
          Range{0, 1000000});
-    list("smoothing", smoothing, "rotation: number of rounds in which each normal is averaged with its neighbours", Range{0, 100});
+    list("smoothing", smoothing, "rotation: number of rounds in which each normal is averaged with its neighbours",
+         Range{0, 100});
     list("seed", seed, "rotation: random seed");
 }
 

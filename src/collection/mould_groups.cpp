@@ -180,7 +180,8 @@ void GroupOptions::list_options(OptionList& list) {
                    double number = 0;
                    static_cast<void>(epsilon_rule(word, number));
                }});
-    list("expected-size", expected_size, "expected number of heads per mould, for knn; 0: square root of the number of heads", Range{0, 1e9});
+    list("expected-size", expected_size, "expected number of heads per mould, for knn; 0: square root of the number of heads",
+         Range{0, 1e9});
     list("dimensions", dimensions, "number of eigenvectors of the spectral embedding", Range{1, 20});
 }
 

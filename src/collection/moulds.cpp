@@ -174,8 +174,7 @@ void CompareOptions::list_options(OptionList& list) {
     list("loose-ratio", loose_ratio, "as --ratio, for matches among which geometrically consistent matches are searched",
          Range{0, 1});
     consistent.list_options(list);  // shrinkage holds for the registration as well
-    list("trim", align.trim, "share of the point pairs, closest first, that a registration uses (trimming)",
-         Range{0.1, 1});
+    list("trim", align.trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
     list("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
 }
 

@@ -100,25 +100,9 @@ CutPart largest_segment(const Mesh& mesh) {
 
 }  // namespace
 
-<<<<<<< ours
 void PartOptions::list_options(OptionList& list) {
-    list("annotation", annotations,
-         "ids or tags of the regions that are analysed (with a vocabulary also narrower concepts); whole objects if left out")
-        .words();
-    list("without", without,
-         "ids or tags of regions that are left out of the analysis, such as beard; not every object needs to have them")
-||||||| base
-void PartOptions::describe(OptionList& visit) {
-    visit("annotation", annotations,
-          "ids or tags of the regions that are analysed (with a vocabulary also narrower concepts); whole objects if left out")
-        .words();
-    visit("without", without,
-          "ids or tags of regions that are left out of the analysis, such as beard; not every object needs to have them")
-=======
-void PartOptions::describe(OptionList& visit) {
-    visit("annotation", annotations, "ids or tags (with a vocabulary also narrower concepts) of the regions to analyse").words();
-    visit("without", without, "ids or tags of regions left out of the analysis, such as beard; some objects may lack them")
->>>>>>> theirs
+    list("annotation", annotations, "ids or tags (with a vocabulary also narrower concepts) of the regions to analyse").words();
+    list("without", without, "ids or tags of regions left out of the analysis, such as beard; some objects may lack them")
         .words();
     list("proposed", proposed,
          "analyse a detected part instead of annotated regions: the tubular part (tube) or the part above the neck (top), from "

@@ -119,7 +119,7 @@ Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph e
             relationship.constraint = parameters(part, reference, 1 / ratio.high, 1 / ratio.low, options.hard);
             relationship.origin = "stated";
             if (const RelationType* type = find_relation_type(relationship.type)) relationship.directed = type->directed;
-            if (find_twin(result.graph, relationship) != nullptr) throw RejectedProposal{"the graph already contains it"};
+            if (find_equivalent(result.graph, relationship) != nullptr) throw RejectedProposal{"the graph already contains it"};
             check_relationship(relationship, result.set, "proposal");
             result.graph.relationships.push_back(std::move(relationship));
             ++result.proposed;

@@ -289,8 +289,7 @@ void TechniqueStudyOptions::list_options(OptionList& list) {
     list("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
     list("folds", folds, "number of folds of the cross-validation of classifiers", Range{2, 1000});
     list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 1000});
-    list("resamples", resamples, "number of resampled collections from which each object is classified",
-         Range{10, 100000});
+    list("resamples", resamples, "number of resampled collections from which each object is classified", Range{10, 100000});
     list("simulations", simulations, "number of simulated one-group collections with which two groups are compared",
          Range{19, 100000});
     list("unlike-from", min_outlier_distance,

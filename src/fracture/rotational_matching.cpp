@@ -289,41 +289,15 @@ RotationMatch match_rotations(const Mesh& vessel, const Vector3d& point, const V
     return RotationMatcher(vessel, point, direction.normalized(), sherds, options).run();
 }
 
-<<<<<<< ours
 void RotationMatchOptions::list_options(OptionList& list) {
-    list("turns", rotations,
-         "whether rotations about a vessel's axis that the template leaves undetermined are found from the fracture surfaces",
+    list("turns", rotations, "whether undetermined rotations about a vessel's axis are found from fracture surfaces",
          Choices{"auto", "never"});
     list("turn-frames", frames, "number of local frames along the rim of each fracture surface", Range{4, 5000});
     list("turn-samples", samples, "number of sample points on each fracture surface", Range{50, 1e6});
     list("turn-candidates", candidates, "number of rotations of two sherds, best first, that are refined", Range{1, 1000});
     list("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
-    list("turn-hold", hold, "weight of the position of a sherd on the template relative to the fit of the fracture surfaces",
-         Range{0, 1000});
+    list("turn-hold", hold, "weight of the template relative to the fracture surfaces for a sherd's position", Range{0, 1000});
     list("min-joint", min_joint, "minimum confidence of a joint; with a lower confidence the joint is undecided", Range{0, 1});
-||||||| base
-void RotationMatchOptions::describe(OptionList& visit) {
-    visit("turns", rotations,
-          "whether rotations about a vessel's axis that the template leaves undetermined are found from the fracture surfaces",
-          Choices{"auto", "never"});
-    visit("turn-frames", frames, "number of local frames along the rim of each fracture surface", Range{4, 5000});
-    visit("turn-samples", samples, "number of sample points on each fracture surface", Range{50, 1e6});
-    visit("turn-candidates", candidates, "number of rotations of two sherds, best first, that are refined", Range{1, 1000});
-    visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
-    visit("turn-hold", hold, "weight of the position of a sherd on the template relative to the fit of the fracture surfaces",
-          Range{0, 1000});
-    visit("min-joint", min_joint, "minimum confidence of a joint; with a lower confidence the joint is undecided", Range{0, 1});
-=======
-void RotationMatchOptions::describe(OptionList& visit) {
-    visit("turns", rotations, "whether undetermined rotations about a vessel's axis are found from fracture surfaces",
-          Choices{"auto", "never"});
-    visit("turn-frames", frames, "number of local frames along the rim of each fracture surface", Range{4, 5000});
-    visit("turn-samples", samples, "number of sample points on each fracture surface", Range{50, 1e6});
-    visit("turn-candidates", candidates, "number of rotations of two sherds, best first, that are refined", Range{1, 1000});
-    visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
-    visit("turn-hold", hold, "weight of the template relative to the fracture surfaces for a sherd's position", Range{0, 1000});
-    visit("min-joint", min_joint, "minimum confidence of a joint; with a lower confidence the joint is undecided", Range{0, 1});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

@@ -111,35 +111,13 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
     return std::move(comparison.differences);
 }
 
-<<<<<<< ours
 void MergeOptions::list_options(OptionList& list) {
-    list("prefer", prefer,
-         "which set's value to keep where both sets changed the same field differently; none: report a conflict",
+    list("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict",
          Choices{"none", "ours", "theirs"});
-    list("merge-faces", merge_faces,
-         "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
-    list("renumber", renumber,
-         "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
+    list("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",
          Anything{});
-||||||| base
-void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer,
-          "which set's value to keep where both sets changed the same field differently; none: report a conflict",
-          Choices{"none", "ours", "theirs"});
-    visit("merge-faces", merge_faces,
-          "merge the changes face by face where both sets changed the same region, instead of reporting a conflict", Anything{});
-    visit("renumber", renumber,
-          "give the second annotation a new id where both sets added one with the same id, instead of reporting a conflict",
-          Anything{});
-=======
-void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict",
-          Choices{"none", "ours", "theirs"});
-    visit("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",
-          Anything{});
-    visit("renumber", renumber, "give a new id to the second of two annotations added with the same id, instead of a conflict",
-          Anything{});
->>>>>>> theirs
+    list("renumber", renumber, "give a new id to the second of two annotations added with the same id, instead of a conflict",
+         Anything{});
 }
 
 }  // namespace ostraka

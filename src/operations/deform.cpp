@@ -150,8 +150,9 @@ struct Deform final : Operation {
     [[nodiscard]] Edit all_steps(const Subject& subject, const Edit& given) const {
         Edit all;
         if (deformed_cage) all.steps.push_back(step_to_cage(subject));
-        const Edit in_words = edit_of(words, *subject.set);
-        for (const Edit* part : {&given, &in_words}) all.steps.insert(all.steps.end(), part->steps.begin(), part->steps.end());
+        const Edit message_about = edit_of(words, *subject.set);
+        for (const Edit* part : {&given, &message_about})
+            all.steps.insert(all.steps.end(), part->steps.begin(), part->steps.end());
         return all;
     }
 

@@ -77,29 +77,29 @@ void Page::add(const PageEntry& entry) {
                       allocator);
 }
 
-std::string Page::data(const std::string& made_how) const {
+std::string Page::data(const std::string& provenance_text) const {
     Json document;
     auto& allocator = document.GetAllocator();
     document.CopyFrom(document_, allocator);
     const auto copy = [&](const JsonValue& value) { return JsonValue(value, allocator); };
     add_nonempty_members(document, allocator, "collection", copy(entries_));
-    add_members(document, allocator, "notes", copy(notes_), "provenance", made_how, "objects", copy(objects_), "tables",
+    add_members(document, allocator, "notes", copy(notes_), "provenance", provenance_text, "objects", copy(objects_), "tables",
                 copy(tables_), "drawings", copy(drawings_), "blobs", copy(places_));
     return with_markup_escaped(to_compact_text(document));
 }
 
-std::string Page::html(const std::string& made_how) const {
-    return viewer_with(data(made_how), base64(deflated(bytes_)), !entries_.Empty());
+std::string Page::html(const std::string& provenance_text) const {
+    return viewer_with(data(provenance_text), base64(deflated(bytes_)), !entries_.Empty());
 }
 
-std::string Page::script(const std::string& file, const std::string& made_how) const {
+std::string Page::script(const std::string& file, const std::string& provenance_text) const {
     Json name;
     static_cast<JsonValue&>(name) = json_string(file, name.GetAllocator());
-    return "ostrakaObject(" + with_markup_escaped(to_compact_text(name)) + ", " + data(made_how) + ", \"" +
+    return "ostrakaObject(" + with_markup_escaped(to_compact_text(name)) + ", " + data(provenance_text) + ", \"" +
            base64(deflated(bytes_)) + "\");\n";
 }
 
-Page::Content Page::content(const std::string& made_how) const { return {data(made_how), bytes_}; }
+Page::Content Page::content(const std::string& provenance_text) const { return {data(provenance_text), bytes_}; }
 
 PageTable annotation_table(AnnotatedMeshView annotated, int object, const std::string& name) {
     PageTable table;

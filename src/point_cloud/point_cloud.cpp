@@ -57,33 +57,13 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
     return normals;
 }
 
-<<<<<<< ours
 void CloudOptions::list_options(OptionList& list) {
-    list("cloud-neighbours", neighbours, "for point clouds: number of neighbours from which the normal of a point is estimated",
+    list("cloud-neighbours", neighbours, "for point clouds: number of neighbours from which a normal is estimated",
          Range{6, 1000});
-    list("cloud-edge", longest,
-         "for point clouds: maximum edge length of the reconstructed surface, as a multiple of the point spacing; 0: no limit",
+    list("cloud-edge", longest, "for point clouds: maximum edge length, in multiples of the point spacing; 0: no limit",
          Range{0, 1e6});
-    list("cloud-holes", close_holes, "for point clouds: maximum width of a hole of the reconstructed surface that is filled",
-         Range{0, 1}, "share of the diagonal");
-||||||| base
-void CloudOptions::describe(OptionList& visit) {
-    visit("cloud-neighbours", neighbours, "for point clouds: number of neighbours from which the normal of a point is estimated",
-          Range{6, 1000});
-    visit("cloud-edge", longest,
-          "for point clouds: maximum edge length of the reconstructed surface, as a multiple of the point spacing; 0: no limit",
-          Range{0, 1e6});
-    visit("cloud-holes", close_holes, "for point clouds: maximum width of a hole of the reconstructed surface that is filled",
-          Range{0, 1}, "share of the diagonal");
-=======
-void CloudOptions::describe(OptionList& visit) {
-    visit("cloud-neighbours", neighbours, "for point clouds: number of neighbours from which a normal is estimated",
-          Range{6, 1000});
-    visit("cloud-edge", longest, "for point clouds: maximum edge length, in multiples of the point spacing; 0: no limit",
-          Range{0, 1e6});
-    visit("cloud-holes", close_holes, "for point clouds: maximum width of a hole that is filled", Range{0, 1},
-          "share of the diagonal");
->>>>>>> theirs
+    list("cloud-holes", close_holes, "for point clouds: maximum width of a hole that is filled", Range{0, 1},
+         "share of the diagonal");
 }
 
 }  // namespace ostraka

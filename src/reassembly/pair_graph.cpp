@@ -13,7 +13,7 @@ namespace ostraka {
 PairGraph::PairGraph(const PreparedFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result)
     : fragments_(fragments) {
     const FragmentPairs pairs = promising_pairs(fragments.prepared(), effort);
-    const std::size_t participants = fragments.taking_part();
+    const std::size_t participants = fragments.matched_count();
     result.pairs_tried = pairs.size();
     result.pairs_left = participants > 0 ? participants * (participants - 1) / 2 - pairs.size() : 0;
     pairs_ = register_pairs("register pairs of fractures", pairs, effort.first, memory);

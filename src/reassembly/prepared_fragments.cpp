@@ -25,7 +25,7 @@ PreparedFragments::PreparedFragments(const std::vector<Fragment>& fragments, con
     });
 }
 
-std::size_t PreparedFragments::taking_part() const {
+std::size_t PreparedFragments::matched_count() const {
     return static_cast<std::size_t>(
         std::count_if(prepared_.begin(), prepared_.end(), [](const auto& fragment) { return fragment != nullptr; }));
 }

@@ -19,7 +19,7 @@ public:
     [[nodiscard]] std::size_t count() const { return prepared_.size(); }
     /// Whether fragment `k` is matched with others.
     [[nodiscard]] bool has(std::size_t k) const { return prepared_[k] != nullptr; }
-    [[nodiscard]] std::size_t taking_part() const;  ///< number of fragments that are matched with others
+    [[nodiscard]] std::size_t matched_count() const;  ///< number of fragments that are matched with others
     [[nodiscard]] const PreparedFracture& operator[](std::size_t k) const { return *prepared_[k]; }
     /// One prepared fragment per fragment; null for a fragment that is not matched.
     [[nodiscard]] const std::vector<std::unique_ptr<PreparedFracture>>& prepared() const { return prepared_; }

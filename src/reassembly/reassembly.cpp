@@ -128,8 +128,8 @@ private:
             other = pair.first == k ? pair.second : pair.first;
         }
         if (best == nullptr)
-            return fragments_.taking_part() > 1 ? "its fracture surface comes into contact with no other"
-                                                : "there is no other fragment with a fracture surface to match";
+            return fragments_.matched_count() > 1 ? "its fracture surface comes into contact with no other"
+                                                  : "there is no other fragment with a fracture surface to match";
         const auto percent = [](double p) { return std::to_string(static_cast<int>(std::floor(100 * p))) + " %"; };
         const double corrected = graph_.probable(maximum);
         std::string text =
@@ -165,29 +165,11 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
     return Assembler(fragments, options, memory).run();
 }
 
-<<<<<<< ours
 void ReassemblyOptions::list_options(OptionList& list) {
     list("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
-    list("partners", partners,
-         "number of other fragments with which each fragment is fully registered, selected by a coarse comparison",
-         Range{1, 100000});
+    list("partners", partners, "number of fragments with which each fragment is fully registered, best first", Range{1, 100000});
     list("min-faces", min_faces, "minimum number of faces of a fragment; smaller fragments are not joined", Range{4, 1e9});
     pairs.list_options(list);
-||||||| base
-void ReassemblyOptions::describe(OptionList& visit) {
-    visit("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
-    visit("partners", partners,
-          "number of other fragments with which each fragment is fully registered, selected by a coarse comparison",
-          Range{1, 100000});
-    visit("min-faces", min_faces, "minimum number of faces of a fragment; smaller fragments are not joined", Range{4, 1e9});
-    pairs.describe(visit);
-=======
-void ReassemblyOptions::describe(OptionList& visit) {
-    visit("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
-    visit("partners", partners, "number of fragments with which each fragment is fully registered, best first", Range{1, 100000});
-    visit("min-faces", min_faces, "minimum number of faces of a fragment; smaller fragments are not joined", Range{4, 1e9});
-    pairs.describe(visit);
->>>>>>> theirs
 }
 
 }  // namespace ostraka

@@ -180,44 +180,16 @@ CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& 
     return Completer(fitted, fragments, options).run();
 }
 
-<<<<<<< ours
 void CompleteOptions::list_options(OptionList& list) {
-    list("seam-angle", angle,
-         "maximum angle between the normals of a fragment and of the fitted template where the fragment's surface is used",
+    list("seam-angle", angle, "maximum angle between the normals of a used fragment face and of the fitted template",
          Range{0, 90}, "degrees");
     list("seam-width", blend, "width of the zone in which the template is blended into the edge of a fragment", Range{0, 1},
          "share of the diagonal");
-    list("confidence-length", halving,
-         "distance from the observed surface over which the confidence of the completed surface halves", Range{1e-6, 1e6},
+    list("confidence-length", halving, "distance over which the confidence of completed surface halves", Range{1e-6, 1e6},
          "share of the diagonal");
     list("join", join, "insert the triangles of the fragments into the completed mesh", Anything{});
-    list("min-piece", min_piece,
-         "minimum area of a connected piece of a fragment that is inserted, as a share of the fragment's area", Range{0, 1});
-||||||| base
-void CompleteOptions::describe(OptionList& visit) {
-    visit("seam-angle", angle,
-          "maximum angle between the normals of a fragment and of the fitted template where the fragment's surface is used",
-          Range{0, 90}, "degrees");
-    visit("seam-width", blend, "width of the zone in which the template is blended into the edge of a fragment", Range{0, 1},
-          "share of the diagonal");
-    visit("confidence-length", halving,
-          "distance from the observed surface over which the confidence of the completed surface halves", Range{1e-6, 1e6},
-          "share of the diagonal");
-    visit("join", join, "insert the triangles of the fragments into the completed mesh", Anything{});
-    visit("min-piece", min_piece,
-          "minimum area of a connected piece of a fragment that is inserted, as a share of the fragment's area", Range{0, 1});
-=======
-void CompleteOptions::describe(OptionList& visit) {
-    visit("seam-angle", angle, "maximum angle between the normals of a used fragment face and of the fitted template",
-          Range{0, 90}, "degrees");
-    visit("seam-width", blend, "width of the zone in which the template is blended into the edge of a fragment", Range{0, 1},
-          "share of the diagonal");
-    visit("confidence-length", halving, "distance over which the confidence of completed surface halves", Range{1e-6, 1e6},
-          "share of the diagonal");
-    visit("join", join, "insert the triangles of the fragments into the completed mesh", Anything{});
-    visit("min-piece", min_piece, "minimum area of an inserted piece of a fragment, as a share of the fragment's area",
-          Range{0, 1});
->>>>>>> theirs
+    list("min-piece", min_piece, "minimum area of an inserted piece of a fragment, as a share of the fragment's area",
+         Range{0, 1});
 }
 
 }  // namespace ostraka

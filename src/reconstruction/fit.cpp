@@ -193,21 +193,18 @@ NonRigidFit fit_template(AnnotatedMeshView scaled, const std::vector<PlacedFragm
     return TemplateFitter(scaled).fit(1, fragments, options);
 }
 
-<<<<<<< ours
 void NonRigidOptions::list_options(OptionList& list) {
     list("space", space,
          "unknowns of the fit: vertices of the template (mesh), vertices of a cage around the template (cage: fewer degrees of "
          "freedom, no folds by noise), or first the cage and in the last level the template (both)",
          Choices{"mesh", "cage", "both"});
-    list("smoothing", start, "smoothing length of the first level: shorter details are not fitted", Range{1e-3, 10},
-         "share of the template's diagonal");
-    list("detail", end, "smoothing length of the last level: shorter details are not fitted", Range{1e-4, 10});
+    list("smoothing", start, "smoothing length of the first level", Range{1e-3, 10}, "share of the template's diagonal");
+    list("detail", end, "smoothing length of the last level, as a share of the diagonal: shorter details are not fitted",
+         Range{1e-4, 10});
     list("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
     list("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    list("transition", stay, "distance from the observed surface over which the deformation of the first level fades",
-         Range{1e-3, 1e3}, "share of the diagonal");
-    list("fade", fade,
-         "distance from the observed surface over which the deformation of later levels fades, in smoothing lengths of the level",
+    list("transition", stay, "first level: distance over which the deformation fades", Range{1e-3, 1e3}, "share of the diagonal");
+    list("fade", fade, "later levels: distance over which the deformation fades, in smoothing lengths of the level",
          Range{0.1, 1e3});
     list("reach", search_radius, "maximum distance between a vertex and its match in the first level", Range{0, 10},
          "share of the diagonal");
@@ -218,8 +215,8 @@ void NonRigidOptions::list_options(OptionList& list) {
          "the curve (sliding); closest surface points (surface); or vertices of matched annotations by equation 5.1, each used "
          "any number of times (best) or at most once (one-to-one)",
          Choices{"sliding", "surface", "best", "one-to-one"});
-    list("boundary-weight", vertices.boundary,
-         "equation 5.1: weight of vertices on an outline relative to vertices inside the annotation", Range{0, 1e6});
+    list("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on outlines relative to interior vertices",
+         Range{0, 1e6});
     list("distance-weight", vertices.distance, "equation 5.1: weight of the distance between matched vertices", Range{0, 1e6});
     list("outline-weight", vertices.outline, "equation 5.1: weight of the difference of positions along the outline",
          Range{0, 1e6});
@@ -229,79 +226,6 @@ void NonRigidOptions::list_options(OptionList& list) {
          "match lines and outlines by the position along the curve between landmarks; with sliding vertices only in the coarse "
          "levels",
          Anything{});
-||||||| base
-void NonRigidOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "unknowns of the fit: vertices of the template (mesh), vertices of a cage around the template (cage: fewer degrees of "
-          "freedom, no folds by noise), or first the cage and in the last level the template (both)",
-          Choices{"mesh", "cage", "both"});
-    visit("smoothing", start, "smoothing length of the first level: shorter details are not fitted", Range{1e-3, 10},
-          "share of the template's diagonal");
-    visit("detail", end, "smoothing length of the last level: shorter details are not fitted", Range{1e-4, 10});
-    visit("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
-    visit("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    visit("transition", stay, "distance from the observed surface over which the deformation of the first level fades",
-          Range{1e-3, 1e3}, "share of the diagonal");
-    visit(
-        "fade", fade,
-        "distance from the observed surface over which the deformation of later levels fades, in smoothing lengths of the level",
-        Range{0.1, 1e3});
-    visit("reach", search_radius, "maximum distance between a vertex and its match in the first level", Range{0, 10},
-          "share of the diagonal");
-    visit("last-reach", last_search_radius, "maximum distance between a vertex and its match in the last level", Range{0, 10});
-    visit("match-angle", angle, "maximum angle between the normals of a vertex and its match", Range{0, 180}, "degrees");
-    visit("counterparts", counterparts,
-          "matches of template vertices: points on the surface along which the vertex may slide, on curves between parts along "
-          "the curve (sliding); closest surface points (surface); or vertices of matched annotations by equation 5.1, each used "
-          "any number of times (best) or at most once (one-to-one)",
-          Choices{"sliding", "surface", "best", "one-to-one"});
-    visit("boundary-weight", vertices.boundary,
-          "equation 5.1: weight of vertices on an outline relative to vertices inside the annotation", Range{0, 1e6});
-    visit("distance-weight", vertices.distance, "equation 5.1: weight of the distance between matched vertices", Range{0, 1e6});
-    visit("outline-weight", vertices.outline, "equation 5.1: weight of the difference of positions along the outline",
-          Range{0, 1e6});
-    visit("guides", correspondences, "weight of matched outlines and landmarks relative to the weight of the surface",
-          Range{0, 1e6});
-    visit("outlines", outlines,
-          "match lines and outlines by the position along the curve between landmarks; with sliding vertices only in the coarse "
-          "levels",
-          Anything{});
-=======
-void NonRigidOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "unknowns of the fit: vertices of the template (mesh), vertices of a cage around the template (cage: fewer degrees of "
-          "freedom, no folds by noise), or first the cage and in the last level the template (both)",
-          Choices{"mesh", "cage", "both"});
-    visit("smoothing", start, "smoothing length of the first level", Range{1e-3, 10}, "share of the template's diagonal");
-    visit("detail", end, "smoothing length of the last level, as a share of the diagonal: shorter details are not fitted",
-          Range{1e-4, 10});
-    visit("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
-    visit("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    visit("transition", stay, "first level: distance over which the deformation fades", Range{1e-3, 1e3},
-          "share of the diagonal");
-    visit("fade", fade, "later levels: distance over which the deformation fades, in smoothing lengths of the level",
-          Range{0.1, 1e3});
-    visit("reach", search_radius, "maximum distance between a vertex and its match in the first level", Range{0, 10},
-          "share of the diagonal");
-    visit("last-reach", last_search_radius, "maximum distance between a vertex and its match in the last level", Range{0, 10});
-    visit("match-angle", angle, "maximum angle between the normals of a vertex and its match", Range{0, 180}, "degrees");
-    visit("counterparts", counterparts,
-          "matches of template vertices: points on the surface along which the vertex may slide, on curves between parts along "
-          "the curve (sliding); closest surface points (surface); or vertices of matched annotations by equation 5.1, each used "
-          "any number of times (best) or at most once (one-to-one)",
-          Choices{"sliding", "surface", "best", "one-to-one"});
-    visit("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on outlines relative to interior vertices",
-          Range{0, 1e6});
-    visit("distance-weight", vertices.distance, "equation 5.1: weight of the distance between matched vertices", Range{0, 1e6});
-    visit("outline-weight", vertices.outline, "equation 5.1: weight of the difference of positions along the outline",
-          Range{0, 1e6});
-    visit("guides", correspondences, "weight of matched outlines and landmarks relative to the weight of the surface",
-          Range{0, 1e6});
-    visit("outlines", outlines,
-          "match lines and outlines by the position along the curve between landmarks; with sliding vertices only in the coarse "
-          "levels",
-          Anything{});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

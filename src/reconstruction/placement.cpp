@@ -328,41 +328,13 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
     return placement;
 }
 
-<<<<<<< ours
 void PlacementOptions::list_options(OptionList& list) {
-    list("outlier", outlier,
-         "residual of a landmark, as a share of the spread of all landmarks of the template, above which the landmark may be an "
-         "outlier",
+    list("outlier", outlier, "minimum residual of a possible outlier, as a share of the spread of the template's landmarks",
          Range{0, 1});
-    list("unit-ratio", unit_ratio,
-         "ratio of the template's scales from one fragment and from the others, above which the fragments are assumed to have "
-         "different units",
+    list("unit-ratio", unit_ratio, "ratio of scales above which two fragments are assumed to have different units",
          Range{1, 1e6});
-    list("collinear", collinear,
-         "ratio of the second to the first principal extent of a set of landmarks, below which the set counts as collinear",
+    list("collinear", collinear, "maximum ratio of second to first principal extent of landmarks that count as collinear",
          Range{0, 1});
-||||||| base
-void PlacementOptions::describe(OptionList& visit) {
-    visit("outlier", outlier,
-          "residual of a landmark, as a share of the spread of all landmarks of the template, above which the landmark may be an "
-          "outlier",
-          Range{0, 1});
-    visit("unit-ratio", unit_ratio,
-          "ratio of the template's scales from one fragment and from the others, above which the fragments are assumed to have "
-          "different units",
-          Range{1, 1e6});
-    visit("collinear", collinear,
-          "ratio of the second to the first principal extent of a set of landmarks, below which the set counts as collinear",
-          Range{0, 1});
-=======
-void PlacementOptions::describe(OptionList& visit) {
-    visit("outlier", outlier, "minimum residual of a possible outlier, as a share of the spread of the template's landmarks",
-          Range{0, 1});
-    visit("unit-ratio", unit_ratio, "ratio of scales above which two fragments are assumed to have different units",
-          Range{1, 1e6});
-    visit("collinear", collinear, "maximum ratio of second to first principal extent of landmarks that count as collinear",
-          Range{0, 1});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

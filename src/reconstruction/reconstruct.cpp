@@ -419,20 +419,17 @@ Reconstruction reconstruct(AnnotatedMeshView template_object, const RelationGrap
     return reconstructor.run();
 }
 
-<<<<<<< ours
 void ReconstructOptions::list_options(OptionList& list) {
     placement.list_options(list);
     search.list_options(list);
-    list("refine", refine, "refine the poses of fragments by iterative closest points, with the landmarks as anchors",
-         Anything{});
+    list("refine", refine, "refine poses of fragments by iterative closest points, with landmarks as anchors", Anything{});
     alignment.list_options(list);
     rotations.list_options(list);
     annotations.list_options(list);
     prior.list_options(list);
     fit.list_options(list);
     completion.list_options(list);
-    list("observed", observed,
-         "maximum distance from the fragments at which a template vertex counts as observed, as a share of the diagonal",
+    list("observed", observed, "maximum distance of an observed template vertex from the fragments, share of the diagonal",
          Range{0, 1});
     list("scale-tolerance", scale_tolerance,
          "maximum difference, in per cent, between the template's scale from one fragment and from the other fragments",
@@ -448,63 +445,6 @@ void ReconstructOptions::list_options(OptionList& list) {
     list("overlap", overlap, "maximum share, in per cent, of a fragment's outer surface that overlaps another fragment",
          Range{0, 100});
     list("restore", restore, "enforce the constraints of the template's graph on the unobserved surface", Anything{});
-||||||| base
-void ReconstructOptions::describe(OptionList& visit) {
-    placement.describe(visit);
-    search.describe(visit);
-    visit("refine", refine, "refine the poses of fragments by iterative closest points, with the landmarks as anchors",
-          Anything{});
-    alignment.describe(visit);
-    rotations.describe(visit);
-    annotations.describe(visit);
-    prior.describe(visit);
-    fit.describe(visit);
-    completion.describe(visit);
-    visit("observed", observed,
-          "maximum distance from the fragments at which a template vertex counts as observed, as a share of the diagonal",
-          Range{0, 1});
-    visit("scale-tolerance", scale_tolerance,
-          "maximum difference, in per cent, between the template's scale from one fragment and from the other fragments",
-          Range{0, 1000});
-    visit("slack", slack,
-          "minimum tolerance of the measures and proportions that constraints fix, in per cent: smaller deviations may be noise",
-          Range{0, 1000});
-    visit("residual", residual,
-          "maximum root mean square residual of the landmarks of a fragment; a fragment with a larger residual is incompatible",
-          Range{0, 10}, "share of their spread");
-    visit("lying", lying, "minimum share, in per cent, of a fragment's outer surface that lies on the fitted template",
-          Range{0, 100});
-    visit("overlap", overlap, "maximum share, in per cent, of a fragment's outer surface that overlaps another fragment",
-          Range{0, 100});
-    visit("restore", restore, "enforce the constraints of the template's graph on the unobserved surface", Anything{});
-=======
-void ReconstructOptions::describe(OptionList& visit) {
-    placement.describe(visit);
-    search.describe(visit);
-    visit("refine", refine, "refine poses of fragments by iterative closest points, with landmarks as anchors", Anything{});
-    alignment.describe(visit);
-    rotations.describe(visit);
-    annotations.describe(visit);
-    prior.describe(visit);
-    fit.describe(visit);
-    completion.describe(visit);
-    visit("observed", observed, "maximum distance of an observed template vertex from the fragments, share of the diagonal",
-          Range{0, 1});
-    visit("scale-tolerance", scale_tolerance,
-          "maximum difference, in per cent, between the template's scale from one fragment and from the other fragments",
-          Range{0, 1000});
-    visit("slack", slack,
-          "minimum tolerance of the measures and proportions that constraints fix, in per cent: smaller deviations may be noise",
-          Range{0, 1000});
-    visit("residual", residual,
-          "maximum root mean square residual of the landmarks of a fragment; a fragment with a larger residual is incompatible",
-          Range{0, 10}, "share of their spread");
-    visit("lying", lying, "minimum share, in per cent, of a fragment's outer surface that lies on the fitted template",
-          Range{0, 100});
-    visit("overlap", overlap, "maximum share, in per cent, of a fragment's outer surface that overlaps another fragment",
-          Range{0, 100});
-    visit("restore", restore, "enforce the constraints of the template's graph on the unobserved surface", Anything{});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

@@ -162,11 +162,9 @@ Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<
 void AlignOptions::list_options(OptionList& list) {
     list("shrinkage", shrinkage, "maximum relative difference in size between template and object; 0: rigid registration",
          Range{0, 0.5});
-    list("trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)",
-         Range{0.1, 1});
-    list("pair-angle", angle, "maximum angle between the normals of two points paired in the registration",
-         Range{1, 180},
-          "degrees");
+    list("trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
+    list("pair-angle", angle, "maximum angle between the normals of two points paired in the registration", Range{1, 180},
+         "degrees");
     list("samples", samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
     list("iterations", iterations, "maximum number of iterations of a registration", Range{1, 10000});
 }

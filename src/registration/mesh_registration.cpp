@@ -475,7 +475,7 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
     return result;
 }
 
-std::string in_words(const MeshRegistration& registration, double diagonal) {
+std::string message_about(const MeshRegistration& registration, double diagonal) {
     const auto share = [](double x) { return digits(100 * x, 3) + " %"; };
     const std::string residual =
         fmt::format("rms distance {} of the diagonal, {} of the surfaces within the tolerance given by their resolutions",

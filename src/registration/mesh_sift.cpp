@@ -281,16 +281,14 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
     return matches;
 }
 
-<<<<<<< ours
 void SiftOptions::list_options(OptionList& list) {
-    list("feature-size", size, "length to which --first-scale is relative; 0: the square root of the area", Range{0, 1e60},
+    list("feature-size", size, "length to which --first-scale is relative; 0: square root of the area", Range{0, 1e60},
          "the mesh's unit");
-    list("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing level", Range{1e-4, 0.5},
+    list("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing", Range{1e-4, 0.5},
          "share of the size");
     list("scales", scales, "number of smoothing levels", Range{4, 20});
     list("scales-per-octave", per_octave, "number of smoothing levels over which the standard deviation doubles", Range{1, 8});
-    list("border", border,
-         "minimum distance of features from the border of the mesh, in standard deviations of their smoothing level",
+    list("border", border, "minimum distance of features from the mesh border, in standard deviations of their level",
          Range{0, 10});
     list("contrast", contrast,
          "minimum contrast of a feature: difference of curvature between two smoothing levels, times the standard deviation",
@@ -299,47 +297,10 @@ void SiftOptions::list_options(OptionList& list) {
          "minimum height of a further peak in the histogram of directions, as a share of the highest peak; each such peak gives "
          "another feature",
          Range{0.1, 1});
-||||||| base
-void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length to which --first-scale is relative; 0: the square root of the area", Range{0, 1e60},
-          "the mesh's unit");
-    visit("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing level", Range{1e-4, 0.5},
-          "share of the size");
-    visit("scales", scales, "number of smoothing levels", Range{4, 20});
-    visit("scales-per-octave", per_octave, "number of smoothing levels over which the standard deviation doubles", Range{1, 8});
-    visit("border", border,
-          "minimum distance of features from the border of the mesh, in standard deviations of their smoothing level",
-          Range{0, 10});
-    visit("contrast", contrast,
-          "minimum contrast of a feature: difference of curvature between two smoothing levels, times the standard deviation",
-          Range{0, 10});
-    visit("second-direction", second_direction,
-          "minimum height of a further peak in the histogram of directions, as a share of the highest peak; each such peak gives "
-          "another feature",
-          Range{0.1, 1});
-=======
-void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length to which --first-scale is relative; 0: square root of the area", Range{0, 1e60},
-          "the mesh's unit");
-    visit("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing", Range{1e-4, 0.5},
-          "share of the size");
-    visit("scales", scales, "number of smoothing levels", Range{4, 20});
-    visit("scales-per-octave", per_octave, "number of smoothing levels over which the standard deviation doubles", Range{1, 8});
-    visit("border", border, "minimum distance of features from the mesh border, in standard deviations of their level",
-          Range{0, 10});
-    visit("contrast", contrast,
-          "minimum contrast of a feature: difference of curvature between two smoothing levels, times the standard deviation",
-          Range{0, 10});
-    visit("second-direction", second_direction,
-          "minimum height of a further peak in the histogram of directions, as a share of the highest peak; each such peak gives "
-          "another feature",
-          Range{0.1, 1});
->>>>>>> theirs
 }
 
 void MatchOptions::list_options(OptionList& list) {
-    list("ratio", ratio, "maximum ratio of the descriptor angles of the best and the second best match",
-         Range{0, 1});
+    list("ratio", ratio, "maximum ratio of the descriptor angles of the best and the second best match", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -108,41 +108,15 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
     return PartAligner(samples_of(part, of_part, options.samples), whole, anchors, options).run(start);
 }
 
-<<<<<<< ours
 void PartAlignmentOptions::list_options(OptionList& list) {
-    list("icp-trim", trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
-         Range{0.1, 1});
-    list("icp-reach", search_radius, "maximum distance between the two points of a pair in the registration", Range{0, 10},
+    list("icp-trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
+    list("icp-reach", search_radius, "maximum distance of two points paired in the registration", Range{0, 10},
          "share of the whole's diagonal");
-    list("icp-angle", angle, "maximum angle between the normals of two points that are paired in the registration", Range{1, 180},
+    list("icp-angle", angle, "maximum angle between the normals of two points paired in the registration", Range{1, 180},
          "degrees");
-    list("icp-landmarks", anchors, "weight of all landmarks together, relative to the weight of the surface, in the registration",
-         Range{0, 1e9});
+    list("icp-landmarks", anchors, "registration: weight of all landmarks together, relative to the surface", Range{0, 1e9});
     list("icp-samples", samples, "number of points of a fragment that are registered onto the template", Range{10, 1e7});
     list("icp-iterations", iterations, "maximum number of iterations of a registration", Range{0, 10000});
-||||||| base
-void PartAlignmentOptions::describe(OptionList& visit) {
-    visit("icp-trim", trim, "share of the pairs of points, closest first, that a registration uses (trimmed registration)",
-          Range{0.1, 1});
-    visit("icp-reach", search_radius, "maximum distance between the two points of a pair in the registration", Range{0, 10},
-          "share of the whole's diagonal");
-    visit("icp-angle", angle, "maximum angle between the normals of two points that are paired in the registration",
-          Range{1, 180}, "degrees");
-    visit("icp-landmarks", anchors,
-          "weight of all landmarks together, relative to the weight of the surface, in the registration", Range{0, 1e9});
-    visit("icp-samples", samples, "number of points of a fragment that are registered onto the template", Range{10, 1e7});
-    visit("icp-iterations", iterations, "maximum number of iterations of a registration", Range{0, 10000});
-=======
-void PartAlignmentOptions::describe(OptionList& visit) {
-    visit("icp-trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
-    visit("icp-reach", search_radius, "maximum distance of two points paired in the registration", Range{0, 10},
-          "share of the whole's diagonal");
-    visit("icp-angle", angle, "maximum angle between the normals of two points paired in the registration", Range{1, 180},
-          "degrees");
-    visit("icp-landmarks", anchors, "registration: weight of all landmarks together, relative to the surface", Range{0, 1e9});
-    visit("icp-samples", samples, "number of points of a fragment that are registered onto the template", Range{10, 1e7});
-    visit("icp-iterations", iterations, "maximum number of iterations of a registration", Range{0, 10000});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

@@ -126,39 +126,13 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
     return checks;
 }
 
-<<<<<<< ours
 void RelationOptions::list_options(OptionList& list) {
-    list("distance", distance,
-         "maximum distance or difference of height at which a relationship holds; 0.01 is one per cent of the diagonal",
-         Range{0, 1}, "share of the mesh's diagonal");
+    list("distance", distance, "tolerance of distances and of height differences", Range{0, 1}, "share of the mesh's diagonal");
     list("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
-    list("tilt", tilt,
-         "maximum tilt of the common outline at which a contact holds: from horizontal for a support, from vertical for a side "
-         "contact",
-         Range{0, 90}, "degrees");
-    list("ratio", ratio, "maximum relative difference of areas, shapes or attribute values at which a relationship holds",
-         Range{0, 100}, "per cent");
-||||||| base
-void RelationOptions::describe(OptionList& visit) {
-    visit("distance", distance,
-          "maximum distance or difference of height at which a relationship holds; 0.01 is one per cent of the diagonal",
-          Range{0, 1}, "share of the mesh's diagonal");
-    visit("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
-    visit("tilt", tilt,
-          "maximum tilt of the common outline at which a contact holds: from horizontal for a support, from vertical for a side "
-          "contact",
-          Range{0, 90}, "degrees");
-    visit("ratio", ratio, "maximum relative difference of areas, shapes or attribute values at which a relationship holds",
-          Range{0, 100}, "per cent");
-=======
-void RelationOptions::describe(OptionList& visit) {
-    visit("distance", distance, "tolerance of distances and of height differences", Range{0, 1}, "share of the mesh's diagonal");
-    visit("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
-    visit("tilt", tilt, "maximum tilt of a contact's outline from horizontal (support) or vertical (side contact)", Range{0, 90},
-          "degrees");
-    visit("ratio", ratio, "maximum difference of area, shape or attribute at which a relationship holds", Range{0, 100},
-          "per cent");
->>>>>>> theirs
+    list("tilt", tilt, "maximum tilt of a contact's outline from horizontal (support) or vertical (side contact)", Range{0, 90},
+         "degrees");
+    list("ratio", ratio, "maximum difference of area, shape or attribute at which a relationship holds", Range{0, 100},
+         "per cent");
 }
 
 }  // namespace ostraka

@@ -349,7 +349,7 @@ ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGra
     ExtractedRelations result;
     for (const Relationship& relationship : old.relationships)
         if (relationship.origin != "extracted") result.graph.relationships.push_back(relationship);
-    Twins stated(result.graph);
+    RelationshipIndex stated(result.graph);
     FreeIds ids(result.graph.relationships);
     const auto add = [&](Relationship relationship) {
         if (const std::optional<int> known = stated.find(relationship)) {
@@ -366,7 +366,7 @@ ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGra
     result.order = std::move(found.order);
     using enum GeometricRelation;
     for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
-        if (!object.annotations.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
+        if (!object.annotations.up && is_wanted(kind, types)) result.skipped_types.push_back(relation_type(kind).name);
     const EdgeAlignedAnnotations along_edges(object);
     for (Relationship& relationship : RelationMeter(along_edges.object(), options).extract(types, 0, &result.notes))
         add(std::move(relationship));

@@ -192,23 +192,23 @@ void check_relationship(const Relationship& relationship, const AnnotationSet& s
         fail_input(place, "does not say which attribute is equal", "name it in parameters.attribute");
 }
 
-const Relationship* find_twin(const RelationGraph& graph, const Relationship& relationship) {
+const Relationship* find_equivalent(const RelationGraph& graph, const Relationship& relationship) {
     const auto wanted = statement(relationship);
     for (const auto& known : graph.relationships)
         if (statement(known) == wanted) return &known;
     return nullptr;
 }
 
-struct Twins::Said {
+struct RelationshipIndex::Said {
     std::map<Statement, int> ids;
 };
 
-Twins::Twins(const RelationGraph& graph) : said_(std::make_unique<Said>()) {
+RelationshipIndex::RelationshipIndex(const RelationGraph& graph) : said_(std::make_unique<Said>()) {
     for (const auto& known : graph.relationships) said_->ids.emplace(statement(known), known.id);
 }
-Twins::~Twins() = default;
+RelationshipIndex::~RelationshipIndex() = default;
 
-std::optional<int> Twins::find(const Relationship& relationship) const {
+std::optional<int> RelationshipIndex::find(const Relationship& relationship) const {
     const auto found = said_->ids.find(statement(relationship));
     return found == said_->ids.end() ? std::nullopt : std::optional(found->second);
 }

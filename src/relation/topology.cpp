@@ -321,7 +321,7 @@ Topology topology(AnnotatedMeshView given) {
 }
 
 std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
-                                           std::size_t most_of_kind) {
+                                           std::size_t max_per_kind) {
     std::vector<Relationship> list;
     const auto id_of = [&](std::size_t a) { return set.annotations[a].id; };
     const auto add = [&](GeometricRelation kind, std::vector<int> members) -> Relationship& {
@@ -329,13 +329,13 @@ std::vector<Relationship> relationships_of(const Topology& topology, const Annot
     };
     for (std::size_t a = 0; a < topology.order.direct.size(); ++a)
         for (const std::size_t b : topology.order.direct[a])
-            if (list.size() < most_of_kind) add(GeometricRelation::containment, {id_of(b), id_of(a)});
+            if (list.size() < max_per_kind) add(GeometricRelation::containment, {id_of(b), id_of(a)});
     for (const auto& group : topology.order.equal) {
         std::vector<int> members;
         for (const std::size_t a : group) members.push_back(id_of(a));
         add(GeometricRelation::equal_selections, std::move(members));
     }
-    for (std::size_t i = 0; i < std::min(most_of_kind, topology.adjacent.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(max_per_kind, topology.adjacent.size()); ++i) {
         const AdjacentPair& pair = topology.adjacent[i];
         add(GeometricRelation::adjacency, {id_of(pair.a), id_of(pair.b)})
             .parameters.deviations.push_back({"shared length", pair.length, {}, set.unit});

@@ -169,30 +169,12 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     return result;
 }
 
-<<<<<<< ours
 void RemeshOptions::list_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
-    list("iterations", iterations,
-         "number of rounds, in each of which edges are split, collapsed and flipped, and vertices smoothed and projected",
+    list("iterations", iterations, "number of rounds of splitting, collapsing and flipping edges and smoothing vertices",
          Range{1, 100});
-    list("feature-angle", feature_angle,
-         "minimum dihedral angle, in degrees, of edges that are kept as sharp features; 0: no edge is kept", Range{0, 180});
-||||||| base
-void RemeshOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
-    visit("iterations", iterations,
-          "number of rounds, in each of which edges are split, collapsed and flipped, and vertices smoothed and projected",
-          Range{1, 100});
-    visit("feature-angle", feature_angle,
-          "minimum dihedral angle, in degrees, of edges that are kept as sharp features; 0: no edge is kept", Range{0, 180});
-=======
-void RemeshOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
-    visit("iterations", iterations, "number of rounds of splitting, collapsing and flipping edges and smoothing vertices",
-          Range{1, 100});
-    visit("feature-angle", feature_angle, "minimum dihedral angle, in degrees, of edges that are kept sharp; 0: none is kept",
-          Range{0, 180});
->>>>>>> theirs
+    list("feature-angle", feature_angle, "minimum dihedral angle, in degrees, of edges that are kept sharp; 0: none is kept",
+         Range{0, 180});
 }
 
 }  // namespace ostraka

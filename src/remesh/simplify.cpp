@@ -277,7 +277,6 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
     return result;
 }
 
-<<<<<<< ours
 void SimplifyOptions::list_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices of the mesh", Range{1, 5e8});
     list("method", method,
@@ -291,49 +290,10 @@ void SimplifyOptions::list_options(OptionList& list) {
          "maximum rotation of a face normal in one edge collapse, in degrees (relaxed up to 90 if the target number of vertices "
          "cannot be reached otherwise)",
          Range{1, 90});
-    list("outline-weight", outline_weight,
-         "qem: weight of the distance to the outlines that --outlines follow keeps, relative to the weight of the surface",
+    list("outline-weight", outline_weight, "qem: weight of the distance to outlines, relative to the distance to the surface",
          Range{0, 1e6});
-    list("border-weight", border_weight,
-         "qem: weight of the distance to the border of the mesh, relative to the weight of the surface", Range{0, 1e6});
-||||||| base
-void SimplifyOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices of the mesh", Range{1, 5e8});
-    visit("method", method,
-          "cost and vertex position of an edge collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, memoryless)",
-          Choices{"qem", "lindstrom-turk"});
-    visit("outlines", outlines,
-          "treatment of annotated outlines, lines and points: follow (they move and lose vertices, and keep their topology as "
-          "long as possible), protect (they stay unchanged) or ignore",
-          Choices{"follow", "protect", "ignore"});
-    visit("max-normal-change", max_normal_change,
-          "maximum rotation of a face normal in one edge collapse, in degrees (relaxed up to 90 if the target number of vertices "
-          "cannot be reached otherwise)",
-          Range{1, 90});
-    visit("outline-weight", outline_weight,
-          "qem: weight of the distance to the outlines that --outlines follow keeps, relative to the weight of the surface",
-          Range{0, 1e6});
-    visit("border-weight", border_weight,
-          "qem: weight of the distance to the border of the mesh, relative to the weight of the surface", Range{0, 1e6});
-=======
-void SimplifyOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices of the mesh", Range{1, 5e8});
-    visit("method", method,
-          "cost and vertex position of an edge collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, memoryless)",
-          Choices{"qem", "lindstrom-turk"});
-    visit("outlines", outlines,
-          "treatment of annotated outlines, lines and points: follow (they move and lose vertices, and keep their topology as "
-          "long as possible), protect (they stay unchanged) or ignore",
-          Choices{"follow", "protect", "ignore"});
-    visit("max-normal-change", max_normal_change,
-          "maximum rotation of a face normal in one edge collapse, in degrees (relaxed up to 90 if the target number of vertices "
-          "cannot be reached otherwise)",
-          Range{1, 90});
-    visit("outline-weight", outline_weight, "qem: weight of the distance to outlines, relative to the distance to the surface",
-          Range{0, 1e6});
-    visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the distance to the surface",
-          Range{0, 1e6});
->>>>>>> theirs
+    list("border-weight", border_weight, "qem: weight of the distance to the border, relative to the distance to the surface",
+         Range{0, 1e6});
 }
 
 }  // namespace ostraka

@@ -123,7 +123,7 @@ void draw_points(Canvas& canvas, const Surface& surface, const Camera& camera, c
     const std::vector<Index>& points = surface.used_points();
     std::vector<char> visible(points.size(), 0);
     parallel_for(points.size(), 1024,
-                 [&](std::size_t i) { visible[i] = in_sight(surface, camera, surface.point(points[i])) ? 1 : 0; });
+                 [&](std::size_t i) { visible[i] = is_visible(surface, camera, surface.point(points[i])) ? 1 : 0; });
     for (std::size_t i = 0; i < points.size(); ++i) {
         Canvas::Place place{};
         if (visible[i] != 0 && camera.project(surface.point(points[i]), place.x, place.y))

@@ -96,8 +96,8 @@ std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& sur
     double arc_length = 0;
     const auto add = [&](const Eigen::Vector3d& point) {
         Place pixel{};
-        const bool visible =
-            camera.project(point, pixel.x, pixel.y) && within(pane, pixel) && (label.through || in_sight(surface, camera, point));
+        const bool visible = camera.project(point, pixel.x, pixel.y) && within(pane, pixel) &&
+                             (label.through || is_visible(surface, camera, point));
         if (visible) stretch.push_back({pixel, arc_length});
         if (!visible || length(stretch) > length(longest)) {
             if (length(stretch) > length(longest)) longest = stretch;

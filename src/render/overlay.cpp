@@ -97,7 +97,7 @@ std::vector<Canvas::Place> thinned(const std::vector<Canvas::Place>& places, dou
 }
 }  // namespace
 
-bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point) {
+bool is_visible(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point) {
     return !surface.blocked(point, camera.to_viewer(point), sight_tolerance, camera.distance_to_viewer(point));
 }
 
@@ -127,7 +127,7 @@ void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& s
     for (auto& line_steps : steps)
         for (Step& step : line_steps) all_steps.push_back(&step);
     parallel_for(all_steps.size(), 256,
-                 [&](std::size_t i) { all_steps[i]->shown = in_sight(surface, camera, all_steps[i]->sight); });
+                 [&](std::size_t i) { all_steps[i]->shown = is_visible(surface, camera, all_steps[i]->sight); });
     if (drawing.bridged > 0)
         for (auto& line_steps : steps) bridge(line_steps, drawing.bridged);
     std::vector<Stroke> strokes;
@@ -168,7 +168,7 @@ std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surf
                 fail_input("picture", "a marker has a coordinate that is not finite", "give finite coordinates");
         const Eigen::Vector3d point = surface.to_local(marker.point);
         Canvas::Place place{};
-        if (!camera.project(point, place.x, place.y) || !(marker.through || in_sight(surface, camera, point))) continue;
+        if (!camera.project(point, place.x, place.y) || !(marker.through || is_visible(surface, camera, point))) continue;
         ++shown;
         canvas.disc(place, (marker.radius + 1.5) * style.size, darker(marker.colour));
         canvas.disc(place, (marker.radius + 0.5) * style.size, {255, 255, 255});

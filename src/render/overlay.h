@@ -31,7 +31,7 @@ struct Line {
 std::vector<Line> lines_of(const Scene& scene, const Surface& surface);
 
 /// Whether the ray to the viewer from the point, or from slightly above the point, is unobstructed.
-bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point);
+bool is_visible(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point);
 
 /// How lines are drawn.
 struct LineDrawing {

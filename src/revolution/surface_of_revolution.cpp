@@ -353,12 +353,10 @@ RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sh
     return RevolutionBuilder(sherds, options, std::move(left_out)).run();
 }
 
-<<<<<<< ours
 void RevolutionOptions::list_options(OptionList& list) {
     list("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
     list("columns", columns, "number of directions around the axis at which the walls are sampled", Range{8, 7200});
-    list("presence", presence,
-         "minimum angle, in degrees around the axis, that the sherds cover at a height for the profile to be defined there",
+    list("presence", presence, "minimum angle, in degrees about the axis, that sherds must cover at a height of the profile",
          Range{0, 360});
     list("profile-smoothing", smoothing, "standard deviation of the Gaussian that smooths the profile, in rows", Range{0, 50});
     list("layout-angle", layout_angle, "standard deviation of the error of a sherd's tilt in the given poses, in degrees",
@@ -368,36 +366,6 @@ void RevolutionOptions::list_options(OptionList& list) {
          Range{1e-6, 1});
     list("vertices", vertices, "approximate number of vertices of the template", Range{100, 1e7});
     axis.list_options(list);
-||||||| base
-void RevolutionOptions::describe(OptionList& visit) {
-    visit("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
-    visit("columns", columns, "number of directions around the axis at which the walls are sampled", Range{8, 7200});
-    visit("presence", presence,
-          "minimum angle, in degrees around the axis, that the sherds cover at a height for the profile to be defined there",
-          Range{0, 360});
-    visit("profile-smoothing", smoothing, "standard deviation of the Gaussian that smooths the profile, in rows", Range{0, 50});
-    visit("layout-angle", layout_angle, "standard deviation of the error of a sherd's tilt in the given poses, in degrees",
-          Range{0.001, 90});
-    visit("layout-shift", layout_shift,
-          "standard deviation of the error of a sherd's position in the given poses, as a share of the vessel's diagonal",
-          Range{1e-6, 1});
-    visit("vertices", vertices, "approximate number of vertices of the template", Range{100, 1e7});
-    axis.describe(visit);
-=======
-void RevolutionOptions::describe(OptionList& visit) {
-    visit("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
-    visit("columns", columns, "number of directions around the axis at which the walls are sampled", Range{8, 7200});
-    visit("presence", presence, "minimum angle, in degrees about the axis, that sherds must cover at a height of the profile",
-          Range{0, 360});
-    visit("profile-smoothing", smoothing, "standard deviation of the Gaussian that smooths the profile, in rows", Range{0, 50});
-    visit("layout-angle", layout_angle, "standard deviation of the error of a sherd's tilt in the given poses, in degrees",
-          Range{0.001, 90});
-    visit("layout-shift", layout_shift,
-          "standard deviation of the error of a sherd's position in the given poses, as a share of the vessel's diagonal",
-          Range{1e-6, 1});
-    visit("vertices", vertices, "approximate number of vertices of the template", Range{100, 1e7});
-    axis.describe(visit);
->>>>>>> theirs
 }
 
 }  // namespace ostraka

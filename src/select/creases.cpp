@@ -335,48 +335,18 @@ AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions,
     return set;
 }
 
-<<<<<<< ours
 void CreaseOptions::list_options(OptionList& list) {
-    list("kind", kind, "kind of crease to find: ridges (clay that stands out), hollows (where parts meet), or both",
+    list("kind", kind, "kind of crease: ridges (clay that stands out), hollows (where parts meet), or both",
          Choices{"ridge", "hollow", "both"});
-    list("scale", scale, "radius over which curvature is averaged, about the width of a crease", Range{1e-6, 0.5},
+    list("scale", scale, "radius over which curvature is averaged: about the crease width", Range{1e-6, 0.5},
          "share of the box diagonal");
     list("wide", wide, "radius of the neighbourhood with which a place is compared, as a multiple of --scale", Range{1.1, 20});
-    list("weak", weak, "lower hysteresis threshold of the crease response, in robust standard deviations over the surface",
+    list("weak", weak, "lower hysteresis threshold of the crease response, in robust deviations over the surface",
          Range{0, 1000});
-    list("strong", strong,
-         "upper hysteresis threshold, which the response of each crease exceeds somewhere, in robust standard deviations",
+    list("strong", strong, "upper hysteresis threshold, which each crease exceeds somewhere, in robust deviations",
          Range{0, 1000});
     list("floor", floor, "minimum response (curvature times scale) of a crease", Range{0, 100});
     list("shortest", shortest, "minimum length of a crease", Range{0, 10}, "share of the box diagonal");
-||||||| base
-void CreaseOptions::describe(OptionList& visit) {
-    visit("kind", kind, "kind of crease to find: ridges (clay that stands out), hollows (where parts meet), or both",
-          Choices{"ridge", "hollow", "both"});
-    visit("scale", scale, "radius over which curvature is averaged, about the width of a crease", Range{1e-6, 0.5},
-          "share of the box diagonal");
-    visit("wide", wide, "radius of the neighbourhood with which a place is compared, as a multiple of --scale", Range{1.1, 20});
-    visit("weak", weak, "lower hysteresis threshold of the crease response, in robust standard deviations over the surface",
-          Range{0, 1000});
-    visit("strong", strong,
-          "upper hysteresis threshold, which the response of each crease exceeds somewhere, in robust standard deviations",
-          Range{0, 1000});
-    visit("floor", floor, "minimum response (curvature times scale) of a crease", Range{0, 100});
-    visit("shortest", shortest, "minimum length of a crease", Range{0, 10}, "share of the box diagonal");
-=======
-void CreaseOptions::describe(OptionList& visit) {
-    visit("kind", kind, "kind of crease: ridges (clay that stands out), hollows (where parts meet), or both",
-          Choices{"ridge", "hollow", "both"});
-    visit("scale", scale, "radius over which curvature is averaged: about the crease width", Range{1e-6, 0.5},
-          "share of the box diagonal");
-    visit("wide", wide, "radius of the neighbourhood with which a place is compared, as a multiple of --scale", Range{1.1, 20});
-    visit("weak", weak, "lower hysteresis threshold of the crease response, in robust deviations over the surface",
-          Range{0, 1000});
-    visit("strong", strong, "upper hysteresis threshold, which each crease exceeds somewhere, in robust deviations",
-          Range{0, 1000});
-    visit("floor", floor, "minimum response (curvature times scale) of a crease", Range{0, 100});
-    visit("shortest", shortest, "minimum length of a crease", Range{0, 10}, "share of the box diagonal");
->>>>>>> theirs
 }
 
 }  // namespace ostraka

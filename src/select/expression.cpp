@@ -171,7 +171,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
     if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces" ||
                               (kind == "lasso" && whole_->keeps_to_edges(*value))))
         return faces_of_origin(whole_->faces(expression, around, at));
-    if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
+    if (is_reckoned(kind)) return field_selected_faces(kind, *value, frame, at + '/' + kind);
     if (whole_ != nullptr && kind == "lasso") return lassoed(*value, frame, at + "/lasso");
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
@@ -239,7 +239,7 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Pl
         return vertices_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                              visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
-    if (is_reckoned(kind) && kind != "segments") return reckoned_vertices(kind, *value, frame, at + '/' + kind);
+    if (is_reckoned(kind) && kind != "segments") return field_selected_vertices(kind, *value, frame, at + '/' + kind);
     std::vector<Index> result;
     if (kind == "vertices") {
         result = picks(*value, frame, at + "/vertices");

@@ -59,7 +59,7 @@ class ExpressionEvaluator {
 public:
     ExpressionEvaluator(AnnotatedMeshView object, const std::vector<std::int32_t>& face_labels, std::string where);
     /// Sets the cameras and coordinate systems; `surroundings.cameras` must outlive the evaluator.
-    void look_from(const Surroundings& surroundings) { surroundings_ = surroundings; }
+    void set_surroundings(const Surroundings& surroundings) { surroundings_ = surroundings; }
 
     /// Selected faces, vertices or lines of an expression; `at`: JSON pointer of the expression.
     std::vector<bool> faces(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
@@ -87,7 +87,7 @@ public:
     void add_borders(const JsonValue& expression, PlaceFrame frame, const std::string& at, SelectionBorders& borders) const;
     /// From now on evaluates expressions on the mesh of `whole` cut along these borders, so that each face lies on one side of
     /// every border. All three arguments must outlive this object.
-    void stand_on(const ExpressionEvaluator& whole, const CutMesh& cut, const SelectionBorders& borders) {
+    void evaluate_on_cut(const ExpressionEvaluator& whole, const CutMesh& cut, const SelectionBorders& borders) {
         whole_ = &whole, cut_ = &cut, borders_ = &borders;
     }
 
@@ -113,11 +113,11 @@ private:
     /// Search tree of the mesh, built at the first use.
     const SurfaceSearch& search(const std::string& at) const;
     /// Faces selected by scalars and distances: brush, threshold, segments, grow and shrink.
-    [[nodiscard]] std::vector<bool> reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
-                                                   const std::string& at) const;
+    [[nodiscard]] std::vector<bool> field_selected_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
+                                                         const std::string& at) const;
     /// Vertices selected by scalars and distances: brush, threshold, grow and shrink.
-    [[nodiscard]] std::vector<Index> reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
-                                                       const std::string& at) const;
+    [[nodiscard]] std::vector<Index> field_selected_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
+                                                             const std::string& at) const;
     /// Converts a length of the recipe to the mesh's unit.
     [[nodiscard]] double length(double value, PlaceFrame frame) const;
     /// Indices of the picked vertices; each must have a face.

@@ -259,8 +259,8 @@ CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, Pla
     const std::vector<std::int32_t> labels =
         face_labels_.empty() ? std::vector<std::int32_t>() : result.cut.face_values(face_labels_);
     ExpressionEvaluator there(result.cut, labels, where_);
-    there.look_from(surroundings_);
-    there.stand_on(*this, result.cut, borders);
+    there.set_surroundings(surroundings_);
+    there.evaluate_on_cut(*this, result.cut, borders);
     result.faces = there.faces(expression, frame, at);
     return result;
 }

@@ -164,8 +164,8 @@ std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFra
     return faces;
 }
 
-std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
-                                                      const std::string& at) const {
+std::vector<bool> ExpressionEvaluator::field_selected_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
+                                                            const std::string& at) const {
     if (kind == "brush" && whole_ != nullptr) {
         const double radius = length(value["radius"].GetDouble(), frame);
         const ScalarMap distance{
@@ -189,8 +189,8 @@ std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, c
     return larger ? grow(mesh_, part, rings) : shrink(mesh_, part, rings);
 }
 
-std::vector<Index> ExpressionEvaluator::reckoned_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
-                                                          const std::string& at) const {
+std::vector<Index> ExpressionEvaluator::field_selected_vertices(const std::string& kind, const JsonValue& value, PlaceFrame frame,
+                                                                const std::string& at) const {
     if (kind == "brush")
         return brushed_vertices(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
     if (kind == "threshold") {

@@ -37,7 +37,7 @@ public:
         if (const JsonValue* up = find_member(recipe, "up")) set_.up = triple_of(*up);
         const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
         surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_};
-        evaluator_.look_from(surroundings_);
+        evaluator_.set_surroundings(surroundings_);
         const JsonValue& steps = recipe["annotations"];
         for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) {
             const RecipeStep step = recipe_step_from_json(steps[i], frame, where_, "/annotations/" + std::to_string(i));

@@ -62,13 +62,13 @@ Axis axis_carried_back(const ConstraintMembers& members, std::size_t i, const Ax
     return found;
 }
 
-Statement::Constraints stars_kept(const ConstraintMembers& members, const std::vector<Index>& vertices, const Points& shape,
-                                  double grown) {
+Statement::Constraints keep_vertex_stars(const ConstraintMembers& members, const std::vector<Index>& vertices,
+                                         const Points& shape, double grown) {
     constexpr double stiffness = 10;
     const Mesh& mesh = members.shape().mesh;
     Statement::Constraints list;
     for (const Index v : vertices) {
-        const std::vector<int> star = star_of(mesh, Vertex(v));
+        const std::vector<int> star = vertex_star(mesh, Vertex(v));
         Points grown_star(3, static_cast<Eigen::Index>(star.size()));
         for (std::size_t i = 0; i < star.size(); ++i) grown_star.col(static_cast<Eigen::Index>(i)) = grown * shape.col(star[i]);
         list.push_back(members.make(kinds::Rigid{std::move(grown_star)}, star, stiffness / members.relationship().weight));
@@ -76,13 +76,13 @@ Statement::Constraints stars_kept(const ConstraintMembers& members, const std::v
     return list;
 }
 
-void let_turn(const MembersPtr& members, std::size_t count, Statement& statement) {
+void allow_rotation(const MembersPtr& members, std::size_t count, Statement& statement) {
     std::set<Index> all;
     for (std::size_t i = 0; i < count; ++i)
         for (const Index v : members->vertices(i)) all.insert(v);
     statement.rotating.assign(all.begin(), all.end());
     statement.support = [members, rotating = statement.rotating](const State& edited, const State&) {
-        return stars_kept(*members, rotating, edited.points);
+        return keep_vertex_stars(*members, rotating, edited.points);
     };
 }
 
@@ -125,7 +125,7 @@ Statement co_axiality(const MembersPtr& members, const spec::None&, const Relati
     const std::vector<Axis> axes = axes_of_parts(*members);
     Statement statement;
     statement.follows = true;
-    let_turn(members, axes.size() - 1, statement);
+    allow_rotation(members, axes.size() - 1, statement);
     statement.lower = [members, axes](const State&, const State& now) {
         const Axis reference = reference_now(*members, axes.back(), now, axis_of_part);
         Statement::Constraints list;
@@ -152,7 +152,7 @@ Statement axis_angle(const MembersPtr& members, const spec::None&, const Relatio
         statement.directions.push_back({reference, eigen(axes[i].direction), angle, own});
     }
     statement.follows = true;
-    let_turn(members, axes.size() - 1, statement);
+    allow_rotation(members, axes.size() - 1, statement);
     statement.lower = [members, axes, angle](const State& edited, const State& now) {
         const Vector3d direction = eigen(reference_now(*members, axes.back(), now, axis_of_part).direction);
         Statement::Constraints list;
@@ -281,7 +281,7 @@ Statement structural_continuity(const MembersPtr& members, const spec::Structura
         // The shape at rest, scaled if the edit changes the volume of the whole object.
         const double ratio = volume(mesh, edited.points) / volume(mesh, members->shape().rest);
         const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
-        return stars_kept(*members, rotating, members->shape().rest, grown);
+        return keep_vertex_stars(*members, rotating, members->shape().rest, grown);
     };
     statement.prepare = [members, rest, segment, part = statement.rotating](const State& now, Points& start) {
         const Axis reference = reference_now(*members, rest, now, steadiest);

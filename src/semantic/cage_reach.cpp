@@ -158,9 +158,9 @@ std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const Relation
     return list;
 }
 
-CageForConstraints make_cage_for(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
-                                 const std::optional<MirrorPlane>& mirror, const RelationOptions& tolerances,
-                                 const std::string& graph_name) {
+ConstraintCage make_cage_for_constraints(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
+                                         const std::optional<MirrorPlane>& mirror, const RelationOptions& tolerances,
+                                         const std::string& graph_name) {
     struct Try {
         double density, vertices, offset;  ///< factors of the options
     };
@@ -179,14 +179,14 @@ CageForConstraints make_cage_for(AnnotatedMeshView object, const RelationGraph& 
         }
         return off;
     };
-    std::optional<CageForConstraints> best;
+    std::optional<ConstraintCage> best;
     for (const auto& [density, vertices, offset] : tries) {
         std::vector<std::pair<int, double>> factors;
         for (const int id : parts) factors.emplace_back(id, density);
         CageOptions how = options;
         how.offset *= offset;
         how.vertices = static_cast<std::uint64_t>(vertices * static_cast<double>(options.vertices));
-        CageForConstraints one{
+        ConstraintCage one{
             make_cage(object.mesh, how, factors.empty() ? CageDensity() : annotation_density(object, factors), mirror), {}};
         const Coordinates coordinates = compute_coordinates("mean-value", one.made.cage, object.mesh);
         one.reach =

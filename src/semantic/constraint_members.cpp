@@ -106,7 +106,7 @@ std::optional<std::size_t> ConstraintMembers::leader(const Leader& stated, const
     }
     std::optional<std::size_t> best;
     double most = 0;
-    if (edited.asked.empty() || edited.is_under_way) return best;
+    if (edited.asked.empty() || edited.is_dragging) return best;
     for (std::size_t i = 0; i < count(); ++i) {
         const std::vector<Index> list = vertices(i);
         const auto moved = std::count_if(list.begin(), list.end(), [&](Index v) { return edited.asked[v]; });

@@ -102,7 +102,7 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
         DeformResult result = Deformer(space, constraints, how, tolerances, edit_name, graph_name).follow(edit);
         if (how.space == Space::mesh && spoils_surface_alone(result)) {
             Deformer giving(space, constraints, how, tolerances, edit_name, graph_name);
-            giving.let_neighbours_give();
+            giving.fade_over_whole_spread();
             if (DeformResult other = giving.follow(edit); is_better(other, result)) result = std::move(other);
         }
         result.space = how.space;
@@ -134,7 +134,6 @@ void check_constraint(AnnotatedMeshView object, const Relationship& relationship
     if (statement.unknown.empty()) static_cast<void>(statement.lower(state, state));
 }
 
-<<<<<<< ours
 void DeformOptions::list_options(OptionList& list) {
     list("space", space,
          "unknowns of the solve: mesh vertices (mesh), cage vertices (cage: fast, but constraints hold only as far as the cage "
@@ -145,8 +144,8 @@ void DeformOptions::list_options(OptionList& list) {
          "shape whose Laplacian displacements the surface approaches: the edited shape (edited) or the shape before the edit "
          "(rest, as in the thesis)",
          Choices{"edited", "rest"});
-    list("spread", spread, "distance from the constrained part over which the displacement by a constraint fades out",
-         Range{1e-4, 1e4}, "share of the diagonal");
+    list("spread", spread, "distance over which the displacement by a constraint fades out", Range{1e-4, 1e4},
+         "share of the diagonal");
     list("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
     list("handles", handles,
          "weight of the positions of handles that the edit moves, and of joints of stretched parts; lower for handles that a "
@@ -163,73 +162,8 @@ void DeformOptions::list_options(OptionList& list) {
          "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many passes "
          "while violated hard constraints improve",
          Range{1, 100});
-    list("conflicts", conflicts,
-         "maximum number of constraints that are omitted, one at a time, to find conflicts if a constraint fails; 0: no search",
+    list("conflicts", conflicts, "maximum number of constraints omitted, one at a time, to find conflicts; 0: no search",
          Range{0, 1000});
-||||||| base
-void DeformOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "unknowns of the solve: mesh vertices (mesh), cage vertices (cage: fast, but constraints hold only as far as the cage "
-          "permits), or auto (ornaments move rigidly, the rest is solved over the mesh; if that result is not acceptable, the "
-          "best of these)",
-          Choices{"mesh", "cage", "auto"});
-    visit("details", details,
-          "shape whose Laplacian displacements the surface approaches: the edited shape (edited) or the shape before the edit "
-          "(rest, as in the thesis)",
-          Choices{"edited", "rest"});
-    visit("spread", spread, "distance from the constrained part over which the displacement by a constraint fades out",
-          Range{1e-4, 1e4}, "share of the diagonal");
-    visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
-    visit("handles", handles,
-          "weight of the positions of handles that the edit moves, and of joints of stretched parts; lower for handles that a "
-          "constraint moves as well",
-          Range{0, 1e9});
-    visit("followed", followed, "minimum share of the edit's displacement that an acceptable result keeps", Range{0, 1});
-    visit("distortion", distortion,
-          "acceptable results: maximum root mean square distortion of a part that neither the edit nor a violated constraint "
-          "changes",
-          Range{0, 1}, "share of the diagonal");
-    solve.describe(visit);
-    visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
-    visit("passes", passes,
-          "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many passes "
-          "while violated hard constraints improve",
-          Range{1, 100});
-    visit("conflicts", conflicts,
-          "maximum number of constraints that are omitted, one at a time, to find conflicts if a constraint fails; 0: no search",
-          Range{0, 1000});
-=======
-void DeformOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "unknowns of the solve: mesh vertices (mesh), cage vertices (cage: fast, but constraints hold only as far as the cage "
-          "permits), or auto (ornaments move rigidly, the rest is solved over the mesh; if that result is not acceptable, the "
-          "best of these)",
-          Choices{"mesh", "cage", "auto"});
-    visit("details", details,
-          "shape whose Laplacian displacements the surface approaches: the edited shape (edited) or the shape before the edit "
-          "(rest, as in the thesis)",
-          Choices{"edited", "rest"});
-    visit("spread", spread, "distance over which the displacement by a constraint fades out", Range{1e-4, 1e4},
-          "share of the diagonal");
-    visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
-    visit("handles", handles,
-          "weight of the positions of handles that the edit moves, and of joints of stretched parts; lower for handles that a "
-          "constraint moves as well",
-          Range{0, 1e9});
-    visit("followed", followed, "minimum share of the edit's displacement that an acceptable result keeps", Range{0, 1});
-    visit("distortion", distortion,
-          "acceptable results: maximum root mean square distortion of a part that neither the edit nor a violated constraint "
-          "changes",
-          Range{0, 1}, "share of the diagonal");
-    solve.describe(visit);
-    visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
-    visit("passes", passes,
-          "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many passes "
-          "while violated hard constraints improve",
-          Range{1, 100});
-    visit("conflicts", conflicts, "maximum number of constraints omitted, one at a time, to find conflicts; 0: no search",
-          Range{0, 1000});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

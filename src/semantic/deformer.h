@@ -41,7 +41,7 @@ struct Outcome {
     bool solved = false;         ///< true: there was something to solve
     /// Residuals of one constraint.
     struct Residuals {
-        std::vector<double> of_low_level;                ///< residual of each low-level constraint
+        std::vector<double> low_level_residuals;         ///< residual of each low-level constraint
         double distance = 0, cost = 0, cost_before = 0;  ///< as in ConstraintReport
     };
     std::vector<Residuals> residuals;          ///< residuals of each constraint in the report
@@ -73,7 +73,7 @@ public:
 
     /// Lets the displacements of parts that neither the edit nor a constraint moves fade out over the whole spread, instead of a
     /// third of the spread.
-    void let_neighbours_give() { neighbours_give_ = true; }
+    void fade_over_whole_spread() { fades_over_whole_spread_ = true; }
 
     /// Result of `deform`.
     DeformResult follow(const Edit& edit);
@@ -134,7 +134,8 @@ private:
     /// best pass.
     Points search_sizes(const std::vector<bool>& active, Outcome& outcome);
     /// Whether the reference of a constraint has moved, except for constraints on measures.
-    [[nodiscard]] bool others_go_on(const std::vector<bool>& active, const Outcome& outcome, const Points& before) const;
+    [[nodiscard]] bool other_references_moved(const std::vector<bool>& active, const Outcome& outcome,
+                                              const Points& before) const;
     /// Whether the reference of a constraint may have moved.
     [[nodiscard]] bool another_pass(const std::vector<bool>& active, const Outcome& outcome) const;
     /// Writes the residuals of the low-level constraints of each constraint, divided by their numbers of points (section 4.2.3),
@@ -164,7 +165,7 @@ private:
     void solve_mesh(Outcome& outcome);
     /// For each handle of nested cages, whether it may move: handles of the levels that contain constrained parts; all others are
     /// fixed, so that each part is controlled by its own cage.
-    [[nodiscard]] std::vector<bool> handles_asked() const;
+    [[nodiscard]] std::vector<bool> movable_handles() const;
     /// All constraints over the cage's vertices. The first constraint fixes the handles that steps of the edit moved, if there
     /// are any.
     CageSystem cage_system();
@@ -180,7 +181,7 @@ private:
     EditState last_;                                    ///< state after the last step of the edit
     std::vector<bool> asked_;                           ///< for each vertex, whether the edit moves it; empty: no distinction
     bool is_under_way_ = false;                         ///< true: handles are being dragged
-    bool neighbours_give_ = false;                      ///< see let_neighbours_give
+    bool fades_over_whole_spread_ = false;              ///< see fade_over_whole_spread
     Mesh edited_mesh_;                                  ///< the mesh after the edit
     Points edited_;                                     ///< positions of the mesh's vertices after the edit
     std::vector<semantic::Statement> statements_;       ///< for each constraint in the report, its interpretation

@@ -15,7 +15,7 @@ Deformer::Solved Deformer::solve_only(const Edit& edit) {
     const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
     edited_ = columns_of(shape);
     edited_mesh_ = with_points(space_.mesh, shape);
-    asked_ = semantic::asked_vertices(space_, last_, edited_ - rest_);
+    asked_ = semantic::edited_vertices(space_, last_, edited_ - rest_);
     DeformResult result;
     understand(result);
     return {edited_, solve(used(result)).points};
@@ -33,7 +33,7 @@ CageSystem Deformer::begin(const Edit& edit, const std::vector<Index>& handles, 
     EditState dragged = last_;  // an arbitrary position, to determine the vertices that follow
     for (const Index handle : handles)
         dragged.handles[handle] = dragged.handles[handle] + Vector(0, 0, 0.01 * box_diagonal(space_.mesh));
-    asked_ = semantic::asked_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
+    asked_ = semantic::edited_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
     DeformResult result;
     understand(result);
     begin_sizes(used(result));
@@ -217,7 +217,7 @@ Points Deformer::search_sizes(const std::vector<bool>& active, Outcome& outcome)
         const double off = sizes_->off(semantic::State(after));
         since = off < 0.9 * least ? 0 : since + 1;
         if (off < least) least = off, best = outcome.points;
-        if (off <= near && !others_go_on(active, outcome, before)) break;
+        if (off <= near && !other_references_moved(active, outcome, before)) break;
     }
     outcome.points = best;
     return before;
@@ -235,7 +235,7 @@ double Deformer::shortfall(const std::vector<bool>& active, const Outcome& outco
     return worst;
 }
 
-bool Deformer::others_go_on(const std::vector<bool>& active, const Outcome& outcome, const Points& before) const {
+bool Deformer::other_references_moved(const std::vector<bool>& active, const Outcome& outcome, const Points& before) const {
     std::vector<bool> others = active;
     for (std::size_t i = 0; i < others.size(); ++i)
         if (is_sized(i)) others[i] = false;
@@ -261,13 +261,13 @@ void Deformer::keep_residuals(const std::vector<bool>& active, const Points& bef
     const semantic::State last(mesh);
     semantic::State edited(edited_mesh_);
     edited.asked = asked_;
-    edited.is_under_way = is_under_way_;
+    edited.is_dragging = is_under_way_;
     for (std::size_t i = 0; i < statements_.size(); ++i) {
         if (!active[i]) continue;
         const bool axes = statements_[i].follows && !statements_[i].until_it_holds;
         Outcome::Residuals& residuals = outcome.residuals[i];
         for (const auto& constraint : statements_[i].lower(edited, axes ? finished : last)) {
-            residuals.of_low_level.push_back(constraint->normalised_residual(finished.points));
+            residuals.low_level_residuals.push_back(constraint->normalised_residual(finished.points));
             residuals.distance = std::max(residuals.distance, constraint->greatest_distance(finished.points));
             residuals.cost += constraint->weight() * constraint->squared_distance(finished.points);
             residuals.cost_before += constraint->weight() * constraint->squared_distance(edited.points);

@@ -23,7 +23,7 @@ void add_displacements(const Mesh& mesh, double weight, const Points& shape, con
     if (weight == 0) return;
     for (const Vertex v : mesh.vertices()) {
         if (mesh.is_isolated(v) || others.count(v.idx()) > 0) continue;
-        std::vector<int> star = semantic::star_of(mesh, v);
+        std::vector<int> star = semantic::vertex_star(mesh, v);
         kinds::LaplacianDisplacement kept;
         if (sizes != nullptr) {
             Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -59,7 +59,7 @@ bool Deformer::lower(const std::vector<bool>& active, Outcome& outcome) {
     const semantic::State now(mesh);
     semantic::State edited(edited_mesh_);
     edited.asked = asked_;
-    edited.is_under_way = is_under_way_;
+    edited.is_dragging = is_under_way_;
     for (std::size_t i = 0; i < statements_.size(); ++i) {
         if (!active[i] || is_sized(i) || contradicted(i, active)) continue;
         anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
@@ -90,7 +90,7 @@ void Deformer::add_sizes() {
     const double stiff = options_.handles, loose = 81 * closeness(options_, space_.mesh, mean_edge_length(space_.mesh));
     for (const semantic::Sizes::Copy& copy : sizes_->copies()) {
         support_.push_back(
-            make_constraint(kinds::Rigid{copy.shape}, copy.ids, copy.holds_others ? std::min(stiff, loose) : stiff, rest_));
+            make_constraint(kinds::Rigid{copy.shape}, copy.ids, copy.contains_parts ? std::min(stiff, loose) : stiff, rest_));
     }
 }
 
@@ -146,7 +146,7 @@ void Deformer::solve_mesh(Outcome& outcome) {
     const double edge = mean_edge_length(space_.mesh);
     add_closeness(free, closeness(options_, space_.mesh, edge), edited_, 0, rest_, list);
     DeformOptions near = options_;
-    if (!neighbours_give_) near.spread /= 3;
+    if (!fades_over_whole_spread_) near.spread /= 3;
     add_closeness(beside, closeness(near, space_.mesh, edge), edited_, 0, rest_, list);
     // The stiffness of moved parts relative to the surroundings of other parts does not depend on the weight of the latter.
     const double firmness = closeness(beside.empty() ? options_ : near, space_.mesh, edge);
@@ -175,7 +175,7 @@ void Deformer::solve_mesh(Outcome& outcome) {
     }
 }
 
-std::vector<bool> Deformer::handles_asked() const {
+std::vector<bool> Deformer::movable_handles() const {
     const std::vector<CageLevel> levels = cage_levels(*space_.cage);
     std::vector<bool> asked(space_.cage->number_of_vertices(), levels.size() == 1);
     if (levels.size() == 1) return asked;
@@ -201,7 +201,7 @@ CageSystem Deformer::cage_system() {
     std::vector<std::unique_ptr<Constraint>> list;
     // A point of the cage represents several points of the mesh.
     const double share = static_cast<double>(n) / static_cast<double>(c);
-    const std::vector<bool> asked = handles_asked();
+    const std::vector<bool> asked = movable_handles();
     std::vector<int> stiff;
     for (const bool touched : {true, false}) {
         std::vector<int> ids;
@@ -222,8 +222,8 @@ CageSystem Deformer::cage_system() {
         for (const Vertex v : space_.cage->vertices()) {
             if (space_.cage->is_isolated(v)) continue;
             list.push_back(make_constraint(kinds::LaplacianDisplacement{},
-                                           semantic::star_of(*space_.cage, v, static_cast<int>(n)), share * options_.laplacian,
-                                           shape));
+                                           semantic::vertex_star(*space_.cage, v, static_cast<int>(n)),
+                                           share * options_.laplacian, shape));
         }
     system.displacements = list.size() - system.first_displacement;
     system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);

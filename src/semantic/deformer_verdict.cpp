@@ -14,7 +14,7 @@ DeformResult Deformer::follow(const Edit& edit) {
     DeformResult result;
     result.selected = follow_steps(edit);
     result.edited = shape_of_edit(space_, last_, options_);
-    asked_ = semantic::asked_vertices(space_, last_, columns_of(result.edited) - rest_);
+    asked_ = semantic::edited_vertices(space_, last_, columns_of(result.edited) - rest_);
     result = finish(std::move(result));
     result.followed = semantic::followed_edit(space_, last_, asked_, rest_, edited_, columns_of(result.points));
     if (result.followed.share < options_.followed)
@@ -126,8 +126,8 @@ void Deformer::report(DeformResult& result, const Outcome& outcome) const {
         if (now.verdict != Verdict::holds)
             result.objections.push_back(name_of(report) +
                                         (now.verdict == Verdict::fails ? " does not hold" : " is not known to hold"));
-        if (i >= outcome.residuals.size() || outcome.residuals[i].of_low_level.empty()) continue;
-        auto list = outcome.residuals[i].of_low_level;
+        if (i >= outcome.residuals.size() || outcome.residuals[i].low_level_residuals.empty()) continue;
+        auto list = outcome.residuals[i].low_level_residuals;
         std::sort(list.begin(), list.end());
         report.distance = outcome.residuals[i].distance;
         if (!report.hard) report.cost = outcome.residuals[i].cost, report.cost_before = outcome.residuals[i].cost_before;

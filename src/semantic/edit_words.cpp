@@ -79,36 +79,12 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
 
 }  // namespace
 
-<<<<<<< ours
 void EditWords::list_options(OptionList& list) {
-    list("stretch", stretch,
-         "PART=FACTOR or PART=FACTOR,AXIS: stretch parts from their base along an axis (default: up); repeatable");
+    list("stretch", stretch, "PART=FACTOR or PART=FACTOR,AXIS: stretch parts from the base along an axis (up); repeatable");
     list("raise", raise, "PART=LENGTH or PART=LENGTH,AXIS: move parts by a length along an axis (default: up); repeatable");
-    list(
-        "rotate", rotate,
-        "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (default: up) through the middle of the part; repeatable");
+    list("rotate", rotate, "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (up) through their middle");
     list("keep", keep, "PART MEASURE or PART: keep a measure of parts, or the shape of parts, as before the edit; repeatable");
-    list("level", level,
-         "PARTS: keep these parts (tags separated by commas, or a word like legs) at the same height; repeatable");
-||||||| base
-void EditWords::describe(OptionList& visit) {
-    visit("stretch", stretch,
-          "PART=FACTOR or PART=FACTOR,AXIS: stretch parts from their base along an axis (default: up); repeatable");
-    visit("raise", raise, "PART=LENGTH or PART=LENGTH,AXIS: move parts by a length along an axis (default: up); repeatable");
-    visit(
-        "rotate", rotate,
-        "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (default: up) through the middle of the part; repeatable");
-    visit("keep", keep, "PART MEASURE or PART: keep a measure of parts, or the shape of parts, as before the edit; repeatable");
-    visit("level", level,
-          "PARTS: keep these parts (tags separated by commas, or a word like legs) at the same height; repeatable");
-=======
-void EditWords::describe(OptionList& visit) {
-    visit("stretch", stretch, "PART=FACTOR or PART=FACTOR,AXIS: stretch parts from the base along an axis (up); repeatable");
-    visit("raise", raise, "PART=LENGTH or PART=LENGTH,AXIS: move parts by a length along an axis (default: up); repeatable");
-    visit("rotate", rotate, "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (up) through their middle");
-    visit("keep", keep, "PART MEASURE or PART: keep a measure of parts, or the shape of parts, as before the edit; repeatable");
-    visit("level", level, "PARTS: keep parts (tags separated by commas, or a word like legs) at the same height; repeatable");
->>>>>>> theirs
+    list("level", level, "PARTS: keep parts (tags separated by commas, or a word like legs) at the same height; repeatable");
 }
 
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words) {

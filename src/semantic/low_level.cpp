@@ -212,7 +212,8 @@ std::vector<std::vector<int>> groups_of(const ConstraintMembers& members, const 
             case Groups::stars:
             case Groups::closed_stars:  // cotangent weights need the complete one-ring
                 for (const Index v : vertices_of(mesh, annotation))
-                    if (form.groups == Groups::stars || !mesh.is_border(Vertex(v))) groups.push_back(star_of(mesh, Vertex(v)));
+                    if (form.groups == Groups::stars || !mesh.is_border(Vertex(v)))
+                        groups.push_back(vertex_star(mesh, Vertex(v)));
                 break;
         }
     }

@@ -189,7 +189,7 @@ Statement keep_direction(const MembersPtr& members, const spec::KeepDirection& s
     if (!spec.angle) statement.keeps = "its direction";
     for (std::size_t i = 0; i < parts.size(); ++i) statement.directions.push_back({members->member(i).id, up, parts[i].angle});
     statement.follows = true;
-    let_turn(members, parts.size(), statement);
+    allow_rotation(members, parts.size(), statement);
     statement.lower = [=](const State& edited, const State& now) {
         Statement::Constraints list;
         for (std::size_t i = 0; i < parts.size(); ++i) {

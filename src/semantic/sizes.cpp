@@ -102,10 +102,10 @@ std::vector<Sizes::Copy> Sizes::copies() const {
     std::vector<Copy> list;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         Copy copy;
-        copy.holds_others = false;
+        copy.contains_parts = false;
         for (const Index v : parts_[i]->vertices) {
             if (owner_[v] == static_cast<int>(i)) copy.ids.push_back(static_cast<int>(v));
-            else copy.holds_others = true;
+            else copy.contains_parts = true;
         }
         if (copy.ids.size() < 3) continue;  // all vertices belong to parts inside, which are stretched with it
         copy.shape.resize(3, static_cast<Eigen::Index>(copy.ids.size()));

@@ -28,7 +28,8 @@ public:
     struct Copy {
         std::vector<int> ids;  ///< vertices of the part
         Points shape;          ///< target shape, up to a motion
-        bool holds_others;  ///< true: the part contains other parts with their own factors, so that it must be allowed to deform
+        bool
+            contains_parts;  ///< true: the part contains other parts with their own factors, so that it must be allowed to deform
     };
     [[nodiscard]] std::vector<Copy> copies() const;  ///< stretched copy of each part
     /// The linear map that stretches the surface around a vertex; the identity for vertices outside all parts.

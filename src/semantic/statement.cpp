@@ -63,7 +63,7 @@ const std::map<std::string, Understanding>& table() {
 
 }  // namespace
 
-std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first) {
+std::vector<int> vertex_star(const Mesh& mesh, Vertex vertex, int first) {
     std::vector<int> ids{first + static_cast<int>(vertex.idx())};
     for (const Vertex n : mesh.vertices_around_target(mesh.halfedge(vertex))) ids.push_back(first + static_cast<int>(n.idx()));
     return ids;

@@ -28,7 +28,7 @@ struct State {
     const Mesh& mesh;
     Points points;
     std::vector<bool> asked = {};  ///< for an edited shape: for each vertex, whether the edit moves it; empty: not known
-    bool is_under_way = false;     ///< for an edited shape: true while handles are being dragged
+    bool is_dragging = false;      ///< for an edited shape: true while handles are being dragged
 };
 
 /// How well a relationship holds on a shape.
@@ -106,7 +106,7 @@ inline Statement::Constraints only(std::unique_ptr<Constraint> constraint) {
 }
 
 /// The ids of a vertex, first, and of its neighbours; `first` is the id of the mesh's first vertex.
-std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first = 0);
+std::vector<int> vertex_star(const Mesh& mesh, Vertex vertex, int first = 0);
 
 /// Interprets a relationship and validates it on the shape at rest; `where` names the file in errors. Throws Error (input) that
 /// names the relationship if it is invalid.

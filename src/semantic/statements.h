@@ -51,11 +51,11 @@ Motion motion_back(const ConstraintMembers& members, const std::vector<Index>& v
 /// shape has no axis.
 Axis axis_carried_back(const ConstraintMembers& members, std::size_t i, const Axis& rest, const State& now);
 /// Constraints that keep the surface around each vertex as in `shape`, scaled by `grown`, up to a rotation.
-Statement::Constraints stars_kept(const ConstraintMembers& members, const std::vector<Index>& vertices, const Points& shape,
-                                  double grown = 1);
-/// Lets the first `count` members rotate: their surface is kept by `stars_kept`, since Laplacian displacements, which do not
-/// rotate, would shear parts that rotate far.
-void let_turn(const MembersPtr& members, std::size_t count, Statement& statement);
+Statement::Constraints keep_vertex_stars(const ConstraintMembers& members, const std::vector<Index>& vertices,
+                                         const Points& shape, double grown = 1);
+/// Lets the first `count` members rotate: their surface is kept by `keep_vertex_stars`, since Laplacian displacements, which do
+/// not rotate, would shear parts that rotate far.
+void allow_rotation(const MembersPtr& members, std::size_t count, Statement& statement);
 /// Sets the verdict to unknown for an angle within its tolerance if the axis of a part is less certain than the tolerance: the
 /// axis of its slices and the longest principal axis of its area differ by more, for a part at least twice as long as wide.
 void doubt_axes(const ConstraintMembers& members, const State& deformed, double tolerance, Measured& measured);

@@ -7,7 +7,7 @@
 
 namespace ostraka::semantic {
 
-std::vector<bool> asked_vertices(const HandleSpace& space, const EditState& last, const Points& displacements) {
+std::vector<bool> edited_vertices(const HandleSpace& space, const EditState& last, const Points& displacements) {
     if (space.cage == nullptr) return last.touched;
     std::vector<bool> flags = last.named;
     if (!last.by_handles || flags.empty()) return flags;

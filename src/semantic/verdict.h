@@ -8,7 +8,7 @@ namespace ostraka::semantic {
 
 /// For each mesh vertex, whether the edit moves it, as EditFollowed defines. `displacements`: displacement of each vertex by the
 /// edit alone.
-std::vector<bool> asked_vertices(const HandleSpace& space, const EditState& last, const Points& displacements);
+std::vector<bool> edited_vertices(const HandleSpace& space, const EditState& last, const Points& displacements);
 
 /// How closely the positions `now` follow the edit; `asked`: for each vertex, whether the edit moves it.
 EditFollowed followed_edit(const HandleSpace& space, const EditState& last, const std::vector<bool>& asked, const Points& rest,

@@ -291,44 +291,15 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     return result;
 }
 
-<<<<<<< ours
 void ClassifyOptions::list_options(OptionList& list) {
     fit.list_options(list);
     list("correspondence", correspondence,
          "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
          "the template (fitted)",
          Choices{"auto", "given", "fitted"});
-    list("strict", strict,
-         "decide by --max-off alone whether the template fits an object; by default also by the fit to the members of the class",
-         Anything{});
+    list("strict", strict, "decide by --max-off alone, not also by the members, whether the template fits an object", Anything{});
     list("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
-    list("close", close, "relative difference between the scores of two classes below which the classes are not distinguished",
-         Range{0, 1});
-||||||| base
-void ClassifyOptions::describe(OptionList& visit) {
-    fit.describe(visit);
-    visit("correspondence", correspondence,
-          "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
-          "the template (fitted)",
-          Choices{"auto", "given", "fitted"});
-    visit("strict", strict,
-          "decide by --max-off alone whether the template fits an object; by default also by the fit to the members of the class",
-          Anything{});
-    visit("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
-    visit("close", close, "relative difference between the scores of two classes below which the classes are not distinguished",
-          Range{0, 1});
-=======
-void ClassifyOptions::describe(OptionList& visit) {
-    fit.describe(visit);
-    visit("correspondence", correspondence,
-          "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
-          "the template (fitted)",
-          Choices{"auto", "given", "fitted"});
-    visit("strict", strict, "decide by --max-off alone, not also by the members, whether the template fits an object",
-          Anything{});
-    visit("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
-    visit("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
->>>>>>> theirs
+    list("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -512,7 +512,6 @@ ShapePrior prior_of(const ShapeModes& modes) {
     return prior;
 }
 
-<<<<<<< ours
 void LearnOptions::list_options(OptionList& list) {
     fit.list_options(list);
     modes.list_options(list);
@@ -520,8 +519,7 @@ void LearnOptions::list_options(OptionList& list) {
          "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
          "template (auto); all as they are (given); all by fitting the template (fitted)",
          Choices{"auto", "given", "fitted"});
-    list("false-reject", reject,
-         "maximum share of true members that all thresholds together reject, if the quantities are normal or log-normal",
+    list("false-reject", reject, "maximum share of true members that all thresholds together reject (log-normal quantities)",
          Range{1e-6, 0.5});
     list("unsure", unsure,
          "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "
@@ -531,44 +529,6 @@ void LearnOptions::list_options(OptionList& list) {
          Range{1e-6, 0.5});
     list("resolution", resolution, "standard deviation of repeated measurements of one member", Range{0, 1},
          "share of its value");
-||||||| base
-void LearnOptions::describe(OptionList& visit) {
-    fit.describe(visit);
-    modes.describe(visit);
-    visit("correspondence", correspondence,
-          "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
-          "template (auto); all as they are (given); all by fitting the template (fitted)",
-          Choices{"auto", "given", "fitted"});
-    visit("false-reject", reject,
-          "maximum share of true members that all thresholds together reject, if the quantities are normal or log-normal",
-          Range{1e-6, 0.5});
-    visit("unsure", unsure,
-          "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "
-          "threshold they are undecided; three or more out-of-class objects determine this threshold instead",
-          Range{1e-6, 0.5});
-    visit("accept", accept, "maximum share of out-of-class objects that any of the jointly tested classes accepts",
-          Range{1e-6, 0.5});
-    visit("resolution", resolution, "standard deviation of repeated measurements of one member", Range{0, 1},
-          "share of its value");
-=======
-void LearnOptions::describe(OptionList& visit) {
-    fit.describe(visit);
-    modes.describe(visit);
-    visit("correspondence", correspondence,
-          "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
-          "template (auto); all as they are (given); all by fitting the template (fitted)",
-          Choices{"auto", "given", "fitted"});
-    visit("false-reject", reject, "maximum share of true members that all thresholds together reject (log-normal quantities)",
-          Range{1e-6, 0.5});
-    visit("unsure", unsure,
-          "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "
-          "threshold they are undecided; three or more out-of-class objects determine this threshold instead",
-          Range{1e-6, 0.5});
-    visit("accept", accept, "maximum share of out-of-class objects that any of the jointly tested classes accepts",
-          Range{1e-6, 0.5});
-    visit("resolution", resolution, "standard deviation of repeated measurements of one member", Range{0, 1},
-          "share of its value");
->>>>>>> theirs
 }
 
 }  // namespace ostraka

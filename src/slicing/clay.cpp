@@ -146,24 +146,10 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     return result;
 }
 
-<<<<<<< ours
 void ClayOptions::list_options(OptionList& list) {
     list("slices", slices, "number of layers of equal height from which the volume is summed", Range{2, 1000000});
-    list("wall", wall,
-         "minimum wall thickness assumed where the interior was not scanned; 0: the 5 % quantile of the scanned walls",
-         Range{0, 1e60}, "the mesh's unit");
-||||||| base
-void ClayOptions::describe(OptionList& visit) {
-    visit("slices", slices, "number of layers of equal height from which the volume is summed", Range{2, 1000000});
-    visit("wall", wall,
-          "minimum wall thickness assumed where the interior was not scanned; 0: the 5 % quantile of the scanned walls",
-          Range{0, 1e60}, "the mesh's unit");
-=======
-void ClayOptions::describe(OptionList& visit) {
-    visit("slices", slices, "number of layers of equal height from which the volume is summed", Range{2, 1000000});
-    visit("wall", wall, "minimum thickness of unseen walls; 0: the 5 % quantile of the scanned walls", Range{0, 1e60},
-          "the mesh's unit");
->>>>>>> theirs
+    list("wall", wall, "minimum thickness of unseen walls; 0: the 5 % quantile of the scanned walls", Range{0, 1e60},
+         "the mesh's unit");
 }
 
 }  // namespace ostraka

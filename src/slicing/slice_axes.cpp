@@ -195,9 +195,8 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
 void TubeOptions::list_options(OptionList& list) {
     list("min-eccentricity", min_eccentricity,
          "tube: minimum ratio of short to long side of the smallest rectangle around a slice", Range{0, 1});
-    list("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its fitted circle",
-         Range{0, 10},
-          "share of the radius");
+    list("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its fitted circle", Range{0, 10},
+         "share of the radius");
     list(
         "similarity", similarity,
         "tube: maximum root mean square distance of the slices of a group from the group's centre, in dimensionless shape values",

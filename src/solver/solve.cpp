@@ -146,35 +146,13 @@ Points points_of(const CageWeights& weights, const Points& cage) {
     return points;
 }
 
-<<<<<<< ours
 void SolveOptions::list_options(OptionList& list) {
     list("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
-    list("tolerance", tolerance, "stop when no point moves by more than this distance in an iteration", Range{0, 1},
+    list("tolerance", tolerance, "stop when no point moves by more than this distance per iteration", Range{0, 1},
          "share of the diagonal");
-    list("residual", residual,
-         "stop when the weighted root mean square distance of the points from their projections falls to this value",
-         Range{0, 1e300});
+    list("residual", residual, "stop when the weighted rms distance from the projections falls to this value", Range{0, 1e300});
     list("window", window, "number of previous iterations from which the acceleration extrapolates; 0: no acceleration",
          Range{0, 50});
-||||||| base
-void SolveOptions::describe(OptionList& visit) {
-    visit("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
-    visit("tolerance", tolerance, "stop when no point moves by more than this distance in an iteration", Range{0, 1},
-          "share of the diagonal");
-    visit("residual", residual,
-          "stop when the weighted root mean square distance of the points from their projections falls to this value",
-          Range{0, 1e300});
-    visit("window", window, "number of previous iterations from which the acceleration extrapolates; 0: no acceleration",
-          Range{0, 50});
-=======
-void SolveOptions::describe(OptionList& visit) {
-    visit("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
-    visit("tolerance", tolerance, "stop when no point moves by more than this distance per iteration", Range{0, 1},
-          "share of the diagonal");
-    visit("residual", residual, "stop when the weighted rms distance from the projections falls to this value", Range{0, 1e300});
-    visit("window", window, "number of previous iterations from which the acceleration extrapolates; 0: no acceleration",
-          Range{0, 50});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

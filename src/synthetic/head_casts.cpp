@@ -214,8 +214,7 @@ void CastOptions::list_options(OptionList& list) {
          "maximum wear of a cast: standard deviation of the Gaussian that smooths the surface; the wear of a cast is 50 to 100 "
          "% of this value, and half as large at some places",
          Range{0, 0.1}, "share of the head's height");
-    list("pressure", pressure, "deformation of soft clay: standard deviation of relative stretches and of a bend",
-         Range{0, 0.1});
+    list("pressure", pressure, "deformation of soft clay: standard deviation of relative stretches and of a bend", Range{0, 0.1});
     list("shrinkage", shrinkage, "maximum linear shrinkage of a cast, as a fraction of its size", Range{0, 0.3});
     list("noise", noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.01},
          "share of the head's height");

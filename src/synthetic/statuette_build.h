@@ -27,7 +27,7 @@ struct StatuetteBody {
     StatuetteFrame frame;                         ///< main sizes
     std::shared_ptr<const Warp> outside, inside;  ///< warps of the outer surface and of the cavity
     double direction;                             ///< direction of the ovality at height 0
-    double ragged;                                ///< phase of the irregular line where the scanned part of the cavity ends
+    double cavity_end_phase;                      ///< phase of the irregular line where the scanned part of the cavity ends
 };
 
 /// A rolled arm. The length of the arm along the outside, up to a free tip, is the length in the parameters.
@@ -42,8 +42,8 @@ public:
     std::vector<Bead> beads;                             ///< balls along the arm
 
 private:
-    double side_;  ///< -1: right, 1: left
-    bool bare_;    ///< true: the tip of the hand is free
+    double side_;    ///< -1: right, 1: left
+    bool free_tip_;  ///< true: the tip of the hand is free
 };
 /// The right arm (at negative y, because the face looks along x), then the left arm.
 std::array<Arm, 2> body_arms(const StatuetteParameters& parameters, const StatuetteBody& body);

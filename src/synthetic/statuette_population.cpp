@@ -101,9 +101,8 @@ void ProportionedOptions::list_options(OptionList& list) {
          Range{0, 0.2});
     list("planted-deviation", planted_deviation, "standard deviation, over the statuettes, of the logarithm of fixed ratios",
          Range{0, 0.2});
-    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals",
-         Range{0, 0.5},
-          "mm");
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
+         "mm");
     list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
     list("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
 }

@@ -43,7 +43,7 @@ void mark_missing_interior(std::vector<bool>& missing, const Mesh& mesh, const s
     for (const Face f : mesh.faces()) {
         if (labels[f.idx()] != inside) continue;
         const Point c = centroid(mesh, f);
-        const double wave = 1 + std::cos(3 * std::atan2(c.y(), c.x()) + body.ragged);
+        const double wave = 1 + std::cos(3 * std::atan2(c.y(), c.x()) + body.cavity_end_phase);
         if (c.z() > body.frame.cavity_depth - (1 + wave) * edge) missing[f.idx()] = true;
     }
 }

@@ -108,7 +108,7 @@ StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
     inner_warp.offset = p.off_centre * p.wall * Vector2d(std::cos(offset_angle), std::sin(offset_angle));
     for (const Wave& wave : random_waves(draw, 8, p.wall_noise * p.wall, 1, 4, 40, 100)) inner_warp.absolute.push_back(wave);
     inside = std::make_shared<const Warp>(std::move(inner_warp));
-    ragged = draw.angle();
+    cavity_end_phase = draw.angle();
 }
 
 namespace {
@@ -142,7 +142,7 @@ std::vector<Vector2d> cavity_profile(const StatuetteParameters& p, const Statuet
 }  // namespace
 
 Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side)
-    : side_(side), bare_(p.pose != StatuetteParameters::Pose::offering) {
+    : side_(side), free_tip_(p.pose != StatuetteParameters::Pose::offering) {
     using Pose = StatuetteParameters::Pose;
     static const std::map<Pose, std::vector<Vector3d>> poses{
         {Pose::forward, {{0, 0, 0}, {0.10, 0.22, -0.22}, {0.45, 0.24, -0.32}, {0.85, 0.14, -0.20}}},
@@ -188,7 +188,7 @@ std::vector<Vector3d> Arm::outside(int pieces) const {
         while (piece + 2 < knots.size() && knots[piece + 1] < t) ++piece;
         const double share = (t - knots[piece]) / (knots[piece + 1] - knots[piece]);
         outside_points.push_back(state.value + ((1 - share) * radii[piece] + share * radii[piece + 1]) * normal);
-        if (i == pieces && bare_) outside_points.push_back(state.value + radii.back() * along);
+        if (i == pieces && free_tip_) outside_points.push_back(state.value + radii.back() * along);
     }
     return outside_points;
 }
@@ -322,9 +322,8 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("cavity-seen", cavity_seen, "share of the depth of the cavity that is scanned", Range{0.1, 1});
     list("interior", interior, "how the mesh of the cavity ends where the scan ends: closed by a flat wall, or open",
          Choices{"closed", "open"});
-    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals",
-         Range{0, 0.5},
-          "mm");
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
+         "mm");
     list("holes", holes, "number of patches that are missing in the scan", Range{0, 20});
     list("hole-radius", hole_radius, "radius of the patches that are missing in the scan", Range{1, 20}, "mm");
     list("pose", pose, "pose of the arms", Choices{"forward", "offering", "raised", "down"});
@@ -334,54 +333,20 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("vertices", vertices, "number of vertices of the mesh, before patches are removed", Range{4000, 5e6});
 }
 
-<<<<<<< ours
 void PopulationOptions::list_options(OptionList& list) {
     list("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
     list("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
     list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
     list("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
-    list("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-         Range{0, 0.5}, "mm");
+    list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
+         "mm");
     list("interior", interior,
          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
          "bodies each)",
          Choices{"mixed", "closed", "open"});
     list("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
     list("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
-    list("size-spread", size_spread,
-         "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
-||||||| base
-void PopulationOptions::describe(OptionList& visit) {
-    visit("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
-    visit("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
-    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
-    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
-    visit("scan-noise", scan_noise, "scan noise: standard deviation of the displacement of each vertex along its normal",
-          Range{0, 0.5}, "mm");
-    visit("interior", interior,
-          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
-          "bodies each)",
-          Choices{"mixed", "closed", "open"});
-    visit("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
-    visit("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
-    visit("size-spread", size_spread,
-          "standard deviation, over the statuettes, of the logarithm of each size (height, base, arm, head)", Range{0, 0.15});
-=======
-void PopulationOptions::describe(OptionList& visit) {
-    visit("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
-    visit("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
-    visit("seed", seed, "random seed from which all objects are made", Range{0, 1e9});
-    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
-    visit("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
-          "mm");
-    visit("interior", interior,
-          "how the mesh of a hollow body ends where the scan of the cavity ends: closed by a flat wall, open, or mixed (some "
-          "bodies each)",
-          Choices{"mixed", "closed", "open"});
-    visit("cavity-seen", cavity_seen, "minimum share of the depth of a body's cavity that is scanned", Range{0.1, 1});
-    visit("holes", holes, "maximum number of holes in the mesh of a scan", Range{0, 20});
-    visit("size-spread", size_spread, "standard deviation over the statuettes of the logarithm of each size", Range{0, 0.15});
->>>>>>> theirs
+    list("size-spread", size_spread, "standard deviation over the statuettes of the logarithm of each size", Range{0, 0.15});
 }
 
 }  // namespace ostraka

@@ -100,24 +100,10 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     return document;
 }
 
-<<<<<<< ours
 void TemplateOptions::list_options(OptionList& list) {
     list("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
-    list("force-mesh", force_mesh,
-         "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
+    list("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
          Anything{});
-||||||| base
-void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
-    visit("force-mesh", force_mesh,
-          "accept annotations that were made for another mesh, if all vertices, faces and edges in them exist in this mesh",
-          Anything{});
-=======
-void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
-    visit("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
-          Anything{});
->>>>>>> theirs
 }
 
 std::string part_name(const Path& folder, const Path& part) {

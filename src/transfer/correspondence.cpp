@@ -242,35 +242,15 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     return result;
 }
 
-<<<<<<< ours
 void CorrespondenceOptions::list_options(OptionList& list) {
-    list("max-distance", max_distance, "maximum distance between a vertex and its corresponding point on the target",
-         Range{1e-9, 1}, "share of the box diagonal");
+    list("max-distance", max_distance, "maximum distance of a vertex from its counterpart", Range{1e-9, 1},
+         "share of the box diagonal");
     list("max-angle", max_angle, "maximum angle between the normal of a vertex and the normal of the target face", Range{0, 180},
          "degrees");
-    list("vertex", vertex,
-         "which corner of the hit face corresponds to a vertex: the one nearest to the projected point, or to the source vertex",
-         Choices{"projection", "source"});
-||||||| base
-void CorrespondenceOptions::describe(OptionList& visit) {
-    visit("max-distance", max_distance, "maximum distance between a vertex and its corresponding point on the target",
-          Range{1e-9, 1}, "share of the box diagonal");
-    visit("max-angle", max_angle, "maximum angle between the normal of a vertex and the normal of the target face", Range{0, 180},
-          "degrees");
-    visit("vertex", vertex,
-          "which corner of the hit face corresponds to a vertex: the one nearest to the projected point, or to the source vertex",
-          Choices{"projection", "source"});
-=======
-void CorrespondenceOptions::describe(OptionList& visit) {
-    visit("max-distance", max_distance, "maximum distance of a vertex from its counterpart", Range{1e-9, 1},
-          "share of the box diagonal");
-    visit("max-angle", max_angle, "maximum angle between the normal of a vertex and the normal of the target face", Range{0, 180},
-          "degrees");
-    visit(
+    list(
         "vertex", vertex,
         "corner of the hit face that corresponds to a vertex: the corner nearest to the projected point, or to the source vertex",
         Choices{"projection", "source"});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

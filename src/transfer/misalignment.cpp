@@ -115,11 +115,11 @@ Misalignment find_misalignment(const Mesh& source, const SurfaceSearch& target) 
     for (int round = 0; round < rounds; ++round) fit.step(scaling);
     Misalignment mended = found;
     fit.tell(mended);
-    mended.stands_out = mended.distance_left < 0.6 * found.distance;
-    return mended.stands_out ? mended : found;
+    mended.is_significant = mended.distance_left < 0.6 * found.distance;
+    return mended.is_significant ? mended : found;
 }
 
-std::string in_words(const Misalignment& found, double diagonal, const std::string& unit) {
+std::string message_about(const Misalignment& found, double diagonal, const std::string& unit) {
     const auto length = [&](double x) { return digits(x, 3) + (unit.empty() ? "" : " " + unit); };
     std::vector<std::string> motion;
     if (found.rotation >= 0.1) motion.push_back("turned by " + digits(found.rotation, 2) + " degrees");

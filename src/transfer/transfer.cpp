@@ -258,12 +258,11 @@ std::string to_string(TransferOutcome outcome) {
     return words[static_cast<std::size_t>(outcome)];
 }
 
-<<<<<<< ours
 void TransferOptions::list_options(OptionList& list) {
     correspondence.list_options(list);
     list("metric", metric, "length that paths between corresponding vertices minimise",
          Choices{"euclidean", "segment", "combined"});
-    list("spikes", spikes, "spikes of outlines: prune (remove them), avoid (do not list a vertex twice while tracing) or keep",
+    list("spikes", spikes, "spikes of outlines: prune (remove), avoid (visit no vertex twice) or keep",
          Choices{"prune", "avoid", "keep"});
     list("outlines", outlines,
          "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "
@@ -279,49 +278,6 @@ void TransferOptions::list_options(OptionList& list) {
          Anything{});
     list("overlap", overlap, "measure the overlap of each transferred region with its source region", Anything{});
     list("force", force, "transfer even if the two meshes differ in size or position", Anything{});
-||||||| base
-void TransferOptions::describe(OptionList& visit) {
-    correspondence.describe(visit);
-    visit("metric", metric, "length that paths between corresponding vertices minimise",
-          Choices{"euclidean", "segment", "combined"});
-    visit("spikes", spikes, "spikes of outlines: prune (remove them), avoid (do not visit a vertex twice while tracing) or keep",
-          Choices{"prune", "avoid", "keep"});
-    visit("outlines", outlines,
-          "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "
-          "as labels (partitions); as on the source (kept); through the triangles (free); along edges (edges)",
-          Choices{"partitions", "kept", "free", "edges"});
-    visit("rounding", rounding,
-          "how faces that an outline crosses are assigned: by edge paths (path), to the side with most of the face's area "
-          "(area), or so that the area and perimeter of the region are preserved as well (balanced)",
-          Choices{"path", "area", "balanced"});
-    visit("cover", cover, "required relation of a transferred region to its source region: overlapping, enclosing or enclosed",
-          Choices{"overlapping", "enclosing", "enclosed"});
-    visit("refine", refine, "insert vertices on the target mesh where outlines cross its edges, so that the outlines are exact",
-          Anything{});
-    visit("overlap", overlap, "measure the overlap of each transferred region with its source region", Anything{});
-    visit("force", force, "transfer even if the two meshes differ in size or position", Anything{});
-=======
-void TransferOptions::describe(OptionList& visit) {
-    correspondence.describe(visit);
-    visit("metric", metric, "length that paths between corresponding vertices minimise",
-          Choices{"euclidean", "segment", "combined"});
-    visit("spikes", spikes, "spikes of outlines: prune (remove), avoid (visit no vertex twice) or keep",
-          Choices{"prune", "avoid", "keep"});
-    visit("outlines", outlines,
-          "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "
-          "as labels (partitions); as on the source (kept); through the triangles (free); along edges (edges)",
-          Choices{"partitions", "kept", "free", "edges"});
-    visit("rounding", rounding,
-          "how faces that an outline crosses are assigned: by edge paths (path), to the side with most of the face's area "
-          "(area), or so that the area and perimeter of the region are preserved as well (balanced)",
-          Choices{"path", "area", "balanced"});
-    visit("cover", cover, "required relation of a transferred region to its source region: overlapping, enclosing or enclosed",
-          Choices{"overlapping", "enclosing", "enclosed"});
-    visit("refine", refine, "insert vertices on the target mesh where outlines cross its edges, so that the outlines are exact",
-          Anything{});
-    visit("overlap", overlap, "measure the overlap of each transferred region with its source region", Anything{});
-    visit("force", force, "transfer even if the two meshes differ in size or position", Anything{});
->>>>>>> theirs
 }
 
 }  // namespace ostraka

@@ -30,8 +30,8 @@ public:
     void add(const ShownShape& shape);  ///< adds an object to the content
     /// Adds the tables of the report of an operation; `file`: the report file.
     void add_report(const Path& file, const std::string& operation);
-    /// The content; `made_how`: provenance.
-    [[nodiscard]] Page::Content content(const std::string& made_how) const { return page_.content(made_how); }
+    /// The content; `provenance_text`: provenance.
+    [[nodiscard]] Page::Content content(const std::string& provenance_text) const { return page_.content(provenance_text); }
 
 private:
     std::set<std::string> known_keys_;  ///< keys of the shapes that the page already has

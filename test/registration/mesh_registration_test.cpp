@@ -62,7 +62,7 @@ Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
 void expect_found(const Mesh& source, const Mesh& target, std::uint64_t seed, double degrees, double scale) {
     const Motion motion = any_similarity(source, seed);
     const MeshRegistration registration = register_mesh(shaped(source, motion), target);
-    EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned) << in_words(registration, box_diagonal(target));
+    EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned) << message_about(registration, box_diagonal(target));
     const Motion remaining = registration.motion.after(motion);
     EXPECT_LT(Eigen::AngleAxisd(remaining.rotation).angle() * 180 / std::numbers::pi, degrees);
     EXPECT_NEAR(remaining.scale, 1, scale);

@@ -169,7 +169,7 @@ TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
     AnnotationSet set = apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data/teapot.recipe.json", object.mesh, object.face_labels);
     const ExtractedRelations all = extract_relations({object.mesh, set});
     EXPECT_TRUE(all.stated.empty());
-    EXPECT_TRUE(all.not_looked_for.empty());
+    EXPECT_TRUE(all.skipped_types.empty());
     RelationGraph old;
     for (const auto& relationship : all.graph.relationships)
         if (relationship.type == "co-axiality" || relationship.type == "adjacency") {
@@ -187,7 +187,7 @@ TEST(GeometricRelations, UserSpecifiedRelationsAreNotExtractedAgain) {
         EXPECT_EQ(relationship.type, relationship.origin == "stated" ? "co-axiality" : "containment");
     }
     set.up.reset();
-    EXPECT_EQ(extract_relations({object.mesh, set}, {}, {"same level", "containment"}).not_looked_for,
+    EXPECT_EQ(extract_relations({object.mesh, set}, {}, {"same level", "containment"}).skipped_types,
               std::vector<std::string>{"same level"});
     EXPECT_THROW(extract_relations({object.mesh, set}, {}, {"proportion"}), Error);
 }

@@ -136,7 +136,7 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     EXPECT_TRUE(std::find(flowers.begin(), flowers.end(), *coarse.lacking) != flowers.end());
     EXPECT_NE(describe(coarse, object.set).find("'" + object.set.find(*coarse.lacking)->tag + "'"), std::string::npos);
     // A cage made for the constraints leaves a smaller deviation, and is valid.
-    const CageForConstraints adapted = make_cage_for({object.synthetic.mesh, object.set}, graph, {.vertices = 150});
+    const ConstraintCage adapted = make_cage_for_constraints({object.synthetic.mesh, object.set}, graph, {.vertices = 150});
     ASSERT_EQ(adapted.reach.size(), 1u);
     EXPECT_LT(adapted.reach[0].left, 0.8 * coarse.left);
     EXPECT_LE(adapted.made.cage.number_of_vertices(), 300u);
@@ -162,7 +162,7 @@ TEST(CageReach, WithoutConstraintsIsEmpty) {
     EXPECT_TRUE(cage_reach(object.handles(), graph_with(constraint(0, "same level", flowers, "{}", 0))).empty());
     EXPECT_THROW(cage_reach(object.bare(), {}), Error);
     EXPECT_THROW(cage_reach(object.handles(), graph_with(constraint(0, "same level", {99, 100}, "{}"))), Error);
-    const CageForConstraints adapted = make_cage_for({object.synthetic.mesh, object.set}, {}, {.vertices = 100});
+    const ConstraintCage adapted = make_cage_for_constraints({object.synthetic.mesh, object.set}, {}, {.vertices = 100});
     EXPECT_EQ(adapted.made.cage.number_of_vertices(), 100u);
     EXPECT_TRUE(adapted.reach.empty());
 }

@@ -43,13 +43,13 @@ Mesh placed(Mesh mesh, double degrees, const Vector& axis, double scale, const V
 TEST(Misalignment, ResolutionsOfOneSurfaceAreNotReported) {
     for (const char* name : {"teapot", "vase", "chair", "hand", "statuette"}) {
         const Mesh coarse = object_mesh(name, 2500), fine = object_mesh(name, 8000);
-        EXPECT_FALSE(between(coarse, fine).stands_out) << name;
-        EXPECT_FALSE(between(fine, coarse).stands_out) << name;
+        EXPECT_FALSE(between(coarse, fine).is_significant) << name;
+        EXPECT_FALSE(between(fine, coarse).is_significant) << name;
         EXPECT_LT(between(fine, fine).distance, 1e-12 * box_diagonal(fine)) << name;
     }
     for (const int level : {1, 2, 3, 4})
         for (const int other : {1, 2, 3, 4, 5})
-            EXPECT_FALSE(between(build_mesh(octahedron_sphere(level)), build_mesh(octahedron_sphere(other))).stands_out)
+            EXPECT_FALSE(between(build_mesh(octahedron_sphere(level)), build_mesh(octahedron_sphere(other))).is_significant)
                 << level << ' ' << other;
 }
 
@@ -58,19 +58,19 @@ TEST(Misalignment, SmallMotionsAreFound) {
     const double diagonal = box_diagonal(coarse);
     for (const Vector& axis : {Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)}) {
         const Misalignment turned = between(coarse, placed(fine, 3, axis, 1, {0, 0, 0}));
-        ASSERT_TRUE(turned.stands_out) << axis;
+        ASSERT_TRUE(turned.is_significant) << axis;
         EXPECT_NEAR(turned.rotation, 3, 0.3) << axis;
         EXPECT_NEAR(turned.scale, 1, 0.005) << axis;
         const Misalignment moved = between(coarse, placed(fine, 0, axis, 1, 0.01 * axis));
-        ASSERT_TRUE(moved.stands_out) << axis;
+        ASSERT_TRUE(moved.is_significant) << axis;
         EXPECT_NEAR(moved.shift, 0.01 * diagonal, 0.001 * diagonal) << axis;
     }
     for (const double scale : {0.95, 1.05}) {
         const Misalignment scaled = between(coarse, placed(fine, 0, {0, 0, 1}, scale, {0, 0, 0}));
-        ASSERT_TRUE(scaled.stands_out) << scale;
+        ASSERT_TRUE(scaled.is_significant) << scale;
         EXPECT_NEAR(scaled.scale, scale, 0.005) << scale;
         EXPECT_GT(scaled.distance, 3 * scaled.distance_left) << scale;
-        EXPECT_NE(in_words(scaled, diagonal, "mm").find(" mm apart on average"), std::string::npos);
+        EXPECT_NE(message_about(scaled, diagonal, "mm").find(" mm apart on average"), std::string::npos);
     }
 }
 

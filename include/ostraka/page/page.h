@@ -149,22 +149,22 @@ public:
     void note(const std::string& text);
 
     /// The text of the HTML file: the viewer, with the data embedded as JSON and deflated bytes. The same page gives the same
-    /// bytes. The HTML file loads nothing from elsewhere, and texts of annotations are escaped. `made_how`: provenance, shown on
-    /// the page.
-    [[nodiscard]] std::string html(const std::string& made_how) const;
+    /// bytes. The HTML file loads nothing from elsewhere, and texts of annotations are escaped. `provenance_text`: provenance,
+    /// shown on the page.
+    [[nodiscard]] std::string html(const std::string& provenance_text) const;
     /// The content of this page as a script that the page of a collection loads; `file`: name of the script, as in
     /// PageEntry::file.
-    [[nodiscard]] std::string script(const std::string& file, const std::string& made_how) const;
+    [[nodiscard]] std::string script(const std::string& file, const std::string& provenance_text) const;
     /// The content of a page for a viewer that is already open.
     struct Content {
         std::string data, bytes;  ///< the page's data as JSON, and the binary data that the JSON refers to
     };
-    /// Content of this page without the viewer; `made_how`: provenance, shown on the page.
-    [[nodiscard]] Content content(const std::string& made_how) const;
+    /// Content of this page without the viewer; `provenance_text`: provenance, shown on the page.
+    [[nodiscard]] Content content(const std::string& provenance_text) const;
 
 private:
-    std::size_t add_bytes(std::string_view bytes);                      ///< returns the offset of the bytes in `bytes_`
-    [[nodiscard]] std::string data(const std::string& made_how) const;  ///< JSON text of the page's data
+    std::size_t add_bytes(std::string_view bytes);                             ///< returns the offset of the bytes in `bytes_`
+    [[nodiscard]] std::string data(const std::string& provenance_text) const;  ///< JSON text of the page's data
 
     Json document_;  ///< data of the page, as it is written
     JsonValue objects_{rapidjson::kArrayType}, tables_{rapidjson::kArrayType}, drawings_{rapidjson::kArrayType},

@@ -60,7 +60,7 @@ struct MeshRegistration {
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
 /// The verdict and its reasons as one sentence; `diagonal`: diagonal of the target.
-std::string in_words(const MeshRegistration& registration, double diagonal);
+std::string message_about(const MeshRegistration& registration, double diagonal);
 /// Remarks on a registration: poses that fit equally, motions that the shape leaves undetermined.
 std::vector<std::string> remarks_on(const MeshRegistration& registration);
 

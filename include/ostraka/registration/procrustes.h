@@ -25,8 +25,8 @@ struct SimilarityMap {
 };
 
 struct ProcrustesOptions {
-    bool scaling = false;              ///< true: scale all configurations to the same size
-    bool reflection = false;           ///< true: treat mirror images as the same shape
+    bool scaling = false;                 ///< true: scale all configurations to the same size
+    bool reflection = false;              ///< true: treat mirror images as the same shape
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 

@@ -41,7 +41,7 @@ struct ExtractedRelations {
     ContainmentOrder order;   ///< containment of the annotations
     std::vector<int> stated;  ///< ids of stated relationships that were also extracted and therefore not added a second time
     /// Types that were not extracted, since they need an upward direction and the set states none.
-    std::vector<std::string> not_looked_for;
+    std::vector<std::string> skipped_types;
     std::vector<std::string> notes;  ///< what was omitted because of the limits on the number of relationships
 };
 

@@ -96,14 +96,14 @@ int free_id(const RelationGraph& graph);
 
 /// The relationship of `graph` equivalent to `relationship`: same type, members (in any order if undirected), constraint and
 /// attribute; nullptr if there is none. Tolerances and origin are ignored.
-const Relationship* find_twin(const RelationGraph& graph, const Relationship& relationship);
+const Relationship* find_equivalent(const RelationGraph& graph, const Relationship& relationship);
 
 /// Index of a graph's relationships for repeated searches of equivalent relationships. The graph may change after the index is
 /// built.
-class Twins {
+class RelationshipIndex {
 public:
-    explicit Twins(const RelationGraph& graph);  ///< builds the index
-    ~Twins();
+    explicit RelationshipIndex(const RelationGraph& graph);  ///< builds the index
+    ~RelationshipIndex();
     /// The id of the first relationship in the index that is equivalent to this one; empty: there is none.
     [[nodiscard]] std::optional<int> find(const Relationship& relationship) const;
 

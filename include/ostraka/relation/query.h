@@ -19,17 +19,7 @@ struct QueryReference {
 };
 
 /// The annotated object on which a query is evaluated.
-<<<<<<< ours
 struct QueriedObject : AnnotatedMeshView {
-||||||| base
-struct QueriedObject {
-    const Mesh* mesh = nullptr;
-    const AnnotationSet* set = nullptr;
-=======
-struct QueriedObject {
-    const Mesh* mesh = nullptr;              ///< mesh of the object
-    const AnnotationSet* set = nullptr;      ///< annotations of the object
->>>>>>> theirs
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
     const Vocabulary* vocabulary = nullptr;  ///< vocabulary by which words and attribute names are compared; null: by spelling
     /// Returns the values that an attribute has in another object, in the form that `values_of` returns.

@@ -36,10 +36,10 @@ struct Topology {
 Topology topology(AnnotatedMeshView object);
 
 /// The relationships of a topology: containment (transitive reduction), equal selections, and adjacency with the shared length.
-/// Ids count up from `first_id`. Returns the first `most_of_kind` relationships of containment, and of adjacency, if there are
+/// Ids count up from `first_id`. Returns the first `max_per_kind` relationships of containment, and of adjacency, if there are
 /// more.
 std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
-                                           std::size_t most_of_kind = std::numeric_limits<std::size_t>::max());
+                                           std::size_t max_per_kind = std::numeric_limits<std::size_t>::max());
 
 /// An entry of the containment tree, which lists annotations below their parents, depth first, children in the order of the set.
 /// The root of the tree, which stands for the whole shape, is not listed.

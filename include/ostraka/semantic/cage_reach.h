@@ -42,7 +42,7 @@ std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const Relation
                                         const std::string& graph_name = "graph");
 
 /// A cage made for the constraints of a graph.
-struct CageForConstraints {
+struct ConstraintCage {
     CageResult made;  ///< the cage, and remarks on its construction
     /// For each constraint, how closely the cage can satisfy it, with mean value coordinates.
     std::vector<ConstraintReach> reach;
@@ -51,10 +51,10 @@ struct CageForConstraints {
 /// Makes a cage that is denser around the constrained parts and, if necessary, closer to the mesh (down to a quarter of the
 /// offset) and with up to twice the target number of vertices. Four variants are tried; returns the first variant that satisfies
 /// all constraints, otherwise the variant that satisfies the most constraints. Throws as make_cage and cage_reach do.
-CageForConstraints make_cage_for(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
-                                 const std::optional<MirrorPlane>& mirror = {},
-                                 const RelationOptions& tolerances = deform_tolerances(),
-                                 const std::string& graph_name = "graph");
+ConstraintCage make_cage_for_constraints(AnnotatedMeshView object, const RelationGraph& graph, const CageOptions& options,
+                                         const std::optional<MirrorPlane>& mirror = {},
+                                         const RelationOptions& tolerances = deform_tolerances(),
+                                         const std::string& graph_name = "graph");
 
 /// One sentence on a constraint that the cage cannot satisfy: the remaining residual, its initial value, and where cage vertices
 /// are missing; empty if the constraint is satisfied.

@@ -155,31 +155,13 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
 /// the spread.
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options = {});
 
-<<<<<<< ours
-/// As `deform`, with given positions (of a fit, for example) instead of an edit: `held` vertices count as moved handles, the
-/// other vertices approach their positions. Constraints refer to `object` as the shape at rest. Throws Error (usage) if the
-/// numbers of positions, flags and vertices differ, and for cage space; (input) as deform.
+/// Solves for the constraints of the graph starting from given vertex positions (of a fit, for example) instead of an edit:
+/// vertices marked in `held` count as handles that were moved, the other vertices are attracted to their positions in `points`.
+/// Constraints refer to `object` as the shape at rest. Throws Error (usage) if the numbers of positions, flags and vertices
+/// differ, and for cage space; (input) as deform.
 DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
                                  const std::vector<bool>& held, const DeformOptions& options = {},
                                  const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
-||||||| base
-/// The same with given positions (of a fit, for example) instead of an edit: `held` vertices count as moved handles, the other
-/// vertices approach their positions. Constraints refer to `mesh` as the shape at rest. Throws Error (usage) if the numbers of
-/// positions, flags and vertices differ, and for cage space; (input) as deform.
-DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const std::vector<Point>& points, const std::vector<bool>& held,
-                                 const DeformOptions& options = {}, const RelationOptions& tolerances = {},
-                                 const std::string& graph_name = "graph");
-=======
-/// Solves for the constraints of the graph starting from given vertex positions (of a fit, for example) instead of an edit:
-/// vertices marked in `held` count as handles that were moved, the other vertices are attracted to their positions in `points`.
-/// Constraints refer to `mesh` as the shape at rest. Throws Error (usage) if the numbers of positions, flags and vertices differ,
-/// and for cage space; (input) as deform.
-DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
-                                 const std::vector<Point>& points, const std::vector<bool>& held,
-                                 const DeformOptions& options = {}, const RelationOptions& tolerances = {},
-                                 const std::string& graph_name = "graph");
->>>>>>> theirs
 
 /// Validates a relationship that is a constraint; throws as deform does if it is invalid. `where` names the file in errors.
 void check_constraint(AnnotatedMeshView object, const Relationship& relationship, const std::string& where);

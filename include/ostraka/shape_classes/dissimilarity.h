@@ -47,10 +47,9 @@ std::vector<double> out_of_class_logs(const LearntRange& range);
 /// Sets `range.recognised`, the dissimilarity up to which an object is recognised as a member; larger values alone do not reject
 /// the object. With at least three out-of-class objects the bound is the value below which at most the share `accept` of
 /// out-of-class objects falls (classes that are queried together share this rate); otherwise the bound is the value that at most
-/// the share `unsure` of members exceeds, and at least half a standard deviation above their mean. `members` and `out_of_class` are
-/// the moments of the logarithms of the values of members and out-of-class objects. The bound never exceeds `range.high`, which
-/// out-of-class objects lower: objects as dissimilar as the out-of-class objects on average (geometric mean) are
-/// rejected.
+/// the share `unsure` of members exceeds, and at least half a standard deviation above their mean. `members` and `out_of_class`
+/// are the moments of the logarithms of the values of members and out-of-class objects. The bound never exceeds `range.high`,
+/// which out-of-class objects lower: objects as dissimilar as the out-of-class objects on average (geometric mean) are rejected.
 void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& out_of_class, double accept,
                     double unsure);
 

@@ -9,32 +9,12 @@ namespace ostraka {
 /// Whether the file has the extension of a landmark file: .mrk.json, .fcsv, .tps, .pp.
 bool is_landmark_file(const Path& file);
 
-<<<<<<< ours
-/// A template made of landmarks: one vertex per landmark, no faces, no annotations.
+/// A template that consists of landmarks: one vertex per landmark, no faces, no annotations.
 struct LandmarkTemplate : AnnotatedMesh {
-    std::vector<std::string> names;
-    std::string unit;
-    RelationGraph graph;  ///< empty
-    [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }
-||||||| base
-/// A template made of landmarks: one vertex per landmark, no faces.
-struct LandmarkTemplate {
-    std::vector<std::string> names;
-    Mesh mesh;
-    std::string unit;
-    AnnotationSet set;    ///< empty
-    RelationGraph graph;  ///< empty
-    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
-=======
-/// A template that consists of landmarks: one vertex per landmark, no faces.
-struct LandmarkTemplate {
-    std::vector<std::string> names;                                           ///< name of each landmark
-    Mesh mesh;                                                                ///< one vertex per landmark, no faces
-    std::string unit;                                                         ///< unit of the coordinates
-    AnnotationSet set;                                                        ///< empty
-    RelationGraph graph;                                                      ///< empty
-    [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }  ///< template of a class; refers to this object
->>>>>>> theirs
+    std::vector<std::string> names;                                       ///< name of each landmark
+    std::string unit;                                                     ///< unit of the coordinates
+    RelationGraph graph;                                                  ///< empty
+    [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }  ///< template of a class; refers to this object
 };
 /// Reads a landmark file as a template. Throws Error (input), naming the file, for fewer than four landmarks or two landmarks of
 /// the same name.

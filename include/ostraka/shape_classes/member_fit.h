@@ -32,23 +32,9 @@ struct MemberFitOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-<<<<<<< ours
-/// A whole object; it may have no annotations.
+/// A whole object, not a fragment; it may have no annotations.
 struct WholeObject : AnnotatedMesh {
-    std::string name;
-||||||| base
-/// A whole object.
-struct WholeObject {
-    std::string name;
-    Mesh mesh;
-    AnnotationSet annotations;  ///< may be empty
-=======
-/// A whole object, not a fragment.
-struct WholeObject {
     std::string name;  ///< name of the object, see object_name
-    Mesh mesh;
-    AnnotationSet annotations;  ///< may be empty
->>>>>>> theirs
 };
 
 /// Differences between template and object after the fit. Lengths are relative to the bounding box diagonal of the template at

@@ -30,23 +30,9 @@ struct ClassQuantity {
     [[nodiscard]] std::string text() const;
 };
 
-<<<<<<< ours
-/// The template of a class. The referenced objects must outlive it.
-struct ClassTemplate : AnnotatedMeshView {
-    const RelationGraph& graph;
-||||||| base
-/// The template of a class. The referenced objects must outlive it.
-struct ClassTemplate {
-    const Mesh& mesh;
-    const AnnotationSet& set;
-    const RelationGraph& graph;
-=======
 /// The template of a class. The template refers to objects, which must outlive it.
-struct ClassTemplate {
-    const Mesh& mesh;            ///< mesh of the template
-    const AnnotationSet& set;    ///< annotations of the template
+struct ClassTemplate : AnnotatedMeshView {
     const RelationGraph& graph;  ///< relationships between the annotations
->>>>>>> theirs
 };
 
 /// Moves the points (one per vertex) to the coordinate system of the template by rotation and translation and, without `sizes`,

@@ -28,12 +28,12 @@ struct LearnOptions {
 
 /// The values of one quantity on the members, and the range accepted for other objects.
 struct LearntRange {
-    ClassQuantity quantity;                                ///< the quantity, without a value
+    ClassQuantity quantity;  ///< the quantity, without a value
     /// Value of each member, relative to the other members if leave-one-out; empty: not measured.
     std::vector<std::optional<double>> values;             ///< one per member; relative to other members: leave-one-out
     std::vector<std::optional<double>> out_of_class = {};  ///< value of each out-of-class object
-    std::size_t count = 0;                              ///< number of members with a value
-    double min = 0, max = 0, mean = 0;                  ///< statistics of the members' values
+    std::size_t count = 0;                                 ///< number of members with a value
+    double min = 0, max = 0, mean = 0;                     ///< statistics of the members' values
     double percentile_5 = 0, percentile_25 = 0, median = 0, percentile_75 = 0, percentile_95 = 0;
     std::optional<double> deviation;  ///< standard deviation; empty for a single value
     bool logarithm = false;           ///< true: the logarithm is assumed to be normal, as for positive values except constraints
@@ -61,14 +61,14 @@ struct Dependence {
 
 /// A learnt class.
 struct ShapeClass {
-    std::string name;                     ///< name of the class
-    std::string template_file;            ///< file name in the folder of the class file
-    bool sizes = false;                   ///< true: size is part of the shape
-    std::vector<ClassMember> members;     ///< members from which the class was learnt
-    std::vector<LearntRange> ranges;      ///< one range per quantity
-    std::vector<LearntRange> fragments;   ///< ranges of the quantities for the fragment thresholds (fragment_thresholds.h)
-    std::string topology;                 ///< topology_checksum of the template's mesh
-    ShapeModes modes;                     ///< mean shape and modes of variation
+    std::string name;                       ///< name of the class
+    std::string template_file;              ///< file name in the folder of the class file
+    bool sizes = false;                     ///< true: size is part of the shape
+    std::vector<ClassMember> members;       ///< members from which the class was learnt
+    std::vector<LearntRange> ranges;        ///< one range per quantity
+    std::vector<LearntRange> fragments;     ///< ranges of the quantities for the fragment thresholds (fragment_thresholds.h)
+    std::string topology;                   ///< topology_checksum of the template's mesh
+    ShapeModes modes;                       ///< mean shape and modes of variation
     std::vector<std::string> out_of_class;  ///< names of the out-of-class objects
     double unsure = 0.15, accept = 0.05;    ///< from LearnOptions
     /// Max value of FitResiduals::off for members; empty if the members are in correspondence.

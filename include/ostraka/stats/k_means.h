@@ -10,10 +10,10 @@
 namespace ostraka {
 
 struct KMeansOptions {
-    int clusters = 3;                  ///< number of clusters
-    int restarts = 20;                 ///< number of initialisations; the result of lowest cost is kept
-    int iterations = 300;              ///< max number of iterations per initialisation
-    std::uint64_t seed = 1;            ///< random seed
+    int clusters = 3;                     ///< number of clusters
+    int restarts = 20;                    ///< number of initialisations; the result of lowest cost is kept
+    int iterations = 300;                 ///< max number of iterations per initialisation
+    std::uint64_t seed = 1;               ///< random seed
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
@@ -49,8 +49,8 @@ struct ClusterCountOptions {
     int max_clusters = 10;  ///< max number of clusters that is tried
     /// Criterion that proposes the number of clusters.
     enum class Criterion { silhouette, gap } criterion = Criterion::silhouette;
-    int references = 50;               ///< gap statistic: number of reference data sets
-    KMeansOptions k_means = {};        ///< options of k-means; the number of clusters is ignored
+    int references = 50;                  ///< gap statistic: number of reference data sets
+    KMeansOptions k_means = {};           ///< options of k-means; the number of clusters is ignored
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 

@@ -57,23 +57,7 @@ public:
     std::vector<Change> changes;  ///< one entry per annotation, in the order at construction
 
 private:
-<<<<<<< ours
-||||||| base
-    /// Mesh and annotations before a step, kept if some annotations are free: their curves are projected onto the resulting
-    /// mesh.
-    struct Curved {
-        Mesh mesh;
-        AnnotationSet annotations;
-    };
-=======
-    /// Mesh and annotations before a step, kept if some annotations are free: the curves of free annotations are projected onto
-    /// the resulting mesh.
-    struct Curved {
-        Mesh mesh;
-        AnnotationSet annotations;
-    };
     /// Keeps the mesh and the annotations before a step, if some annotations are free.
->>>>>>> theirs
     void keep_curved();
     /// Attaches the annotations to the elements of the mesh, so that they follow changes of the mesh.
     AnnotationTable attach();

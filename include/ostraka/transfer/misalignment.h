@@ -13,8 +13,8 @@ namespace ostraka {
 struct Misalignment {
     double distance = 0;  ///< distance in the given positions
     /// True: the distance is far larger than between two resolutions of one surface, and a motion removes most of it.
-    bool stands_out = false;
-    double distance_left = 0;  ///< distance after that motion; valid, like the following members, if stands_out
+    bool is_significant = false;
+    double distance_left = 0;  ///< distance after that motion; valid, like the following members, if is_significant
     double rotation = 0;       ///< rotation of the target relative to the source, degrees
     double shift = 0;          ///< distance by which the centroid of the sample moves
     double scale = 1;          ///< size of the target divided by size of the source
@@ -26,6 +26,6 @@ struct Misalignment {
 Misalignment find_misalignment(const Mesh& source, const SurfaceSearch& target);
 
 /// Message for a misalignment that stands out; `diagonal`: diagonal of the meshes; `unit`: unit of the coordinates, may be empty.
-std::string in_words(const Misalignment& found, double diagonal, const std::string& unit);
+std::string message_about(const Misalignment& found, double diagonal, const std::string& unit);
 
 }  // namespace ostraka

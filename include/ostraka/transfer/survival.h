@@ -10,10 +10,10 @@
 namespace ostraka {
 
 struct SurvivalOptions {
-    TransferOptions transfer;          ///< options for the transfer to each resolution
-    double ratio = 0.7;                ///< number of vertices of each resolution relative to the previous one
-    double area_error = 0.25;          ///< max relative change of the area of a region that survives
-    std::uint64_t minimum = 20;        ///< min number of vertices tried
+    TransferOptions transfer;             ///< options for the transfer to each resolution
+    double ratio = 0.7;                   ///< number of vertices of each resolution relative to the previous one
+    double area_error = 0.25;             ///< max relative change of the area of a region that survives
+    std::uint64_t minimum = 20;           ///< min number of vertices tried
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 

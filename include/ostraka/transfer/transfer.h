@@ -26,9 +26,9 @@ struct TransferOptions {
     /// Course of outlines and lines on the target. partitions: regions that partition the surface become free, the others keep
     /// their kind; kept: all keep their kind; free: all become free; edges: all run along edges of the target.
     enum class Outlines { partitions, kept, free, edges } outlines = Outlines::partitions;
-    bool refine = false;               ///< true: insert vertices on the target so that outlines are exact
-    bool overlap = true;               ///< true: measure the overlap with the source region
-    bool force = false;                ///< true: continue although the meshes differ in size or position
+    bool refine = false;                  ///< true: insert vertices on the target so that outlines are exact
+    bool overlap = true;                  ///< true: measure the overlap with the source region
+    bool force = false;                   ///< true: continue although the meshes differ in size or position
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 

@@ -24,7 +24,6 @@ void check_threshold(const std::string& of) {
 
 }  // namespace
 
-<<<<<<< ours
 void SelectStep::list_options(OptionList& list) {
     list("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
     list.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
@@ -33,8 +32,7 @@ void SelectStep::list_options(OptionList& list) {
     list("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
     list("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
     list("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
-    list("halfspace", halfspace,
-         "selects one side of a plane: a point of the plane and the normal towards that side, as six numbers");
+    list("halfspace", halfspace, "selects one side of a plane: a point and the normal towards this side, as six numbers");
     list("nearest", nearest, "selects the vertex nearest to x,y,z");
     list("threshold", threshold,
          "selects places where this quantity lies between --above and --below; distance is measured from --seed",
@@ -47,52 +45,6 @@ void SelectStep::list_options(OptionList& list) {
     list("component", component, "selects the connected component of this pick");
     list("faces", faces, "selects the faces with these indices").words();
     list("labels", labels, "selects the faces with these labels in the mesh file").words();
-||||||| base
-void SelectStep::describe(OptionList& visit) {
-    visit("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
-    visit.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
-    visit("all", all, "the whole mesh");
-    visit("rectangle", rectangle, "selects what the rectangle x0,y0,x1,y1 covers, in pixels of the camera's picture");
-    visit("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
-    visit("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
-    visit("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
-    visit("halfspace", halfspace,
-          "selects one side of a plane: a point of the plane and the normal towards that side, as six numbers");
-    visit("nearest", nearest, "selects the vertex nearest to x,y,z");
-    visit("threshold", threshold,
-          "selects places where this quantity lies between --above and --below; distance is measured from --seed",
-          Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
-    visit("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
-    visit("path", path, "selects the shortest paths along edges that join these picks").words();
-    visit("lasso", lasso, "selects the part that a path through these picks encloses; --seed lies within the part").words();
-    visit("brush", brush, "selects the geodesic discs of --radius around these picks").words();
-    visit("vertices", vertices, "selects the vertices at these picks").words();
-    visit("component", component, "selects the connected component of this pick");
-    visit("faces", faces, "selects the faces with these indices").words();
-    visit("labels", labels, "selects the faces with these labels in the mesh file").words();
-=======
-void SelectStep::describe(OptionList& visit) {
-    visit("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
-    visit.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
-    visit("all", all, "the whole mesh");
-    visit("rectangle", rectangle, "selects what the rectangle x0,y0,x1,y1 covers, in pixels of the camera's picture");
-    visit("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
-    visit("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
-    visit("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
-    visit("halfspace", halfspace, "selects one side of a plane: a point and the normal towards this side, as six numbers");
-    visit("nearest", nearest, "selects the vertex nearest to x,y,z");
-    visit("threshold", threshold,
-          "selects places where this quantity lies between --above and --below; distance is measured from --seed",
-          Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
-    visit("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
-    visit("path", path, "selects the shortest paths along edges that join these picks").words();
-    visit("lasso", lasso, "selects the part that a path through these picks encloses; --seed lies within the part").words();
-    visit("brush", brush, "selects the geodesic discs of --radius around these picks").words();
-    visit("vertices", vertices, "selects the vertices at these picks").words();
-    visit("component", component, "selects the connected component of this pick");
-    visit("faces", faces, "selects the faces with these indices").words();
-    visit("labels", labels, "selects the faces with these labels in the mesh file").words();
->>>>>>> theirs
 
     list.group("How");
     list("through", through, "with --rectangle or --polygon: select hidden parts as well");
@@ -118,35 +70,13 @@ void SelectStep::describe(OptionList& visit) {
          "coordinates from 0 to 1, lengths as shares of the diagonal",
          Choices{"mesh", "box"});
 
-<<<<<<< ours
     list.group("Camera (that of 'ostraka render' without legend and title)");
-    list("camera", camera_text,
-         "name of a camera in the recipe, or a camera as JSON (as reported by 'render --json'); replaces --view to --size");
+    list("camera", camera_text, "camera: a name in the recipe, or JSON (from 'render --json'); replaces --view to --size");
     list("view", view, "view direction", view_words());
-    list("up", up, "upward direction, stored in a new file; by default the upward direction of the annotations, or 0,0,1",
-         direction_words("--up"));
+    list("up", up, "upward direction, stored in new files; default: that of the annotations, or 0,0,1", direction_words("--up"));
     list("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
     list("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
     list("size", size, "width and height of the picture in pixels, such as 1200x900");
-||||||| base
-    visit.group("Camera (that of 'ostraka render' without legend and title)");
-    visit("camera", camera_text,
-          "name of a camera in the recipe, or a camera as JSON (as reported by 'render --json'); replaces --view to --size");
-    visit("view", view, "view direction", view_words());
-    visit("up", up, "upward direction, stored in a new file; by default the upward direction of the annotations, or 0,0,1",
-          direction_words("--up"));
-    visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
-    visit("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
-    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
-=======
-    visit.group("Camera (that of 'ostraka render' without legend and title)");
-    visit("camera", camera_text, "camera: a name in the recipe, or JSON (from 'render --json'); replaces --view to --size");
-    visit("view", view, "view direction", view_words());
-    visit("up", up, "upward direction, stored in new files; default: that of the annotations, or 0,0,1", direction_words("--up"));
-    visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
-    visit("zoom", zoom, "magnification about the centre of the picture; 1 shows the whole object", Range{0.01, 1000});
-    visit("size", size, "width and height of the picture in pixels, such as 1200x900");
->>>>>>> theirs
 
     list.group("Annotation");
     list("tag", tag, "tag of the annotation");

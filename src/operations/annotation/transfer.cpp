@@ -89,7 +89,7 @@ struct AnnotationTransfer final : Operation {
         TransferResult there = in_file(target.file(), [&] { return transfer(from, *search, options); });
         const Misalignment apart = find_misalignment(from.mesh, *search);
         report("meanDistance", apart.distance);
-        if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(from.annotations.unit, 20)));
+        if (apart.is_significant) report.note(message_about(apart, search->diagonal(), printable(from.annotations.unit, 20)));
         note_unused_options(there.annotations, report);
         const AnnotatedMeshView on(there.refined ? there.refined->mesh : onto, there.annotations);
         std::optional<TransferResult> again;
@@ -132,7 +132,7 @@ struct AnnotationTransfer final : Operation {
         report.run("registration", clock.seconds());
         const double diagonal = box_diagonal(onto);
         if (found.verdict != RegistrationVerdict::aligned && !options.force)
-            fail_input(source.file() + " onto " + target.file(), in_words(found, diagonal),
+            fail_input(source.file() + " onto " + target.file(), message_about(found, diagonal),
                        "or --force to go on with the best motion found");
         report.notes(remarks_on(found));
         RegisteredSource registered{
@@ -142,7 +142,7 @@ struct AnnotationTransfer final : Operation {
                                            pose_to_json(found.motion, report.allocator()), "scale", found.motion.scale, "rms",
                                            found.agreement.rms, "share", found.agreement.share));
         report.line("registered: turned by " + number(Eigen::AngleAxisd(found.motion.rotation).angle() / degree, 4) +
-                    " degrees, scaled by " + number(found.motion.scale, 6) + "; " + in_words(found, diagonal));
+                    " degrees, scaled by " + number(found.motion.scale, 6) + "; " + message_about(found, diagonal));
         if (registered.annotations.unit != set.unit)
             report.note("lengths were in " + printable(set.unit, 20) + " and are " +
                         (registered.annotations.unit.empty() ? "in an unknown unit" : "in " + registered.annotations.unit) +

@@ -135,8 +135,8 @@ struct CageMake final : Operation {
     /// One cage fine enough to satisfy the constraints, as far as a cage can.
     [[nodiscard]] std::vector<CageResult> for_constraints(AnnotatedMeshView object, const std::optional<MirrorPlane>& plane,
                                                           Report& report) const {
-        CageForConstraints cage_for =
-            make_cage_for(object, constraints.on(object.annotations), options, plane, deform_tolerances(), constraints.file());
+        ConstraintCage cage_for = make_cage_for_constraints(object, constraints.on(object.annotations), options, plane,
+                                                            deform_tolerances(), constraints.file());
         report_reach(report, cage_for.reach, object.annotations);
         for (const ConstraintReach& reach : cage_for.reach) {
             if (reach.reached) continue;

@@ -48,7 +48,7 @@ struct MeshRegister final : Operation {
                 return pose_to_json(pose, report.allocator());
             }))("slides", registration.slippable.kind == SlippableKind::none ? "" : registration.slippable.text());
         report.notes(remarks_on(registration));
-        report.line(in_words(registration, diagonal));
+        report.line(message_about(registration, diagonal));
         if (registration.verdict != RegistrationVerdict::aligned) return report.answer_no();
         if (matrix) matrix.write(pose_to_json(registration.motion, report.allocator()));
         if (output) output.write(moved(source_mesh, registration.motion), source->extras);

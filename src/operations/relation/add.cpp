@@ -135,7 +135,7 @@ struct RelationAdd final : RelationOperation {
         }
         relationship.id = free_id(relations);
         check_relationship(relationship, set(), "the relationship to add");
-        if (const Relationship* twin = find_twin(relations, relationship)) {
+        if (const Relationship* twin = find_equivalent(relations, relationship)) {
             const std::string id = std::to_string(twin->id);
             if (twin->origin != "extracted")
                 fail_input(graph.file(), "relationship " + id + " says the same",

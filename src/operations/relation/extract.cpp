@@ -46,9 +46,9 @@ struct RelationExtract final : RelationOperation {
         if (vocabulary)
             for (Relationship& part :
                  part_relationships(found.order, set(), vocabulary.load<Vocabulary>(read_vocabulary), free_id(found.graph)))
-                if (find_twin(found.graph, part) == nullptr) found.graph.relationships.push_back(std::move(part));
-        if (!found.not_looked_for.empty())
-            report.note("not looked for, as the annotations do not say what is up: " + joined(found.not_looked_for) +
+                if (find_equivalent(found.graph, part) == nullptr) found.graph.relationships.push_back(std::move(part));
+        if (!found.skipped_types.empty())
+            report.note("not looked for, as the annotations do not say what is up: " + joined(found.skipped_types) +
                         " ('ostraka annotation edit --set-up x,y,z' says it)");
         report.empty_table("tree");
         std::string text = "the whole shape\n";
