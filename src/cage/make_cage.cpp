@@ -135,7 +135,7 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 }
 
 void CageOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "target number of vertices of the mesh", Range{4, 1e6});
+    visit("vertices", vertices, "target number of vertices of the cage", Range{4, 1e6});
     visit("alpha", alpha,
           "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
           "requires it",

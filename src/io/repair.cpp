@@ -308,7 +308,7 @@ void RepairOptions::describe(OptionList& visit) {
           "share of the shortest edge at the points");
     visit("keep-isolated", keep_isolated, "keep vertices without a face", Anything{});
     visit("keep-largest", keep_largest, "keep only the component with the largest area", Anything{});
-    visit("min-component-share", min_component_share, "drop components whose share of the total area is smaller", Range{0, 1},
+    visit("min-component-share", min_component_share, "minimum share of the total area of a component that is kept", Range{0, 1},
           "share of the area");
     visit("fill-holes", fill_holes, "maximum number of border edges of a hole that is filled (0: no hole is filled)",
           Range{0, 100000});

@@ -297,8 +297,7 @@ void ClassifyOptions::describe(OptionList& visit) {
           "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
           "the template (fitted)",
           Choices{"auto", "given", "fitted"});
-    visit("strict", strict, "decide by --max-off alone, not also by the members, whether the template fits an object",
-          Anything{});
+    visit("strict", strict, "let only --max-off decide whether the template fits an object, not also the members", Anything{});
     visit("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
     visit("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }
