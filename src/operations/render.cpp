@@ -49,8 +49,9 @@ struct Render final : Operation {
         options.list_options(p.options);
         p.report.values(text("picture"));
         for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
-        p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"), number("pixelsPerUnit"),
-                       number("scaleBar"), integer("markers"), integer("markersShown"), any("camera"));
+        p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"),
+                       number("pixelsPerUnit", "", "pixels"), number("scaleBar", "", "length"), integer("markers"),
+                       integer("markersShown"), any("camera"));
     }
 
     void check() const override {

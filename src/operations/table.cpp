@@ -112,7 +112,7 @@ constexpr OperationEntry entries[]{
 const OperationGroup groups[]{
     {"mesh", "examine, repair, convert, resize and make meshes"},
     {"annotation", "annotate meshes and transfer annotations between them"},
-    {"relation", "relationships among annotations: extract, edit, check and draw them"},
+    {"relation", "extract, edit, check and draw relationships among annotations"},
     {"measure", "measures of objects and annotations, descriptors, maps of quantities over the surface"},
     {"vocabulary", "controlled vocabularies of tags and attributes"},
     {"template", "templates, and classes learnt from their members"},

@@ -294,10 +294,10 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
 void ClassifyOptions::list_options(OptionList& list) {
     fit.list_options(list);
     list("correspondence", correspondence,
-         "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
-         "the template (fitted)",
-         Choices{"auto", "given", "fitted"});
-    list("strict", strict, "decide by --max-off alone, not also by the members, whether the template fits an object", Anything{});
+          "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
+          "the template (fitted)",
+          Choices{"auto", "given", "fitted"});
+    list("strict", strict, "let only --max-off decide whether the template fits an object, not also the members", Anything{});
     list("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
     list("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }

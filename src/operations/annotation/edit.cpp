@@ -42,14 +42,14 @@ std::array<int, 3> named_colour(const std::string& text) {
 struct AnnotationEditing final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
         describe_inputs(p);
-        p.output("output", Kind::annotations, output, "annotations to write");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "annotation to edit: its id, or its tag if no other annotation has the same tag");
         p.options("merge", merge, "id or tag of an annotation that is merged into that of --annotation; repeatable");
-        p.options("tag", tag, "new tag");
-        p.options("note", note, "new note");
+        p.options("tag", tag, "new tag of the annotation");
+        p.options("note", note, "new note of the annotation");
         p.options("colour", colour, "new colour: 200,30,60 or #c81e3c");
-        p.options("id", id, "new id");
+        p.options("id", id, "new id of the annotation");
         p.options("remove-attribute", remove_attributes, "id or name of an attribute to remove; may be given more than once");
         p.options("attribute", attributes, "NAME=TEXT: a semantic attribute to add or change; may be given more than once");
         p.options("information", information,

@@ -11,7 +11,7 @@ namespace {
 struct AnnotationImport final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("input", Kind::text, input, "file to read");
+        p.input("input", Kind::text, input, "file to read, in the format of another tool");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
         p.input_option("onto", Kind::annotations, onto,

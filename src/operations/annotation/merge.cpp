@@ -16,7 +16,7 @@ struct AnnotationMerge final : Operation {
         p.input("base", Kind::annotations, base, "set of annotations from which both changed sets were made (.ant.json)");
         p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
         p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
-        p.output("output", Kind::annotations, output, "annotations to write");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         options.list_options(p.options);
         p.report.values(boolean("merged"), integer("annotations"));
         p.report.table("conflicts", integer("id", "id"), text("tag", "tag"), text("field", "conflict"), text("base", "base"),

@@ -22,9 +22,10 @@ struct CageCoordinates final : Operation {
                   Choices(coordinate_kinds()));
         options.list_options(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
-                        integer("cageFaces", "cage faces"), any("certificate"), number("storedShare"), number("amplification"),
-                        integer("outside"), integer("crossed"), integer("cageIntersections"), texts("objections"),
-                        boolean("holds", "verdict"));
+                        integer("cageFaces", "cage faces"), any("certificate"),
+                        number("storedShare", "", "fraction of all weights"),
+                        number("amplification", "", "multiples of the motion of the cage"), integer("outside"),
+                        integer("crossed"), integer("cageIntersections"), texts("objections"), boolean("holds", "verdict"));
         p.report.people_table("", {"property", "value", "meaning"});
     }
 

@@ -19,7 +19,8 @@ struct MeshBreak final : Operation {
         p.input("input", Kind::mesh, input, "mesh file");
         p.output("output", Kind::mesh, output, "mesh file of the fragment to write");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the whole object (.ant.json)");
-        p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the fragment to write");
+        p.output_option("annotations-out", Kind::annotations, annotations_out,
+                        "annotations of the fragment to write (.ant.json)");
         p.output_option("pose-out", Kind::pose, pose_out,
                         "JSON file to write: 4 x 4 matrix that moves the fragment back to its place");
         options.list_options(p.options);

@@ -24,7 +24,8 @@ struct MeshExtract final : AnnotatedMeshOperation {
         p.options("without", without, "id or tag of regions that are removed from the part").words();
         p.options("closed", closed, "close the cuts by triangles, annotated with the tag 'cut'");
         p.options("labels", labels, "label each face of the mesh file (PLY) with the id of the smallest region around it");
-        p.report.values(integer("vertices"), integer("faces"), number("area"), integer("cuts"), integer("closed"));
+        p.report.values(integer("vertices"), integer("faces"), number("area", "", "length^2"), integer("cuts"),
+                        integer("closed"));
     }
 
     void check() const override {

@@ -23,10 +23,11 @@ struct MeshRegister final : Operation {
         options.list_options(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),
-                        numbers("translation", "translation", "length"), number("rms", "rms", "length"), number("rmsOfDiagonal"),
-                        number("largest", "99 % within", "length"), number("share"), number("close"),
+                        numbers("translation", "translation", "length"), number("rms", "rms", "length"),
+                        number("rmsOfDiagonal", "", "fraction of the diagonal"), number("largest", "99 % within", "length"),
+                        number("share", "", "fraction of the points"), number("close", "", "fraction of the points"),
                         number("tolerance", "tolerance", "length"), number("mirroredRms", "rms if mirrored", "length"),
-                        number("mirroredShare"), any("others"), text("slides"));
+                        number("mirroredShare", "", "fraction of the points"), any("others"), text("slides"));
     }
 
     void run(Context&, Report& report) override {

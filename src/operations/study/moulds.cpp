@@ -33,7 +33,9 @@ struct StudyMoulds final : StudyOperation {
         for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.values(text(word));
         for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"}) p.report.values(number(figure));
         p.report.values(boolean("clear"));
-        p.report.table("groups", integer("group"), texts("heads"), number("stability"), number("recovered"), number("dissolved"));
+        p.report.table("groups", integer("group"), texts("heads"), number("stability", "", "mean Jaccard overlap"),
+                       number("recovered", "", "fraction of the resamples"),
+                       number("dissolved", "", "fraction of the resamples"));
         p.report.table("heads", text("name"), integer("group"), number("silhouette"), integer("secondGroup"),
                        number("relativeSize"), text("label"));
     }

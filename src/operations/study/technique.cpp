@@ -30,10 +30,11 @@ struct StudyOfTechnique final : StudyOperation {
         p.report.table("divisions", text("descriptor"), integer("objects"), integer("lower"), number("threshold"),
                        number("shareBetween"), number("p"), number("f1"));
         p.report.table("objects", integer("resamples"), text("unlike.descriptor"), number("unlike.value"),
-                       numbers("unlike.labelled"), number("unlike.distance"), number("score"), number("agreement"),
-                       numbers("roundnessInterval"), any("descriptors"), text("name"), text("label"), text("answer"),
-                       text("certainty"), text("words"), integer("slices.asked"), integer("slices.used"), integer("slices.open"),
-                       integer("slices.tooOpen"), integer("slices.empty"));
+                       numbers("unlike.labelled"), number("unlike.distance"), number("score"),
+                       number("agreement", "", "fraction of the resampled collections"), numbers("roundnessInterval"),
+                       any("descriptors"), text("name"), text("label"), text("answer"), text("certainty"), text("words"),
+                       integer("slices.asked"), integer("slices.used"), integer("slices.open"), integer("slices.tooOpen"),
+                       integer("slices.empty"));
     }
 
     void check() const override {
