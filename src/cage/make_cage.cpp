@@ -137,14 +137,13 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 void CageOptions::list_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices of the cage", Range{4, 1e6});
     list("alpha", alpha,
-          "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
-          "requires it",
-          Range{0, 1}, "share of the diagonal");
-    list("offset", offset, "distance of the mesh from the wrap that becomes the cage", Range{1e-4, 0.5},
-          "share of the diagonal");
+         "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
+         "requires it",
+         Range{0, 1}, "share of the diagonal");
+    list("offset", offset, "distance of the mesh from the wrap that becomes the cage", Range{1e-4, 0.5}, "share of the diagonal");
     list("genus", genus,
-          "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
-          Choices{"follow", "fill"});
+         "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
+         Choices{"follow", "fill"});
 }
 
 }  // namespace ostraka

@@ -303,23 +303,23 @@ void prepare_for_stl(RepairResult& result) {
 
 void RepairOptions::list_options(OptionList& list) {
     list("merge-distance", merge_distance, "merge border points closer than this (0: only equal positions)", Range{0, 0.1},
-          "share of the diagonal");
+         "share of the diagonal");
     list("merge-gap", merge_gap, "also merge border points across cracks narrower than this width (0: no cracks)", Range{0, 0.5},
-          "share of the shortest edge at the points");
+         "share of the shortest edge at the points");
     list("keep-isolated", keep_isolated, "keep vertices without a face", Anything{});
     list("keep-largest", keep_largest, "keep only the component with the largest area", Anything{});
     list("min-component-share", min_component_share, "minimum share of the total area of a component that is kept", Range{0, 1},
-          "share of the area");
+         "share of the area");
     list("fill-holes", fill_holes, "maximum number of border edges of a hole that is filled (0: no hole is filled)",
-          Range{0, 100000});
+         Range{0, 100000});
     list("fill-holes-size", fill_holes_size, "maximum width (diameter of a disc of the same area) of a hole that is filled",
-          Range{0, 1}, "share of their component's diagonal");
+         Range{0, 1}, "share of their component's diagonal");
     list("remove-self-intersections", remove_self_intersections, "remove intersecting triangles and close the gaps", Anything{});
     list("wrap", wrap, "replace the surface by a watertight wrap, which loses details smaller than --wrap-alpha", Anything{});
     list("wrap-alpha", wrap_alpha, "with --wrap: minimum width of openings that the wrap enters", Range{0.002, 0.5},
-          "share of the diagonal");
+         "share of the diagonal");
     list("wrap-offset", wrap_offset, "with --wrap: distance of the wrap from the surface", Range{0.0001, 0.1},
-          "share of the diagonal");
+         "share of the diagonal");
 }
 
 }  // namespace ostraka
