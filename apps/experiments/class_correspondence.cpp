@@ -165,7 +165,7 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
     std::vector<Index> old;
     for (const std::string& file : options.faces) {
         SubMesh part = shell(read_mesh(file).mesh, face_skin);
-        faces.push_back({Path(file).stem().string(), std::move(part.mesh), {}});
+        faces.push_back({{std::move(part.mesh), {}}, Path(file).stem().string()});
         old = std::move(part.vertices);
     }
     std::vector<Index> marks;

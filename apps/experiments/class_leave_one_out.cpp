@@ -161,7 +161,7 @@ ShapeClass LeaveOneOut::learnt_from(const Source& source, std::size_t arm, std::
             strangers.push_back(one);
         }
     }
-    ShapeClass learnt = learn_class({source.mesh, arm == 0 ? none_ : source.parts, no_graph_}, members, how_, strangers);
+    ShapeClass learnt = learn_class({{source.mesh, arm == 0 ? none_ : source.parts}, no_graph_}, members, how_, strangers);
     learnt.name = source.class_name;
     return learnt;
 }
