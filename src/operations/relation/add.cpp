@@ -49,7 +49,7 @@ struct RelationAdd final : RelationOperation {
         if (!several.empty() && (!type.empty() || !members.empty()))
             fail_usage("--relation with --type or --annotation", "say all in one way: --relation 'TYPE: A, B', once for each");
         if (several.empty() && type.empty())
-            fail_usage("nothing says what the relationship is", "add --type, or --relation 'TYPE: A, B'");
+            fail_usage("the type of the relationship is missing", "add --type, or --relation 'TYPE: A, B'");
         if (several.empty() && members.empty())
             fail_usage("nothing says between which annotations", "add --annotation, once for each member");
         for (const Stated& one : stated()) {
