@@ -28,7 +28,7 @@ struct Experiment {
 std::vector<Experiment>& experiments();
 
 /// Adds an experiment to the program: a constant of this type stands below the function that runs it. `Options` lists its
-/// fields in `describe`; texts of lists may be joined by commas.
+/// fields in `list_options`; texts of lists may be joined by commas.
 struct Registration {
     template <class Options>
     Registration(std::string name, std::string help, void (*run)(const Options&)) {
