@@ -169,7 +169,9 @@ const OperationEntry* named_operation(const std::vector<std::string>& arguments)
         std::string prefix;
         for (std::size_t i = 0; i < max_matching; ++i) prefix += " " + command_words[i];
         if (max_matching == 0) next_words.emplace_back("workbench");
-        const std::string nearest = nearest_name(command_words[max_matching], next_words);
+        // "template turn" became "template revolve" in version 0.2.
+        const bool is_former_name = max_matching == 1 && command_words[0] == "template" && command_words[1] == "turn";
+        const std::string nearest = is_former_name ? "revolve" : nearest_name(command_words[max_matching], next_words);
         fail_usage(
             fmt::format("'{}' is not a command{}", printable(command_words[max_matching], 60),
                         max_matching == 0 ? "" : fmt::format(" of 'ostraka{}'", prefix)),
@@ -323,7 +325,7 @@ void refuse_missing(const Call& call) {
     const auto refuse = [&](const std::string& name, const std::string& help, const char* value) {
         const bool is_flag = !parameters.in_some_order(name);
         throw Error(ErrorKind::usage, call.entry().name, fmt::format("{}{} is missing", is_flag ? "--" : "", name),
-                    fmt::format("give {}: {}", help,
+                    fmt::format("give the {}: {}", help,
                                 is_flag ? fmt::format("--{} {}", name, value) : usage_of(call, parameters.orders.front())));
     };
     for (const Slot* slot : parameters.slots())

@@ -67,11 +67,12 @@ void Call::no_such_name(const std::string& name, const std::vector<std::string>&
     std::vector<std::string> names = flags;
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
-    // Bounds were named least and most before version 0.2.
-    std::string current_name = "-" + name;
-    for (const auto& [word, bound] : {std::pair<std::string, const char*>("-least-", "-min-"), {"-most-", "-max-"}})
-        if (const auto at = current_name.find(word); at != std::string::npos) current_name.replace(at, word.size(), bound);
-    const std::string nearest = nearest_name(current_name.substr(1), names);
+    // Names before version 0.2.
+    std::string current_name = "-" + name + "-";
+    for (const auto& [word, current_word] :
+         {std::pair<std::string, const char*>("-least-", "-min-"), {"-most-", "-max-"}, {"-strangers-", "-out-of-class-"}})
+        if (const auto at = current_name.find(word); at != std::string::npos) current_name.replace(at, word.size(), current_word);
+    const std::string nearest = nearest_name(current_name.substr(1, current_name.size() - 2), names);
     throw Error(ErrorKind::usage, entry_->name, fmt::format("has no option '{}'", printable(name, 60)),
                 nearest.empty()                     ? fmt::format("'ostraka {} --help' shows them", entry_->name)
                 : nearest == name && !flags.empty() ? "options begin with --"
@@ -230,11 +231,12 @@ void refuse_mesh(const Slot& slot, const Path& file) {
 void Call::check_given(const std::function<bool(const Path&)>& will_exist) const {
     for (const Option& option : parameters_.options)
         if (option.needed && !option.given)
-            throw Error(ErrorKind::usage, entry_->name, fmt::format("option {} is missing", option.name), "give " + option.help);
+            throw Error(ErrorKind::usage, entry_->name, fmt::format("option {} is missing", option.name),
+                        "give the " + option.help);
     std::vector<Path> inputs, outputs;
     for (const Slot* slot : parameters_.slots()) {
         if (slot->needed && slot->sources.empty() && slot->role == Role::input && !slot->may_be_new)
-            throw Error(ErrorKind::usage, entry_->name, slot->name + " is missing", "give " + slot->help);
+            throw Error(ErrorKind::usage, entry_->name, slot->name + " is missing", "give the " + slot->help);
         if (slot->role == Role::output) slot->check();
         for (std::size_t i = 0; i < slot->sources.size(); ++i) {
             const Path& file = slot->sources[i].file;

@@ -151,6 +151,29 @@ const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationTy
     return *found;
 }
 
+std::vector<bool> ExpressionEvaluator::faces_in_lasso(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
+    const JsonValue& pick = value["seed"];
+    const Index seed = face(pick, frame, at + "/seed");
+    std::optional<Point> place;
+    if (pick.IsObject()) place = seen(pick, frame, at + "/seed").point;
+    if (pick.IsArray()) {
+        const auto [a, b, c] = corners(mesh_, Face(seed));
+        place =
+            point_at(mesh_, seed, nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame, at)));
+    }
+    return lasso(mesh_, picks(value["points"], frame, at + "/points"), seed, metric_of(value), where_ + ", at " + at, place);
+}
+
+std::vector<bool> ExpressionEvaluator::labelled_faces(const JsonValue& labels, const std::string& at) const {
+    if (face_labels_.empty())
+        fail(at, "the mesh has no face labels", "give a mesh with labels, e.g. a PLY file with a face property \"label\"");
+    std::set<std::int32_t> wanted;
+    for (const auto& label : labels.GetArray()) wanted.insert(label.GetInt());
+    std::vector<bool> result(mesh_.number_of_faces());
+    for (std::size_t i = 0; i < face_labels_.size(); ++i) result[i] = wanted.contains(face_labels_[i]);
+    return result;
+}
+
 std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
     check_cancelled();
     const PlaceFrame frame = frame_of(expression, around);
@@ -180,17 +203,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
             result[face((*value)[i], frame, at + "/faces/" + to_string(i))] = true;
     } else if (kind == "lasso") {
-        const JsonValue& pick = (*value)["seed"];
-        const Index seed = face(pick, frame, at + "/lasso/seed");
-        std::optional<Point> place;
-        if (pick.IsObject()) place = seen(pick, frame, at + "/lasso/seed").point;
-        if (pick.IsArray()) {
-            const auto [a, b, c] = corners(mesh_, Face(seed));
-            place = point_at(mesh_, seed,
-                             nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), point(pick, frame, at)));
-        }
-        result = lasso(mesh_, picks((*value)["points"], frame, at + "/lasso/points"), seed, metric_of(*value),
-                       where_ + ", at " + at + "/lasso", place);
+        result = faces_in_lasso(*value, frame, at + "/lasso");
     } else if (kind == "component") {
         const Index seed = face((*value)["seed"], frame, at + "/component/seed");
         std::vector<bool> within;
@@ -202,12 +215,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         }
         result = component_of(mesh_, seed, within);
     } else if (kind == "labels") {
-        if (face_labels_.empty())
-            fail(at + "/labels", "the mesh has no face labels",
-                 "give a mesh with labels, e.g. a PLY file with a face property \"label\"");
-        std::set<std::int32_t> wanted;
-        for (const auto& label : value->GetArray()) wanted.insert(label.GetInt());
-        for (std::size_t i = 0; i < face_labels_.size(); ++i) result[i] = wanted.contains(face_labels_[i]);
+        result = labelled_faces(*value, at + "/labels");
     } else if (kind == "annotation") {
         for (const Index i : earlier(*value, AnnotationType::region, at).faces) result[i] = true;
     } else if (kind == "invert") {

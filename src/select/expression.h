@@ -137,6 +137,10 @@ private:
     bool keeps_to_edges(const JsonValue& lasso) const;
     /// Faces on the seed's side of a lasso.
     std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// The faces that a lasso along the edges of the mesh encloses.
+    std::vector<bool> faces_in_lasso(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// The faces that have one of the labels.
+    std::vector<bool> labelled_faces(const JsonValue& labels, const std::string& at) const;
     /// Scalar map that an expression names.
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use

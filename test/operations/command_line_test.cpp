@@ -33,6 +33,8 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
     // Former names of bounds are answered with the current ones.
     expect_refusal("fit --search-least-scale 1 a b", "did you mean 'search-min-scale'");
     expect_refusal("assemble --least-join 0.5 a b", "did you mean 'min-join'");
+    expect_refusal("template learn --strangers a b c", "did you mean 'out-of-class'");
+    expect_refusal("template turn a b", "did you mean 'revolve'");
     expect_refusal("mesh info " + vase + " --input x", "input is given without a flag");
     expect_refusal("mesh info " + vase + " more", "one argument too many");
     expect_refusal("--quiet mesh info " + vase, "precedes the command");
@@ -40,8 +42,9 @@ TEST(CommandLine, WrongFlagsAreNamedWithTheNearest) {
 }
 
 TEST(CommandLine, MissingInputsAreNamedWithTheirOption) {
-    expect_refusal("annotation list " + vase,
-                   "annotations is missing (give annotations of the mesh (.ant.json): ostraka annotation list MESH ANNOTATIONS");
+    expect_refusal(
+        "annotation list " + vase,
+        "annotations is missing (give the annotations of the mesh (.ant.json): ostraka annotation list MESH ANNOTATIONS");
     expect_refusal("mesh convert " + vase, "output is missing");
     expect_refusal("measure refresh " + vase, "--annotations is missing");
     expect_refusal("measure refresh " + vase, "(.ant.json): --annotations FILE");
