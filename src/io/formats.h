@@ -3,6 +3,7 @@
 
 #include "ostraka/io/mesh_file.h"
 
+#include <optional>
 #include <span>
 
 namespace ostraka::io {
@@ -14,11 +15,28 @@ PolygonSoup read_ply(const std::string& bytes, const std::string& file);
 PolygonSoup read_stl(std::string& bytes, const std::string& file);
 PolygonSoup read_medit(std::string& bytes, const std::string& file);
 PolygonSoup read_vtu(const std::string& bytes, const std::string& file);
+PolygonSoup read_gltf(const std::string& bytes, const std::string& file);  ///< .glb and .gltf
+PolygonSoup read_3mf(const std::string& bytes, const std::string& file);
 
 /// True if the content is a PLY file, whatever the name of the file.
 bool looks_like_ply(std::string_view bytes);
 bool looks_like_off(std::string_view bytes);  ///< true if the content is an OFF file
 bool looks_like_stl(std::string_view bytes);  ///< true if the content is an STL file
+bool looks_like_glb(std::string_view bytes);  ///< true if the content is a binary glTF file (of any version)
+
+/// The file that a mesh file names, such as an image or MTL file: the reference relative to the folder of `file`, or else the
+/// file with the bare name in this folder, in each case also with the letters in another case. Backslashes count as slashes,
+/// doubled ones as one; percent escapes are resolved if the plain name does not exist. Only files in the folder of `file` and
+/// below are found. Empty: there is none.
+std::optional<Path> file_beside(const Path& file, const std::string& reference);
+
+/// Appends the image in `path` to the images of the soup and returns its index. A file that is already among them is not read
+/// again; a missing or unreadable image gives a note and a null image.
+Index add_image(PolygonSoup& soup, const Path& file, const std::string& reference);
+
+/// Joins vertices that the file doubled for its texture coordinates: where exactly two border edges have the same end points, in
+/// opposite directions, their vertices are joined to the first of them. Fills vertex_of_file_vertex if vertices were joined.
+void join_seams(PolygonSoup& soup);
 
 /// Completes a polygon whose corners were appended to `soup.corners`; throws Error if the number of corners no longer fits an
 /// Index.
@@ -48,6 +66,15 @@ private:
     const TriangleSoup& soup_;
     const WriteOptions& options_;
 };
+
+/// The distinct pairs of vertex and texture coordinates of the corners of a triangle soup, ordered by vertex, then by first use.
+struct TexturedVertices {
+    std::vector<Index> vertex;          ///< for each pair, its vertex; vertices without faces come once
+    std::vector<TexturePoint> texture;  ///< for each pair, its texture coordinates
+    std::vector<Index> pair_of_corner;  ///< for each corner of each triangle, its pair
+};
+/// `corner_texture` has three entries per triangle.
+TexturedVertices textured_vertices(const TriangleSoup& soup, const std::vector<TexturePoint>& corner_texture);
 
 // Writers of mesh files: `extras` must be empty or complete. Each writer returns notes about data that the format cannot store.
 using Notes = std::vector<std::string>;

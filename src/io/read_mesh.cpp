@@ -36,10 +36,10 @@ std::uint8_t channel_from_unit(double value, std::size_t& out_of_range) {
 
 namespace {
 
-enum class Format { obj, off, ply, stl, medit, vtu };
+enum class Format { obj, off, ply, stl, gltf, three_mf, medit, vtu };
 
 std::string name_of(Format format) {
-    constexpr const char* names[] = {"OBJ", "OFF", "PLY", "STL", "Medit's mesh", "VTU"};
+    constexpr const char* names[] = {"OBJ", "OFF", "PLY", "STL", "glTF", "3MF", "Medit's mesh", "VTU"};
     return names[static_cast<int>(format)];
 }
 
@@ -49,15 +49,18 @@ Format format_of_extension(const Path& file) {
     if (ending == ".off") return Format::off;
     if (ending == ".ply") return Format::ply;
     if (ending == ".stl") return Format::stl;
+    if (ending == ".glb" || ending == ".gltf") return Format::gltf;
+    if (ending == ".3mf") return Format::three_mf;
     if (ending == ".mesh") return Format::medit;
     if (ending == ".vtu") return Format::vtu;
     throw Error(ErrorKind::usage, file.string(), "does not have the extension of a readable mesh format",
-                "use .obj, .off, .ply or .stl, or .mesh or .vtu for tetrahedra");
+                "use .obj, .ply, .glb, .gltf, .stl, .off or .3mf, or .mesh or .vtu for tetrahedra");
 }
 
 /// The format of the extension, unless the content clearly has another format.
 Format format_of_content(Format expected, std::string_view bytes) {
     if (looks_like_ply(bytes)) return Format::ply;
+    if (looks_like_glb(bytes)) return Format::gltf;
     if (looks_like_off(bytes)) return Format::off;
     if (looks_like_stl(bytes)) return Format::stl;
     return expected;
@@ -107,12 +110,15 @@ PolygonSoup read_polygons(const Path& file) {
                    fmt::format("run: iconv -f {} -t UTF-8 {} > {}", encoding, name,
                                (file.parent_path() / ("utf8-" + file.filename().string())).string()));
     const Format format = format_of_content(format_of_name, bytes);
-    PolygonSoup soup = format == Format::obj     ? read_obj(bytes, name)
-                       : format == Format::off   ? read_off(bytes, name)
-                       : format == Format::ply   ? read_ply(bytes, name)
-                       : format == Format::medit ? read_medit(bytes, name)
-                       : format == Format::vtu   ? read_vtu(bytes, name)
-                                                 : read_stl(bytes, name);
+    PolygonSoup soup = format == Format::obj        ? read_obj(bytes, name)
+                       : format == Format::off      ? read_off(bytes, name)
+                       : format == Format::ply      ? read_ply(bytes, name)
+                       : format == Format::gltf     ? read_gltf(bytes, name)
+                       : format == Format::three_mf ? read_3mf(bytes, name)
+                       : format == Format::medit    ? read_medit(bytes, name)
+                       : format == Format::vtu      ? read_vtu(bytes, name)
+                                                    : read_stl(bytes, name);
+    if (format == Format::gltf || !soup.extras.corner_texture.empty()) join_seams(soup);
     if (soup.points.size() >= no_index) fail_work(name, "has more than four thousand million vertices", "split it");
     if (format != format_of_name)
         soup.notes.push_back(

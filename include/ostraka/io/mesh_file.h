@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/files/file.h"
+#include "ostraka/image/appearance.h"
 #include "ostraka/mesh/mesh.h"
 
 #include <array>
@@ -13,15 +14,24 @@ namespace ostraka {
 
 using Colour = std::array<std::uint8_t, 4>;  ///< red, green, blue, alpha
 
+/// A number for each vertex or each face, such as a scanner's quality or a curvature.
+struct NamedValues {
+    std::string name;            ///< name of the PLY property
+    std::vector<double> values;  ///< one number per element
+};
+
 /// Attributes of the elements of a mesh. Each list is empty or has one entry per element.
 struct MeshExtras {
-    std::vector<Colour> vertex_colours;                ///< one colour per vertex
-    std::vector<Colour> face_colours;                  ///< one colour per face
-    std::vector<std::int32_t> vertex_labels;           ///< one label per vertex
-    std::vector<std::int32_t> face_labels;             ///< one label per face
-    std::vector<std::array<float, 2>> vertex_texture;  ///< texture coordinates per vertex
-    /// Texture coordinates per polygon corner (instead of vertex_texture), in the order of the corners.
-    std::vector<std::array<float, 2>> corner_texture;
+    std::vector<Colour> vertex_colours;       ///< one colour per vertex
+    std::vector<Colour> face_colours;         ///< one colour per face
+    std::vector<std::int32_t> vertex_labels;  ///< one label per vertex
+    std::vector<std::int32_t> face_labels;    ///< one label per face
+    /// Texture coordinates per polygon corner, in the order of the corners. A vertex at a seam of the texture is one vertex with
+    /// different coordinates in its corners.
+    std::vector<TexturePoint> corner_texture;
+    std::vector<Index> face_materials;                    ///< index of each face's material in `appearance`, or no_index
+    Appearance appearance;                                ///< materials and images
+    std::vector<NamedValues> vertex_values, face_values;  ///< further numbers of vertices and of faces
     /// For a tetrahedral mesh: the vertices of each tetrahedron. The triangles of the mesh are the surface of the tetrahedra;
     /// interior vertices are isolated in the triangle mesh.
     std::vector<std::array<Index, 4>> tetrahedra = {};
@@ -35,14 +45,19 @@ struct PolygonSoup {
     std::vector<Index> corners;                 ///< indices of the vertices of all polygons, polygon by polygon
     MeshExtras extras;                          ///< attributes per vertex and per polygon
     std::vector<std::string> notes;             ///< messages about content of the file that was not kept
+    /// Vertex of each vertex in the file, where vertices of the file that were doubled for their texture coordinates or normals
+    /// were joined again; empty: vertex i of the file is vertex i.
+    std::vector<Index> vertex_of_file_vertex = {};
     [[nodiscard]] std::size_t polygon_count() const { return polygon_begin.size() - 1; }
 };
 
-/// Reads the polygons of a mesh file: OBJ, PLY (ascii, both binary orders), OFF, STL (ascii, binary), Medit's .mesh and VTK's
-/// .vtu (both as text; tetrahedra are represented by their surface, oriented outwards). The format is chosen by the file name
-/// extension, or by the content if extension and content contradict each other. STL vertices with equal coordinates are merged,
-/// and numbered by first appearance. Throws Error (input) with file, line or byte, and remedy. Memory is bounded by a small
-/// multiple of the file size, regardless of the counts in the header.
+/// Reads the polygons of a mesh file: OBJ with its MTL files and images, PLY (ascii, both binary orders), GLB and glTF 2.0, OFF,
+/// STL (ascii, binary), 3MF, Medit's .mesh and VTK's .vtu (both as text; tetrahedra are represented by their surface, oriented
+/// outwards). The format is chosen by the file name extension, or by the content if extension and content contradict each other.
+/// STL vertices with equal coordinates are merged, and numbered by first appearance; so are the border vertices of files with
+/// texture coordinates (PLY, OBJ, GLB, glTF) where the borders of two faces coincide, since such files double vertices along the
+/// seams of the texture. Throws Error (input) with file, line or byte, and remedy. Memory is bounded by a small multiple of the
+/// file size, regardless of the counts in the header.
 PolygonSoup read_polygons(const Path& file);
 
 /// Polygons divided into triangles.
@@ -73,19 +88,10 @@ MeshFile read_mesh(const Path& file);
 /// Encoding of PLY and STL files.
 enum class Encoding { binary, ascii };
 
-/// A property of faces in PLY files.
-struct FaceValues {
-    std::string name;           ///< name of the PLY property
-    std::vector<float> values;  ///< one number per triangle
-};
-
 /// Options of `write_mesh`.
 struct WriteOptions {
     Encoding encoding = Encoding::binary;  ///< encoding of PLY and STL
     std::string comment;                   ///< comment of one line (the provenance), written if the format supports comments
-    /// One number per vertex, written as the PLY property "quality" for colouring; empty: none.
-    std::vector<double> vertex_quality{};
-    std::vector<FaceValues> face_values{};  ///< additional PLY properties of faces
     /// Polygons to write instead of the triangles to OBJ, OFF and PLY files: the vertices of each polygon. Other formats get the
     /// triangles.
     std::vector<std::vector<Index>> polygons{};

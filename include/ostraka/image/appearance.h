@@ -1,0 +1,72 @@
+// How the surface of a mesh looks: materials with images, and the colour of the surface at texture coordinates.
+#pragma once
+
+#include "ostraka/image/image.h"
+#include "ostraka/mesh/mesh.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace ostraka {
+
+/// What an image shows outside its square: the image repeated, its border pixels, or the image mirrored at each border.
+enum class TextureWrap { repeat, clamp, mirror };
+
+/// Texture coordinates: u from left to right, v from the bottom to the top of the image (as in OBJ and PLY; glTF has v from the
+/// top), both 0 to 1 over the image.
+using TexturePoint = std::array<float, 2>;
+
+/// A material of a surface. The colour of a point is base_colour times the image's colour there, in linear light.
+struct Material {
+    std::string name;                              ///< may be empty
+    std::array<float, 4> base_colour{1, 1, 1, 1};  ///< linear red, green, blue and opacity, 0 to 1
+    Index image = no_index;                        ///< index of the base colour image in Appearance::images; no_index: none
+    TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+    bool nearest = false;                                            ///< true: pixels of the image are not interpolated
+    enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;  ///< how the opacity is used (glTF 2.0, section 3.9.4)
+    float alpha_cutoff = 0.5F;                                       ///< mask: opacity below which nothing is drawn
+    bool double_sided = true;                                        ///< true: the back of a face is drawn too
+    /// What the file says of the material beyond the members above, kept for files of the same kind: a JSON object of a glTF
+    /// material, whose texture indices are indices of Appearance::images; empty: nothing.
+    std::string gltf_rest;
+    /// Likewise the lines of an MTL material, which name images by their file names.
+    std::vector<std::string> mtl_rest;
+};
+
+/// The materials of a mesh and their images.
+struct Appearance {
+    std::vector<Material> materials;
+    std::vector<SharedImage> images;  ///< null: an image that is missing or unreadable; a note says so
+    [[nodiscard]] bool empty() const { return materials.empty(); }  ///< true if there is no material
+};
+
+/// One sRGB channel (IEC 61966-2-1), 0 to 255, as linear light, 0 to 1.
+float linear_from_srgb(std::uint8_t channel);
+/// Linear light, clamped to 0 to 1, as the nearest sRGB channel.
+std::uint8_t srgb_from_linear(float light);
+
+/// Reads the colour of a material at texture coordinates from decoded images. Images are decoded and reduced (a pyramid of
+/// halved images) once, at construction; safe to use from several threads.
+class TextureSampler {
+public:
+    /// `where`: file for messages. Throws Error (input) as `decode` does.
+    TextureSampler(const Appearance& appearance, const std::string& where);
+
+    /// Linear red, green, blue and opacity of a material at `at`, base colour included. `footprint`: width of the area whose mean
+    /// colour is asked for, in texture coordinates (0: bilinear in the full image; else trilinear in the pyramid). `material`
+    /// no_index: white.
+    [[nodiscard]] std::array<float, 4> colour(Index material, TexturePoint at, float footprint = 0) const;
+    /// Size of the material's image in pixels; {0, 0} without an image.
+    [[nodiscard]] std::array<int, 2> size(Index material) const;
+
+private:
+    struct Level {
+        int width = 0, height = 0;
+        std::vector<std::array<std::uint16_t, 4>> rgba;  ///< linear light, 0 to 65535
+    };
+    std::vector<Material> materials_;
+    std::vector<std::vector<Level>> pyramids_;  ///< one per image, the full image first
+};
+
+}  // namespace ostraka
