@@ -17,7 +17,6 @@ std::vector<std::string> names_of(const MeshExtras& extras) {
     if (!extras.face_colours.empty()) names.emplace_back("face colours");
     if (!extras.vertex_labels.empty()) names.emplace_back("vertex labels");
     if (!extras.face_labels.empty()) names.emplace_back("face labels");
-    if (!extras.vertex_texture.empty()) names.emplace_back("texture coordinates per vertex");
     if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates per corner");
     return names;
 }
