@@ -61,7 +61,8 @@ struct Import final : Operation {
         report("sound", sound)("mesh", name + ".ply")("vertices", repaired.after.vertices)("triangles", repaired.after.triangles)(
             "materials", repaired.extras.appearance.materials.size())("images", repaired.extras.appearance.images.size())(
             "raw_files", copies)("defects_of_raw_file", before.defects())("after", to_json(repaired.after, report.allocator()));
-        report.line(fmt::format("{}: {}, {}; {}", object.in(name + ".ply").string(), counted(repaired.after.vertices, "vertex"),
+        report.line(fmt::format("{}: {}, {}; {}", object.in(name + ".ply").string(),
+                                fmt::format("{} vertices", repaired.after.vertices),
                                 counted(repaired.after.triangles, "triangle"),
                                 sound ? "closed, oriented and free of intersections" : joined(repaired.after.defects())));
         JsonValue record = json_object(report.allocator(), "raw", scan.file_name(), "mesh", name + ".ply", "sound", sound);
@@ -89,7 +90,8 @@ struct Import final : Operation {
 
     static std::string state_in_words(const PolygonSoup& polygons) {
         const MeshExtras& extras = polygons.extras;
-        std::vector<std::string> parts{counted(polygons.points.size(), "vertex"), counted(polygons.polygon_count(), "face")};
+        std::vector<std::string> parts{fmt::format("{} vertices", polygons.points.size()),
+                                       counted(polygons.polygon_count(), "face")};
         if (!extras.vertex_colours.empty()) parts.emplace_back("colours of vertices");
         if (!extras.face_colours.empty()) parts.emplace_back("colours of faces");
         if (!extras.corner_texture.empty()) parts.emplace_back("texture coordinates");
