@@ -9,7 +9,8 @@ namespace ostraka {
 
 // clang-format off
 std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
-    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_register(), make_mesh_make();
+    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_register(), make_mesh_make(),
+    make_mesh_surface();
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
     make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
@@ -38,6 +39,7 @@ constexpr OperationEntry entries[]{
     {"mesh register", "register a mesh to another mesh of the same object by rotation, translation and scale; exit code 3, and nothing written, if the meshes show different objects", make_mesh_register},
     {"mesh extract", "cut annotated parts out of an object, and keep the annotations on these parts", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment with known pose", make_mesh_break},
+    {"mesh surface", "reconstruct the surface of a point cloud, with the colours and intensities of its points", make_mesh_surface},
     {"mesh make", "make a closed synthetic mesh whose parts are known exactly", make_mesh_make},
     {"annotation apply", "annotate a mesh from a recipe or from labels", make_annotation_apply, 3},
     {"annotation list", "list the annotations of a mesh", make_annotation_list},
