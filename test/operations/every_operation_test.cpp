@@ -60,6 +60,7 @@ const std::vector<Step>& steps() {
          R"({"input": "coarse.ply", "output": "cut.ply", "vertices": 2000, "annotations": "coarse.ant.json",
              "annotations-out": "cut.ant.json"})"},
         {"mesh remesh", R"({"input": "coarse.ply", "output": "new.ply", "vertices": 1000})"},
+        {"mesh bake", R"({"target": "new.ply", "source": "seen.ply", "output": "baked.ply", "to": "vertices"})"},
         {"mesh register", R"({"source": "pot.ply", "target": "fine.ply", "output": "registered.ply", "matrix": "matrix.json"})"},
         {"mesh move",
          R"({"input": "pot.ply", "output": "placed.ply", "rotate": "z,30", "translate": [1, 2, 3], "transform": "placed.json",
