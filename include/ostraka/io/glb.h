@@ -1,12 +1,15 @@
-// Container format and data tables of binary glTF 2.0 files.
+// Container format and data tables of glTF 2.0 files: written as GLB, read as GLB or JSON.
 #pragma once
 
 #include "ostraka/files/json.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ostraka::glb {
@@ -17,6 +20,10 @@ inline constexpr int array_buffer = 34962, element_array_buffer = 34963;  ///< t
 /// Marks a node, in its extras, whose only purpose is to display the mesh upright and in metres.
 inline constexpr const char* display_only = "ostraka-display";
 inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;  ///< modes of primitives
+inline constexpr int strip_mode = 5, fan_mode = 6;                         ///< modes of primitives: triangle strip, triangle fan
+/// Names an accessor in the extras of a mesh whose triangles were ordered by material: the place of each triangle before.
+inline constexpr const char* triangle_order = "ostraka-triangles";
+inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 
 /// Converts an sRGB colour channel (IEC 61966-2-1; 0 to 255) to a linear colour channel, because glTF vertex colours are linear
 /// (section 3.7.2.1).
@@ -41,6 +48,8 @@ public:
     /// the accessor.
     int announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type,
                           JsonValue* min = nullptr, JsonValue* max = nullptr);
+    /// Adds a view of `size` bytes that the caller writes, followed by zeros up to the alignment; returns its index.
+    int announce_view(std::size_t size) { return view(size, 0, 0); }
     /// Data of an encoded view (EXT_meshopt_compression).
     struct Compressed {
         const std::string& bytes;   ///< encoded data
@@ -80,11 +89,20 @@ void append(std::string& bytes, T value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// A parsed GLB file; every access is checked against the sizes in the file. Throws Error (input) with the file and the JSON
+/// Content of a data URI (RFC 2397), in base64 or percent-encoded; nullopt if the text is no data URI or cannot be decoded.
+std::optional<std::string> content_of_data_uri(std::string_view uri);
+
+/// A parsed glTF file; every access is checked against the sizes in the file. Throws Error (input) with the file and the JSON
 /// pointer.
 class Reader {
 public:
+    /// A GLB file with all its data inside.
     Reader(const std::string& bytes, const std::string& where);
+    /// Returns the content of a file beside the glTF file, named by the URI of a buffer. Throws Error (input) if there is none.
+    using FileReader = std::function<std::string(const std::string& uri)>;
+    /// A GLB file or a glTF file in JSON, whose buffers may be other files. The data may expand more strongly when they are read.
+    /// `bytes` must live as long as the reader.
+    Reader(const std::string& bytes, const std::string& where, FileReader file_reader);
 
     [[nodiscard]] const Json& document() const { return document_; }   ///< the JSON chunk
     [[nodiscard]] const std::string& where() const { return where_; }  ///< name of the file in messages
@@ -97,25 +115,50 @@ public:
     /// Element `index` of the list of this name in the root object of the JSON chunk.
     [[nodiscard]] const JsonValue& element(const char* list, std::size_t index, const std::string& pointer) const;
 
-    /// Bytes of a buffer view.
+    /// Bytes of a buffer view, decoded if it is compressed (EXT_meshopt_compression).
     [[nodiscard]] std::string_view view(std::size_t index, const std::string& pointer) const;
-    /// The numbers of an accessor: `width` numbers per element, consecutively.
+
+    /// What an accessor contains.
+    struct Shape {
+        std::size_t count = 0;    ///< number of elements
+        std::size_t width = 0;    ///< numbers per element
+        int component = 0;        ///< component type
+        bool normalised = false;  ///< integers stand for fractions of their largest value
+    };
+    [[nodiscard]] Shape shape(std::size_t index, const std::string& pointer) const;
+    /// The numbers of an accessor: `width` numbers per element, consecutively; normalised integers as fractions (section 3.11).
     using Values = std::shared_ptr<const std::vector<double>>;
-    /// Reads an accessor with `width` numbers per element; each accessor is read only once, however often it is referenced.
+    /// Reads an accessor with `width` numbers per element, also a sparse one or one without data (zeros); each accessor is read
+    /// only once, however often it is referenced.
     [[nodiscard]] Values accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+    /// Reads an accessor with one unsigned integer per element.
+    [[nodiscard]] std::vector<std::uint32_t> integers(std::size_t index, const std::string& pointer) const;
 
     /// Accounts for memory before it is allocated. Throws Error (input), with the JSON pointer, for a file that references the
-    /// same data so often that memory would be exhausted.
+    /// same data so often, or is compressed so strongly, that memory would be exhausted.
     void charge(double bytes, const std::string& pointer) const;
 
 private:
-    [[nodiscard]] std::vector<double> read_accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+    struct Stored;
+    void parse_container(std::string_view contents);
+    void check_version() const;
+    [[nodiscard]] std::string_view buffer(std::size_t index, const std::string& pointer) const;
+    [[nodiscard]] std::string_view part(const JsonValue& entry, const std::string& pointer) const;
+    [[nodiscard]] std::string decoded(const JsonValue& compressed, const std::string& pointer) const;
+    [[nodiscard]] Stored stored(const JsonValue& accessor, const Shape& shape, const std::string& pointer) const;
+    template <class Number>
+    void read(std::size_t index, const Shape& shape, std::vector<Number>& values) const;
+    template <class Number>
+    void read_sparse(const JsonValue& sparse, const Shape& shape, const std::string& pointer, std::vector<Number>& values) const;
 
     std::string where_;
     std::string_view binary_;
+    FileReader file_reader_;
     Json document_;
-    double allowed_ = 0;
+    mutable double allowed_ = 0;
     mutable double charged_ = 0;
+    mutable std::map<std::size_t, std::string> buffers_;  ///< contents of buffers that are not the binary chunk
+    mutable std::map<std::size_t, std::string> decoded_;  ///< decoded bytes of compressed views
     mutable std::map<std::pair<std::size_t, std::size_t>, Values> read_;
 };
 
