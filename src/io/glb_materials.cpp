@@ -1,4 +1,4 @@
-#include "io/glb_materials.h"
+#include "ostraka/io/glb_materials.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"

@@ -106,16 +106,19 @@ Light SurfaceColour::textured(const Surface::Hit& hit, Index material, double x,
     std::array<Eigen::Vector3d, 2> step{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     std::array<int, 2> probes{1, 1};
     double texels = 0;  ///< width of a cell in pixels of the image
+    const auto here = plane_weights(surface_, hit.triangle, camera_.ray(x, y));
     for (std::size_t side = 0; side < 2; ++side) {
-        const auto ray = side == 0 ? camera_.ray(x + spacing, y) : camera_.ray(x, y + spacing);
-        const auto here = plane_weights(surface_, hit.triangle, camera_.ray(x, y)),
-                   next = plane_weights(surface_, hit.triangle, ray);
+        const auto next =
+            plane_weights(surface_, hit.triangle, side == 0 ? camera_.ray(x + spacing, y) : camera_.ray(x, y + spacing));
         if (!here || !next) continue;
         step[side] = *next - *here;
         const double length = (corners * step[side]).cwiseProduct(size).norm();
         probes[side] = static_cast<int>(std::clamp(std::ceil(length), 1.0, double(max_probes)));
         texels = std::max(texels, length / probes[side]);
     }
+    // A cell wider than a pixel of the image is read from one level of the pyramid, the first that is no finer: between two levels
+    // the finer one would be seen with gaps.
+    if (texels > 1) texels = std::exp2(std::ceil(std::log2(texels) - 1e-6));
     const auto footprint = static_cast<float>(texels / std::max(width, height));
     Light sum = Light::Zero();
     for (int i = 0; i < probes[0]; ++i)

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace ostraka {
 namespace {
@@ -243,8 +244,12 @@ TEST(Texture, FlatLightShowsColoursAsTheyAre) {
     scene.vertex_colours.assign(scene.mesh.points.size(), Rgb{120, 60, 30});
     RenderOptions options = flat();
     std::size_t inside = 0;
-    for (const std::uint32_t pixel : render({scene}, options).picture.argb)
-        if (pixel >> 24U == 255U) EXPECT_EQ(pixel, 0xFF783C1EU), ++inside;
+    const Rendering rendering = render({scene}, options);
+    for (const std::uint32_t pixel : rendering.picture.argb)
+        if (pixel >> 24U == 255U) {
+            EXPECT_EQ(pixel, 0xFF783C1EU);
+            ++inside;
+        }
     EXPECT_GT(inside, 10000U);
     options.ambient_occlusion = 8;
     EXPECT_THROW(render({scene}, options), Error);
@@ -255,7 +260,8 @@ TEST(Texture, PointsHaveTheColourOfTheTexture) {
     RenderOptions options = flat();
     options.drawing = RenderOptions::Drawing::points;
     std::size_t dots = 0;
-    for (const std::uint32_t pixel : render({scene}, options).picture.argb) dots += pixel == 0xFF00FF00U ? 1 : 0;
+    const Rendering rendering = render({scene}, options);
+    for (const std::uint32_t pixel : rendering.picture.argb) dots += pixel == 0xFF00FF00U ? 1 : 0;
     EXPECT_GT(dots, 0U);
 }
 
