@@ -3,10 +3,12 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/error.h"
+#include "ostraka/image/appearance.h"
 
 #include <bit>
 #include <concepts>
 #include <cstring>
+#include <memory>
 #include <type_traits>
 
 namespace ostraka::python {
@@ -28,6 +30,9 @@ constexpr bool is_plain<std::array<T, Count>> = is_plain<T>;
 constexpr AnnotationType last_of(AnnotationType /*any*/) { return AnnotationType::region; }
 constexpr AttributeType last_of(AttributeType /*any*/) { return AttributeType::descriptor; }
 constexpr Information::Kind last_of(Information::Kind /*any*/) { return Information::Kind::file; }
+constexpr ImageFormat last_of(ImageFormat /*any*/) { return ImageFormat::gif; }
+constexpr TextureWrap last_of(TextureWrap /*any*/) { return TextureWrap::mirror; }
+constexpr Material::Alpha last_of(Material::Alpha /*any*/) { return Material::Alpha::blend; }
 constexpr SurfacePoint::Kind last_of(SurfacePoint::Kind /*any*/) { return SurfacePoint::Kind::face; }
 
 /// Appends fields to bytes.
@@ -55,6 +60,11 @@ private:
     template <class T>
     void put(const std::optional<T>& value) {
         put(value.has_value());
+        if (value) put(*value);
+    }
+    template <class T>
+    void put(const std::shared_ptr<const T>& value) {
+        put(value != nullptr);
         if (value) put(*value);
     }
     template <class First, class Second>
@@ -125,6 +135,14 @@ private:
         get(has_value);
         if (has_value) get(value.emplace());
         else value.reset();
+    }
+    template <class T>
+    void get(std::shared_ptr<const T>& value) {
+        bool has_value = false;
+        get(has_value);
+        T content;
+        if (has_value) get(content);
+        value = has_value ? std::make_shared<const T>(std::move(content)) : nullptr;
     }
     template <class First, class Second>
     void get(std::pair<First, Second>& both) {

@@ -247,8 +247,11 @@ py::dict extras_of(const Held& held) {
     add("face_colours", extras.face_colours, std::uint8_t{}, 4);
     add("vertex_labels", extras.vertex_labels, std::int32_t{}, 1);
     add("face_labels", extras.face_labels, std::int32_t{}, 1);
-    add("vertex_texture", extras.vertex_texture, float{}, 2);
     add("corner_texture", extras.corner_texture, float{}, 2);
+    add("face_materials", extras.face_materials, Index{}, 1);
+    for (const NamedValues& column : extras.vertex_values)
+        add(("vertex_values/" + column.name).c_str(), column.values, double{}, 1);
+    for (const NamedValues& column : extras.face_values) add(("face_values/" + column.name).c_str(), column.values, double{}, 1);
     return arrays;
 }
 

@@ -20,13 +20,31 @@
 
 namespace ostraka::python {
 
+template <class Archive, Is<Image> T>
+void fields(Archive& archive, T& x) {
+    archive(x.name, x.bytes, x.format, x.width, x.height);
+}
+template <class Archive, Is<Material> T>
+void fields(Archive& archive, T& x) {
+    archive(x.name, x.base_colour, x.image, x.wrap_u, x.wrap_v, x.nearest, x.alpha, x.alpha_cutoff, x.double_sided, x.gltf_rest,
+            x.mtl_rest);
+}
+template <class Archive, Is<Appearance> T>
+void fields(Archive& archive, T& x) {
+    archive(x.materials, x.images);
+}
+template <class Archive, Is<NamedValues> T>
+void fields(Archive& archive, T& x) {
+    archive(x.name, x.values);
+}
 template <class Archive, Is<MeshExtras> T>
 void fields(Archive& archive, T& x) {
-    archive(x.vertex_colours, x.face_colours, x.vertex_labels, x.face_labels, x.vertex_texture, x.corner_texture, x.tetrahedra);
+    archive(x.vertex_colours, x.face_colours, x.vertex_labels, x.face_labels, x.corner_texture, x.face_materials, x.appearance,
+            x.vertex_values, x.face_values, x.tetrahedra);
 }
 template <class Archive, Is<PolygonSoup> T>
 void fields(Archive& archive, T& x) {
-    archive(x.points, x.polygon_begin, x.corners, x.extras, x.notes);
+    archive(x.points, x.polygon_begin, x.corners, x.extras, x.notes, x.vertex_of_file_vertex);
 }
 template <class Archive, Is<IndexMap> T>
 void fields(Archive& archive, T& x) {
@@ -43,7 +61,7 @@ void fields(Archive& archive, T& x) {
 
 namespace {
 
-constexpr std::string_view magic = "ostraka object 2\n";  ///< includes the version of the format
+constexpr std::string_view magic = "ostraka object 3\n";  ///< includes the version of the format
 constexpr std::size_t digest_size = 64;
 
 /// Type of a saved object. The order is part of the format.
@@ -149,10 +167,19 @@ void check_mesh(const PolygonSoup& soup) {
     const MeshExtras& extras = soup.extras;
     check_count(extras.vertex_colours.size(), vertices, "colours");
     check_count(extras.vertex_labels.size(), vertices, "labels");
-    check_count(extras.vertex_texture.size(), vertices, "texture coordinates");
     check_count(extras.face_colours.size(), soup.polygon_count(), "colours");
     check_count(extras.face_labels.size(), soup.polygon_count(), "labels");
     check_count(extras.corner_texture.size(), soup.corners.size(), "texture coordinates");
+    check_count(extras.face_materials.size(), soup.polygon_count(), "materials");
+    for (const Index material : extras.face_materials)
+        if (material != no_index) check_indices({material}, extras.appearance.materials.size());
+    for (const Material& material : extras.appearance.materials)
+        if (material.image != no_index) check_indices({material.image}, extras.appearance.images.size());
+    for (const NamedValues& column : extras.vertex_values) check_count(column.values.size(), vertices, "values of vertices");
+    for (const NamedValues& column : extras.face_values)
+        check_count(column.values.size(), soup.polygon_count(), "values of faces");
+    for (const Index vertex : soup.vertex_of_file_vertex)
+        if (vertex != no_index) check_indices({vertex}, vertices);
     for (const auto& tetrahedron : extras.tetrahedra) check_indices({tetrahedron.begin(), tetrahedron.end()}, vertices);
 }
 

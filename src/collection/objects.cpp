@@ -17,7 +17,9 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::array<const char*, 4> mesh_endings{".obj", ".ply", ".off", ".stl"};
+constexpr std::array<const char*, 7> mesh_endings{".obj", ".ply", ".off", ".stl", ".glb", ".gltf", ".3mf"};
+/// Endings of files that are left out beside a mesh of the same name: operations write GLB files for viewers beside their meshes.
+constexpr std::array<const char*, 2> viewer_endings{".glb", ".gltf"};
 constexpr const char* markup_ending = ".mrk.json";
 
 /// Names become file names and appear in JSON: no folders, no hidden files, no terminal control characters, UTF-8.
@@ -96,6 +98,10 @@ Collection from_folder(const Path& folder) {
     };
     for (auto& [stem, files] : meshes) {
         std::sort(files.begin(), files.end());
+        const auto is_for_viewers = [](const Path& file) {
+            return std::find(viewer_endings.begin(), viewer_endings.end(), extension(file)) != viewer_endings.end();
+        };
+        if (!std::all_of(files.begin(), files.end(), is_for_viewers)) std::erase_if(files, is_for_viewers);
         for (const Path& file : files) add(files.size() == 1 ? stem : file.filename().string(), stem, file);
     }
     for (const auto& [stem, file] : markups)

@@ -69,8 +69,8 @@ T copy_or_move(const Slot& slot, std::size_t i, const T& object) {
 
 std::vector<std::string> endings_of(Kind kind) {
     static const std::map<Kind, std::vector<std::string>> endings{
-        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb", ".mesh", ".vtu"}},
-        {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb", ".gltf", ".3mf", ".mesh", ".vtu"}},
+        {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb", ".gltf", ".3mf"}},
         {Kind::annotations, {".ant.json", ".ant"}},
         {Kind::graph, {".graph.json"}},
         {Kind::edit, {".edit.json", ".json"}},

@@ -164,7 +164,7 @@ Json signed_document(const JsonValue& value, const Context& context) {
 
 void JsonOutput::write(const JsonValue& value) const { write_or_keep(*this, signed_document(value, *context), write_json); }
 
-void IndexMapOutput::write(IndexMap map) const {
+Json to_json(const IndexMap& map) {
     Json document = json_document("map");
     auto& allocator = document.GetAllocator();
     add_members(document, allocator, "kind", map.kind);
@@ -174,7 +174,13 @@ void IndexMapOutput::write(IndexMap map) const {
     JsonValue index_list(rapidjson::kArrayType);
     index_list.Reserve(static_cast<rapidjson::SizeType>(map.map.size()), allocator);
     for (const Index i : map.map) index_list.PushBack(i == no_index ? std::int64_t{-1} : static_cast<std::int64_t>(i), allocator);
-    add_members(document, allocator, "map", std::move(index_list), "provenance", context->provenance().to_json(allocator));
+    add_members(document, allocator, "map", std::move(index_list));
+    return document;
+}
+
+void IndexMapOutput::write(IndexMap map) const {
+    Json document = to_json(map);
+    add_members(document, document.GetAllocator(), "provenance", context->provenance().to_json(document.GetAllocator()));
     validate(document, "map", name);
     const auto shared_document = std::make_shared<const Json>(std::move(document));
     write_or_keep(*this, std::move(map),

@@ -6,6 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/execution/parallel.h"
+#include "ostraka/io/carry_extras.h"
 #include "ostraka/io/wrap.h"
 
 #include <fmt/core.h>
@@ -37,38 +38,26 @@ void check_triangles(const TriangleSoup& soup) {
 }
 
 /// For each new element, the value of the old element in `like`.
-template <class Value>
-std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Index>& like) {
-    std::vector<Value> result;
-    if (values.empty()) return result;
-    result.reserve(like.size());
-    for (const Index old_element : like) result.push_back(values[old_element]);
-    return result;
-}
-
 void check_extras(const TriangleSoup& soup, const MeshExtras& extras) {
     const auto check = [](std::size_t size, std::size_t count, const char* attribute) {
         if (size != 0 && size != count) fail_input(attribute, fmt::format("has {} entries for {} elements", size, count));
     };
     check(extras.vertex_colours.size(), soup.points.size(), "vertex colours");
     check(extras.vertex_labels.size(), soup.points.size(), "vertex labels");
-    check(extras.vertex_texture.size(), soup.points.size(), "vertex texture");
     check(extras.face_colours.size(), soup.triangles.size(), "face colours");
     check(extras.face_labels.size(), soup.triangles.size(), "face labels");
     check(extras.corner_texture.size(), 3 * soup.triangles.size(), "corner texture");
+    check(extras.face_materials.size(), soup.triangles.size(), "face materials");
+    for (const NamedValues& column : extras.vertex_values) check(column.values.size(), soup.points.size(), column.name.c_str());
+    for (const NamedValues& column : extras.face_values) check(column.values.size(), soup.triangles.size(), column.name.c_str());
 }
 
 MeshExtras carry_extras(const MeshExtras& old, const RepairSoup& work) {
-    MeshExtras extras;
-    extras.vertex_colours = carried(old.vertex_colours, work.vertex_like);
-    extras.vertex_labels = carried(old.vertex_labels, work.vertex_like);
-    extras.vertex_texture = carried(old.vertex_texture, work.vertex_like);
-    extras.face_colours = carried(old.face_colours, work.face_like);
-    extras.face_labels = carried(old.face_labels, work.face_like);
+    std::vector<Index> corner_like;
     if (!old.corner_texture.empty())
-        for (const auto& corners : work.corner_like)
-            for (const Index c : corners) extras.corner_texture.push_back(old.corner_texture[c]);
-    return extras;
+        for (const auto& triangle_corners : work.corner_like)
+            corner_like.insert(corner_like.end(), triangle_corners.begin(), triangle_corners.end());
+    return carried(old, {&work.vertex_like, &work.face_like, &corner_like});
 }
 
 /// Inverts a map new -> old to old -> new; each old element is represented by the element kept for it.

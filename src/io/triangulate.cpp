@@ -1,27 +1,9 @@
 #include "io/polygon_cutter.h"
-#include "ostraka/io/mesh_file.h"
+#include "ostraka/io/carry_extras.h"
 
 namespace ostraka {
 
 namespace {
-
-/// Assigns face and corner data to the triangles; vertex data are unchanged.
-MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& polygon_of_triangle, const std::vector<Index>& triangle_corner) {
-    MeshExtras result;
-    result.vertex_colours = std::move(extras.vertex_colours);
-    result.vertex_labels = std::move(extras.vertex_labels);
-    result.vertex_texture = std::move(extras.vertex_texture);
-    result.tetrahedra = std::move(extras.tetrahedra);
-    const auto pick = [](const auto& values, const std::vector<Index>& map, auto& mapped) {
-        if (values.empty()) return;
-        mapped.reserve(map.size());
-        for (const Index i : map) mapped.push_back(values[i]);
-    };
-    pick(extras.face_colours, polygon_of_triangle, result.face_colours);
-    pick(extras.face_labels, polygon_of_triangle, result.face_labels);
-    pick(extras.corner_texture, triangle_corner, result.corner_texture);
-    return result;
-}
 
 bool all_are_triangles(const PolygonSoup& polygons) {
     if (polygons.corners.size() != 3 * polygons.polygon_count()) return false;
@@ -75,7 +57,8 @@ TriangulatedSoup triangulate(PolygonSoup&& input) {
     if (gave_up > 0)
         result.notes.push_back(std::to_string(gave_up) +
                                " faces are too large and intricate to be cut cleanly; their triangles may overlap");
-    result.extras = follow(std::move(polygons.extras), result.polygon_of_triangle, triangle_corner);
+    result.extras = carried(polygons.extras, {nullptr, &result.polygon_of_triangle, &triangle_corner});
+    result.extras.tetrahedra = std::move(polygons.extras.tetrahedra);
     return result;
 }
 

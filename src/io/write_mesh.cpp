@@ -1,5 +1,6 @@
 #include "io/formats.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/carry_extras.h"
 
 #include <fmt/core.h>
 
@@ -10,36 +11,28 @@ namespace ostraka {
 
 namespace {
 
-void check_extras(const MeshExtras& extras, const WriteOptions& options, std::size_t vertices, std::size_t triangles) {
+void check_extras(const MeshExtras& extras, std::size_t vertices, std::size_t triangles) {
     const auto check = [](std::size_t size, std::size_t expected, const char* attribute) {
         if (size != 0 && size != expected)
             throw std::logic_error(fmt::format("write_mesh: {} has {} entries instead of {}", attribute, size, expected));
     };
-    check(options.vertex_quality.size(), vertices, "vertex_quality");
-    for (const FaceValues& attribute : options.face_values) check(attribute.values.size(), triangles, attribute.name.c_str());
+    for (const NamedValues& column : extras.vertex_values) check(column.values.size(), vertices, column.name.c_str());
+    for (const NamedValues& column : extras.face_values) check(column.values.size(), triangles, column.name.c_str());
     check(extras.vertex_colours.size(), vertices, "vertex_colours");
     check(extras.vertex_labels.size(), vertices, "vertex_labels");
-    check(extras.vertex_texture.size(), vertices, "vertex_texture");
     check(extras.face_colours.size(), triangles, "face_colours");
     check(extras.face_labels.size(), triangles, "face_labels");
     check(extras.corner_texture.size(), 3 * triangles, "corner_texture");
+    check(extras.face_materials.size(), triangles, "face_materials");
+    for (const Index material : extras.face_materials)
+        if (material != no_index && material >= extras.appearance.materials.size())
+            throw std::logic_error("write_mesh: a face refers to a material that does not exist");
+    for (const Material& material : extras.appearance.materials)
+        if (material.image != no_index && material.image >= extras.appearance.images.size())
+            throw std::logic_error("write_mesh: a material refers to an image that does not exist");
     for (const auto& tetrahedron : extras.tetrahedra)
         for (const Index v : tetrahedron)
             if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron refers to a vertex that does not exist");
-}
-
-/// Face attributes of the polygons, taken from their triangles.
-MeshExtras polygon_extras(const MeshExtras& extras, const std::vector<Index>& triangle) {
-    MeshExtras result = extras;
-    const auto pick = [&](const auto& values, auto& mapped) {
-        if (values.empty()) return;
-        mapped.clear();
-        for (const Index t : triangle) mapped.push_back(values[t]);
-    };
-    pick(extras.face_colours, result.face_colours);
-    pick(extras.face_labels, result.face_labels);
-    result.corner_texture.clear();
-    return result;
 }
 
 std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
@@ -59,12 +52,9 @@ std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& so
         notes.emplace_back("only OBJ, OFF and PLY can store polygons: they are triangulated");
         return notes;
     }
-    for (FaceValues& face_attribute : triangle_options.face_values) {
-        std::vector<float> values;
-        for (const Index t : options.triangle_of_polygon) values.push_back(face_attribute.values[t]);
-        face_attribute.values = std::move(values);
-    }
-    const MeshExtras attributes = polygon_extras(extras, options.triangle_of_polygon);
+    // Texture coordinates are those of corners of triangles.
+    MeshExtras attributes = carried(extras, {nullptr, &options.triangle_of_polygon, nullptr});
+    attributes.corner_texture.clear();
     notes = ending == ".obj"   ? io::write_obj(file, soup, attributes, triangle_options)
             : ending == ".off" ? io::write_off(file, soup, attributes, triangle_options)
                                : io::write_ply(file, soup, attributes, triangle_options);
@@ -96,14 +86,14 @@ void check_mesh_extension(const Path& file) {
 std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
                                          const WriteOptions& options) {
     check_mesh_extension(file);
-    check_extras(extras, options, soup.points.size(), soup.triangles.size());
+    check_extras(extras, soup.points.size(), soup.triangles.size());
     check_soup(file, soup);
     const std::string ending = extension(file);
-    if (ending != ".ply" && (!options.vertex_quality.empty() || !options.face_values.empty())) {
-        WriteOptions other_options = options;
-        other_options.vertex_quality.clear();
-        other_options.face_values.clear();
-        std::vector<std::string> notes = write_triangles(file, soup, extras, other_options);
+    if (ending != ".ply" && !(extras.vertex_values.empty() && extras.face_values.empty())) {
+        MeshExtras other_extras = extras;
+        other_extras.vertex_values.clear();
+        other_extras.face_values.clear();
+        std::vector<std::string> notes = write_triangles(file, soup, other_extras, options);
         notes.emplace_back("only PLY can store values per vertex and per face: they are dropped");
         return notes;
     }

@@ -24,7 +24,7 @@ std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_tem
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
-std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
+std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
     make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
 namespace {
@@ -93,6 +93,7 @@ constexpr OperationEntry entries[]{
     {"study moulds", "group heads by the mould from which they were cast", make_study_moulds},
     {"study technique", "classify bodies as wheel-made or hand-made from their lower slices", make_study_technique},
     {"study segments", "segment an object along its height by clustering its slices", make_study_segments},
+    {"import", "read a scan as it comes, with its images; repair it as far as needed, and keep the raw files and index maps beside it; exit code 3 if the object is still open or intersects itself", make_import},
     {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis},
     {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice},
     {"deform", "deform a shape and preserve the constraints on its parts (exit code 3: the result is not acceptable)", make_deform, 2},

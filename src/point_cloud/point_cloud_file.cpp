@@ -1,102 +1,104 @@
 // Reads points without faces from files.
+#include "point_cloud/cloud_columns.h"
+#include "point_cloud/cloud_formats.h"
+
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/io/ply.h"
-#include "ostraka/mesh/limits.h"
+#include "ostraka/io/ply_columns.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
 #include <fmt/core.h>
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 
 namespace ostraka {
 
+namespace clouds {
+
 namespace {
 
-/// Parses the numbers of a line, separated by spaces, commas, semicolons and tabs; false for any other content.
-bool numbers_of_line(std::string_view line, std::vector<double>& numbers) {
-    numbers.clear();
-    const char *position = line.data(), *end = position + line.size();
-    while (true) {
-        while (position < end &&
-               (*position == ' ' || *position == '\t' || *position == ',' || *position == ';' || *position == '\r'))
-            ++position;
-        if (position == end) return true;
-        if (*position == '+') ++position;
-        double value = 0;
-        const auto [next, error] = std::from_chars(position, end, value);
-        if (error != std::errc()) return false;
-        numbers.push_back(value);
-        position = next;
+std::optional<PointCloud> read_ply_points(const std::string& bytes, const std::string& file) {
+    const PlyVertexColumns vertices = read_ply_vertex_columns(bytes, file);
+    if (vertices.has_faces) return std::nullopt;
+    CloudBuilder builder(file, bytes.size());
+    for (const std::string& text : vertices.notes) builder.note(text);
+    if (vertices.vertices == 0) return builder.finish();
+    CloudTable table;
+    std::vector<std::string> unused;
+    for (const PlyVertexColumn& column : vertices.columns) {
+        const Column role = column_named(column.name);
+        table.columns.push_back(role);
+        if (role == Column::red && !column.is_real && column.bytes == 1) table.colour_range = ColourRange::bytes;
+        if (role == Column::other) unused.push_back(printable(column.name, 40));
     }
+    if (!unused.empty()) builder.note("vertex properties not kept: " + joined(unused));
+    table.rows = vertices.vertices;
+    table.at = [&](std::size_t row, std::size_t column) { return vertices.columns[column].values[row]; };
+    add_table(builder, table);
+    return builder.finish();
 }
 
-PointCloud read_text(const Path& file) {
-    PointCloud cloud;
-    const std::string bytes = read_file(file);
-    const std::string name = file.string();
-    std::vector<double> numbers;
-    std::size_t line = 0, columns = 0;
-    std::vector<Vector> normals;
-    for (std::size_t begin = 0; begin < bytes.size();) {
-        std::size_t end = bytes.find('\n', begin);
-        if (end == std::string::npos) end = bytes.size();
-        const std::string_view text(bytes.data() + begin, end - begin);
-        begin = end + 1;
-        ++line;
-        if (text.starts_with('#') || text.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-        const std::string where = name + ", line " + std::to_string(line);
-        if (!numbers_of_line(text, numbers))
-            fail_input(where, "is not a list of numbers", "give x y z, or x y z nx ny nz, a line");
-        if (numbers.size() == 1 && cloud.points.empty() && columns == 0) continue;  // a count of points, as in .pts files
-        if (numbers.size() < 3) fail_input(where, "has fewer than three numbers", "give x y z, or x y z nx ny nz, a line");
-        if (columns == 0) columns = numbers.size();
-        if (numbers.size() != columns)
-            fail_input(where, fmt::format("has {} numbers, the first line {}", numbers.size(), columns),
-                       "give every line the same columns");
-        for (const double x : numbers)
-            if (!std::isfinite(x)) fail_input(where, "has a number that is not finite", "correct or remove the point");
-        cloud.points.emplace_back(numbers[0], numbers[1], numbers[2]);
-        if (columns == 6) normals.emplace_back(numbers[3], numbers[4], numbers[5]);
+/// Points of the mesh formats, which are read by the readers of meshes.
+std::optional<PointCloud> read_mesh_points(const Path& file) {
+    PolygonSoup soup = read_polygons(file);
+    if (soup.polygon_count() > 0) return std::nullopt;
+    CloudBuilder builder(file.string(), size_of_file(file));
+    const NamedValues* intensity = nullptr;
+    for (const NamedValues& values : soup.extras.vertex_values)
+        if (intensity == nullptr && column_named(values.name) == Column::intensity) intensity = &values;
+    const bool coloured = !soup.extras.vertex_colours.empty();
+    builder.begin_scan(soup.points.size(), {false, coloured, intensity != nullptr});
+    for (std::string& text : soup.notes) builder.note(std::move(text));
+    for (std::size_t i = 0; i < soup.points.size(); ++i) {
+        CloudPoint point;
+        point.place = Point(soup.points[i][0], soup.points[i][1], soup.points[i][2]);
+        if (coloured) point.colour = soup.extras.vertex_colours[i];
+        if (coloured) point.colour[3] = 255;
+        if (intensity != nullptr) point.intensity = intensity->values[i];
+        builder.add(point);
     }
-    // Six columns may be a colour instead.
-    bool unit = true;
-    for (const Vector& n : normals) unit = unit && std::abs(n.squared_length() - 1) < 0.1;
-    if (unit) cloud.normals = std::move(normals);
-    else cloud.notes.emplace_back("columns 4 to 6 are not vectors of length 1 and are not kept");
-    if (columns != 3 && columns != 6) cloud.notes.emplace_back("columns after the third are not kept");
-    return cloud;
+    return builder.finish();
+}
+
+bool looks_like_pcd(std::string_view bytes) {
+    std::size_t position = 0;
+    const std::string_view first = line_at(bytes.substr(0, 200), position);
+    return first.starts_with("# .PCD") || first.starts_with("VERSION ") || first.starts_with("VERSION\t");
 }
 
 }  // namespace
 
+}  // namespace clouds
+
+const std::vector<std::string>& point_cloud_endings() {
+    static const std::vector<std::string> endings{".e57", ".las", ".laz", ".pts", ".ptx",  ".pcd",
+                                                  ".xyz", ".asc", ".csv", ".txt", ".xyzn", ".xyzrgb"};
+    return endings;
+}
+
 std::optional<PointCloud> read_point_cloud(const Path& file) {
-    const std::string file_extension = extension(file);
-    PointCloud cloud;
-    if (file_extension == ".xyz" || file_extension == ".pts" || file_extension == ".asc" || file_extension == ".txt") {
-        cloud = read_text(file);
-    } else {
-        PolygonSoup soup = read_polygons(file);
-        if (soup.polygon_count() > 0) return std::nullopt;
-        for (const auto& p : soup.points) cloud.points.emplace_back(p[0], p[1], p[2]);
-        cloud.notes = std::move(soup.notes);
-        if (file_extension == ".ply")
-            for (const auto& n : read_ply_vectors(file, {"nx", "ny", "nz"})) cloud.normals.emplace_back(n[0], n[1], n[2]);
+    using namespace clouds;
+    const std::string ending = extension(file), name = file.string();
+    const auto& endings = point_cloud_endings();
+    const bool is_cloud = std::find(endings.begin(), endings.end(), ending) != endings.end();
+    if (!is_cloud && ending != ".ply") return read_mesh_points(file);
+    std::string bytes = read_file(file);
+    if (bytes.empty()) fail_input(name, "is empty", "export it again");
+    if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return read_ply_points(bytes, name);
+    if (ending == ".ply") {
+        bytes = {};
+        return read_mesh_points(file);
     }
-    if (cloud.points.empty()) fail_input(file.string(), "has neither faces nor points", "export it again");
-    for (std::size_t i = 0; i < cloud.points.size(); ++i)
-        if (!is_place(cloud.points[i]))
-            fail_input(file.string(), fmt::format("point {} exceeds the supported range of coordinates", i), "remove it");
-    for (Vector& n : cloud.normals) {
-        n = unit_vector(n);
-        if (n == CGAL::NULL_VECTOR) {
-            cloud.notes.emplace_back("some normals have no length, so that none is kept");
-            cloud.normals.clear();
-            break;
-        }
-    }
-    return cloud;
+    if (bytes.starts_with("ASTM-E57")) return read_e57(bytes, name);
+    if (bytes.starts_with("LASF")) return read_las(bytes, name);
+    if (looks_like_pcd(bytes) || ending == ".pcd") return read_pcd(bytes, name);
+    for (const auto& [binary, start] : {std::pair{".e57", "ASTM-E57"}, {".las", "LASF"}, {".laz", "LASF"}})
+        if (ending == binary)
+            fail_input(name, fmt::format("does not begin with {}", start),
+                       fmt::format("check that this is a {} file", ending.substr(1)));
+    if (ending == ".ptx") return read_ptx(bytes, name);
+    return read_text_points(bytes, name, ending == ".pts");
 }
 
 }  // namespace ostraka

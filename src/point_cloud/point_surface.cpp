@@ -1,4 +1,6 @@
 // Surface reconstruction from points.
+#include "point_cloud/surface_parts.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/io/repair.h"
 #include "ostraka/point_cloud/point_cloud.h"
@@ -34,24 +36,6 @@ private:
     }
     EdgeNumbers* before_;
     std::unordered_map<const void*, std::size_t> numbers_;
-};
-
-/// A vertex or cell of the triangulation that is ordered by its creation where the library otherwise orders by address.
-template <class Base>
-class Stamped : public Base {
-public:
-    template <class Triangulation>
-    struct Rebind_TDS {
-        using Other = Stamped<typename Base::template Rebind_TDS<Triangulation>::Other>;
-    };
-    using Base::Base;
-
-    using Has_timestamp = CGAL::Tag_true;
-    [[nodiscard]] std::size_t time_stamp() const { return time_stamp_; }
-    void set_time_stamp(std::size_t stamp) { time_stamp_ = stamp; }
-
-private:
-    std::size_t time_stamp_ = static_cast<std::size_t>(-1);
 };
 
 /// The library's vertex, with numbered border edges.
@@ -96,8 +80,8 @@ struct EdgeLimit {
 
 /// Triples of point indices: the triangles of the surface through the points. Results depend on the points alone.
 std::vector<std::array<std::size_t, 3>> surface_triangles(const std::vector<Point>& points, double longest_edge) {
-    using Vertex = FrontVertex<Stamped<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
-    using Cell = Stamped<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
+    using Vertex = FrontVertex<clouds::Stamped<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
+    using Cell = clouds::Stamped<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
     using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
     std::vector<std::pair<Point, std::size_t>> numbered;
     for (const Point& p : points) numbered.emplace_back(p, numbered.size());
@@ -128,13 +112,7 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     const std::vector<Vector> estimated =
         cloud.normals.size() == cloud.points.size() ? std::vector<Vector>() : estimate_normals(cloud.points, options);
     const std::vector<Vector>& normals = estimated.empty() ? cloud.normals : estimated;
-    // Normalised to centre 0 and size 1.
-    CGAL::Bbox_3 box;
-    for (const Point& p : cloud.points) box += p.bbox();
-    const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
-    const double size = std::max({box.x_span(), box.y_span(), box.z_span()});
-    std::vector<Point> points;
-    for (const Point& p : cloud.points) points.push_back(CGAL::ORIGIN + (p - middle) / size);
+    const std::vector<Point> points = clouds::Normalised(cloud.points).points();
     std::vector<std::array<std::size_t, 3>> facets;
     if (!on_a_line(points)) facets = surface_triangles(points, options.longest * point_spacing(points));
     if (facets.empty()) fail_input("points", "do not define a surface", "check whether they are collinear or coincide");
@@ -167,7 +145,7 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     std::vector<Index> sources;
     for (const Index source : repaired.vertex_source) sources.push_back(source == no_index ? no_index : result.sources[source]);
     result.sources = std::move(sources);
-    result.border_loops = repaired.after.border_loops.size();
+    clouds::count_borders(repaired.after, result);
     if (result.border_loops > 0)
         result.notes.push_back(fmt::format("the surface has {} borders where there are no points", result.border_loops));
     return result;

@@ -71,6 +71,7 @@ void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor) {
         const Halfedge kept = mesh.next(h), removed = mesh.prev(h), outer = mesh.opposite(removed);  // v -> w, w -> u, u -> w
         const Vertex w = mesh.target(kept);
         if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(removed));
+        if (visitor != nullptr) visitor->replace_halfedge(mesh, kept, outer);
         mesh.remove_face(mesh.face(h));
         replace(mesh, outer, kept);
         if (mesh.halfedge(w) == outer) mesh.set_halfedge(w, kept);
@@ -82,6 +83,7 @@ void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor) {
         const Halfedge kept = mesh.prev(o), removed = mesh.next(o), outer = mesh.opposite(removed);  // x -> v, u -> x, x -> u
         const Vertex x = mesh.source(kept);
         if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(removed));
+        if (visitor != nullptr) visitor->replace_halfedge(mesh, kept, outer);
         mesh.remove_face(mesh.face(o));
         replace(mesh, outer, kept);
         if (mesh.halfedge(x) == removed) mesh.set_halfedge(x, mesh.opposite(kept));

@@ -25,6 +25,8 @@ Frame make_frame(const Mesh& mesh);
 struct Marks {
     std::vector<bool> edges;     ///< for each edge, whether it belongs to an outline or poly-line
     std::vector<bool> vertices;  ///< for each vertex, whether it is an annotated point
+    std::vector<bool> seams;     ///< for each edge, whether it is a seam of the texture
+    bool keep_border = false;    ///< true: border vertices and edges stay as they are
 };
 
 /// Position of the vertex that remains after a collapse, and cost of the collapse.

@@ -18,7 +18,10 @@ public:
         for (const Face f : mesh.faces()) add_face(mesh, f);
         for (const Edge e : mesh.edges()) {
             const bool border = mesh.is_border(e);
-            const double weight = border ? options.border_weight : marks.edges[e] ? options.outline_weight : 0;
+            const double weight = border           ? options.border_weight
+                                  : marks.edges[e] ? options.outline_weight
+                                  : marks.seams[e] ? 1
+                                                   : 0;
             if (weight > 0) add_fence(mesh, e, weight);
         }
     }

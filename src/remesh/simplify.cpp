@@ -46,7 +46,7 @@ public:
         Progress progress("simplify", remaining_ - std::min(remaining_, target));
         for (const Stage& stage : stages) {
             stage_ = stage;
-            rules_.keep_outlines(stage.keep_outlines);
+            rules_.keep_outlines(mesh_, stage.keep_outlines);
             // Refused collapses may be possible after the neighbourhood has changed: repeat as long as that helps.
             std::size_t previous;
             do {
@@ -130,7 +130,9 @@ private:
         for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
             if (keeps_shape(h, candidates.positions[i].position, plan->pinned)) chosen = &candidates.positions[i];
         if (chosen == nullptr) return ++refused_shape_, false;
-        if (!plan->pinned) mesh_.point(v) = frame_.world(chosen->position);
+        const Point position = plan->pinned ? mesh_.point(v) : frame_.world(chosen->position);
+        if (visitor_ != nullptr) visitor_->place_vertex(mesh_, h, position);
+        mesh_.point(v) = position;
         merge(h);
         return true;
     }
@@ -146,7 +148,6 @@ private:
         merged_.unite_into(v, u);
         --remaining_;
         ++collapses_;
-        rules_.after_collapse(mesh_, v);
         for_each_incoming(mesh_, v, [&](Halfedge g) { evaluate(mesh_.edge(g)); });
         if (!metric_->reaches_second_ring()) return;
         for_each_incoming(mesh_, v, [&](Halfedge g) {
@@ -197,7 +198,8 @@ private:
             "stopped at {} vertices instead of {}: of the remaining {} edges {} would change the topology, {} would flip or "
             "flatten a face{}",
             remaining_, target, mesh_.number_of_edges(), refused_topology_, refused_shape_,
-            bound > 0 ? fmt::format(", {} belong to protected parts or to the border", bound) : std::string());
+            bound > 0 ? fmt::format(", {} belong to protected parts, to seams of the texture or to the border", bound)
+                      : std::string());
     }
 
     Mesh& mesh_;
@@ -239,6 +241,9 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
         fail_usage(
             fmt::format("simplify: there are {} vertex flags for {} vertices", marked.vertices.size(), mesh.number_of_vertices()),
             "give one flag for each vertex");
+    if (!marked.seams.empty() && marked.seams.size() != mesh.number_of_edges())
+        fail_usage(fmt::format("simplify: there are {} seam flags for {} edges", marked.seams.size(), mesh.number_of_edges()),
+                   "give one flag for each edge");
     for (const Face f : mesh.faces())
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
@@ -254,7 +259,8 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
     if (options.vertices > count)
         fail_usage(fmt::format("the mesh has {} vertices, fewer than the {} requested", count, options.vertices),
                    "use: ostraka mesh refine");
-    Marks marks{marked.edges, marked.vertices};
+    Marks marks{marked.edges, marked.vertices, marked.seams, options.keep_border};
+    if (marks.seams.empty()) marks.seams.assign(mesh.number_of_edges(), false);
     if (marks.edges.empty() || options.outlines == SimplifyOptions::Outlines::ignore)
         marks.edges.assign(mesh.number_of_edges(), false);
     if (marks.vertices.empty() || options.outlines == SimplifyOptions::Outlines::ignore)
@@ -294,6 +300,7 @@ void SimplifyOptions::list_options(OptionList& list) {
          Range{0, 1e6});
     list("border-weight", border_weight, "qem: weight of the distance to the border, relative to the distance to the surface",
          Range{0, 1e6});
+    list("keep-border", keep_border, "keep the border of an open mesh exactly, so that neighbouring tiles still fit");
 }
 
 }  // namespace ostraka

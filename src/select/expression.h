@@ -7,6 +7,7 @@
 #include "ostraka/files/json.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/measure/surface_colour.h"
 #include "ostraka/select/scalars.h"
 #include "select/screen.h"
 
@@ -27,10 +28,11 @@ struct PlaceFrame {
 
 /// Settings of a recipe that all its expressions share.
 struct Surroundings {
-    const JsonValue* cameras = nullptr;  ///< named cameras (JSON object); null: none
-    PlaceFrame frame;                    ///< coordinate system of the cameras
-    std::array<double, 3> up{0, 0, 1};   ///< upward direction for cameras that state none
-    Path folder;                         ///< folder to which file names in expressions are relative
+    const JsonValue* cameras = nullptr;      ///< named cameras (JSON object); null: none
+    PlaceFrame frame;                        ///< coordinate system of the cameras
+    std::array<double, 3> up{0, 0, 1};       ///< upward direction for cameras that state none
+    Path folder;                             ///< folder to which file names in expressions are relative
+    const MeshExtras* attributes = nullptr;  ///< colours, texture and values of the mesh; null: none
 };
 
 /// Borders of a selection where they cross faces.
@@ -144,6 +146,10 @@ private:
     /// Scalar map that an expression names.
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use
+    /// For each vertex, the difference of its colour from the colour of an expression (CIEDE2000).
+    ScalarMap colour_map(const JsonValue& colour, PlaceFrame frame, const std::string& at) const;
+    /// The values of vertices or faces that the mesh file has under this name.
+    ScalarMap file_values(const std::string& name, const std::string& at) const;
     /// Interval of a threshold, in the values of the map.
     ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
     /// Faces of the chosen segments of similar thickness.
@@ -174,6 +180,7 @@ private:
     mutable std::optional<SurfaceSearch> search_;
     mutable std::map<std::string, ScreenCamera> cameras_;                  ///< from a name to the camera
     mutable std::map<std::string, ScalarMap> maps_;                        ///< from a JSON pointer to the computed scalar map
+    mutable std::vector<Lab> lab_;                                         ///< colours of the vertices, read at the first use
     mutable std::map<std::string, std::vector<Index>> segments_;           ///< from a JSON pointer to the segment of each face
     mutable std::map<std::string, std::optional<SelectionLevel>> levels_;  ///< from a JSON pointer to the result of `level_of`
 };

@@ -267,7 +267,9 @@ CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, Pla
 
 bool ExpressionEvaluator::on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const {
     // Other maps are on vertices, and expensive to compute.
-    if (find_member(threshold, "thickness") == nullptr && find_member(threshold, "map") == nullptr) return false;
+    if (find_member(threshold, "thickness") == nullptr && find_member(threshold, "map") == nullptr &&
+        find_member(threshold, "values") == nullptr)
+        return false;
     return scalar(threshold, frame, at).on_faces;
 }
 

@@ -2,10 +2,13 @@
 #include "select/expression.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/files/safe_path.h"
+#include "ostraka/measure/surface_colour.h"
+#include "ostraka/render/picture.h"
 #include "ostraka/render/values.h"
 #include "ostraka/select/selections.h"
 #include "select/growth.h"
@@ -47,12 +50,13 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
         return map;
     }
     std::string chosen;
-    for (const char* name : {"coordinate", "curvature", "thickness", "distance", "map"}) {
+    for (const char* name : {"coordinate", "curvature", "thickness", "distance", "colour", "values", "map"}) {
         if (find_member(value, name) == nullptr) continue;
         if (!chosen.empty()) fail(at, "a threshold on both " + chosen + " and " + name, "give one, and join two by intersection");
         chosen = name;
     }
-    if (chosen.empty()) fail(at, "a threshold on nothing", "name one of coordinate, curvature, thickness, distance, map");
+    if (chosen.empty())
+        fail(at, "a threshold on nothing", "name one of coordinate, curvature, thickness, distance, colour, values, map");
     const std::string here = at + '/' + chosen;
     const JsonValue& of = value[chosen.c_str()];
     if (mesh_.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
@@ -60,6 +64,8 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
         const auto [x, y, z] = triple_of(of);
         return coordinate_map(mesh_, Vector(x, y, z), frame.box, where_ + ", at " + here);
     }
+    if (chosen == "colour") return colour_map(of, frame, here);
+    if (chosen == "values") return file_values(text_of(of), here);
     const double unit = length(1, frame);
     ScalarMap map;
     if (chosen == "distance") {
@@ -102,6 +108,36 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
     in_place(here, [&] { map = thickness_map(); });
     for (double& x : map.values) x /= unit;
     return map;
+}
+
+ScalarMap ExpressionEvaluator::colour_map(const JsonValue& colour, PlaceFrame frame, const std::string& at) const {
+    if (surroundings_.attributes == nullptr || !has_colours(*surroundings_.attributes))
+        fail(at, "the mesh has neither an image nor colours", "give the file with its image or colours, or select by shape");
+    if (lab_.empty()) in_place(at, [&] { lab_ = vertex_lab(mesh_, *surroundings_.attributes, where_); });
+    Lab reference;
+    if (colour.IsString()) {
+        const Rgb rgb = parse_colour(text_of(colour));
+        reference = lab_from_linear({linear_from_srgb(rgb.red), linear_from_srgb(rgb.green), linear_from_srgb(rgb.blue)});
+    } else {
+        reference = lab_[vertex(colour["at"], frame, at + "/at")];
+    }
+    ScalarMap map;
+    map.values.reserve(lab_.size());
+    for (const Lab& lab : lab_) map.values.push_back(colour_difference(lab, reference));
+    return map;
+}
+
+ScalarMap ExpressionEvaluator::file_values(const std::string& name, const std::string& at) const {
+    std::vector<std::string> names;
+    if (surroundings_.attributes != nullptr)
+        for (const bool on_faces : {false, true})
+            for (const NamedValues& column :
+                 on_faces ? surroundings_.attributes->face_values : surroundings_.attributes->vertex_values) {
+                if (column.name == name) return {column.values, on_faces};
+                names.push_back(column.name);
+            }
+    fail(at, "the mesh file has no values '" + printable(name, 60) + "'",
+         names.empty() ? "it has none: give a PLY file with properties of vertices or faces" : "it has " + joined(names));
 }
 
 const ScalarMap& ExpressionEvaluator::thickness_map() const {

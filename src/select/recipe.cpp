@@ -27,6 +27,7 @@ public:
           face_labels_(std::move(start.face_labels)),
           set_(std::move(start.annotations)),
           folder_(std::move(start.folder)),
+          attributes_(start.attributes),
           evaluator_({mesh, set_}, face_labels_, where_) {
         for (const Annotation& one : set_.annotations) before_.insert(one.id);
     }
@@ -36,7 +37,8 @@ public:
         if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
         if (const JsonValue* up = find_member(recipe, "up")) set_.up = triple_of(*up);
         const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
-        surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_};
+        surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_,
+                         attributes_};
         evaluator_.set_surroundings(surroundings_);
         const JsonValue& steps = recipe["annotations"];
         for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) {
@@ -383,6 +385,7 @@ private:
     std::vector<std::int32_t> face_labels_;
     AnnotationSet set_;
     Path folder_;
+    const MeshExtras* attributes_;
     std::set<int> before_, touched_;  ///< ids of annotations that existed before, and of those that steps edit
     std::string not_free_;            ///< why the last outline could not be free
     Surroundings surroundings_;
@@ -420,11 +423,11 @@ AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeSta
 
 AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
                            const std::string& where) {
-    return follow_recipe(recipe, mesh, RecipeStart{face_labels, {}, {}}, where);
+    return follow_recipe(recipe, mesh, RecipeStart{face_labels, {}, {}, nullptr}, where);
 }
 
 AnnotationSet apply_recipe(const Path& file, const Mesh& mesh, const std::vector<std::int32_t>& face_labels) {
-    return follow_recipe(read_json(file), mesh, RecipeStart{face_labels, {}, file.parent_path()}, file.string());
+    return follow_recipe(read_json(file), mesh, RecipeStart{face_labels, {}, file.parent_path(), nullptr}, file.string());
 }
 
 }  // namespace ostraka

@@ -1,27 +1,33 @@
 #include "ostraka/transfer/bound_mesh.h"
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/io/carry_extras.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/transfer/project_curves.h"
+#include "transfer/corner_texture.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 
 namespace ostraka {
 
 namespace {
 
-constexpr const char *face_colour = "f:file-colour", *face_label = "f:file-label", *vertex_colour = "v:file-colour",
-                     *vertex_label = "v:file-label", *vertex_texture = "v:file-texture";
+constexpr const char *face_colour = "f:file-colour", *face_label = "f:file-label", *face_material = "f:file-material",
+                     *vertex_colour = "v:file-colour", *vertex_label = "v:file-label";
 
 template <class Key, class Value>
-void to_map(Mesh& mesh, const char* name, const std::vector<Value>& values) {
+void to_map(Mesh& mesh, const std::string& name, const std::vector<Value>& values) {
     if (values.empty()) return;
     auto map = mesh.add_property_map<Key, Value>(name, Value{}).first;
     for (std::size_t i = 0; i < values.size(); ++i) map[Key(static_cast<Index>(i))] = values[i];
 }
 
 template <class Key, class Value>
-void from_map(Mesh& mesh, const char* name, std::size_t count, std::vector<Value>& values) {
+void from_map(Mesh& mesh, const std::string& name, std::size_t count, std::vector<Value>& values) {
     auto [map, found] = mesh.property_map<Key, Value>(name);
     if (!found) return;
     values.clear();
@@ -30,17 +36,31 @@ void from_map(Mesh& mesh, const char* name, std::size_t count, std::vector<Value
     mesh.remove_property_map(map);
 }
 
-/// Unites the annotation sets of edges and vertices that are merged by an edge collapse.
-class AnnotationMerger final : public CollapseVisitor {
+/// Names of the property maps of further values.
+std::string name_of_values(const char* element, std::size_t index) { return fmt::format("{}:file-value-{}", element, index); }
+
+/// Carries data through edge collapses: unites the annotation sets of merged edges and vertices, and moves texture coordinates.
+class BoundData final : public CollapseVisitor {
 public:
-    AnnotationMerger(const Mesh& mesh, AnnotationTable& table)
-        : table_(table),
-          vertices_(mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first),
-          edges_(mesh.property_map<Edge, std::uint32_t>(edge_annotations).first) {}
-    void merge_vertices(Mesh&, Vertex kept, Vertex removed) override {
-        vertices_[kept] = unite(vertices_[kept], vertices_[removed]);
+    BoundData(Mesh& mesh, AnnotationTable& table, bool annotated, bool textured) : table_(table), annotated_(annotated) {
+        if (annotated) {
+            vertices_ = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first;
+            edges_ = mesh.property_map<Edge, std::uint32_t>(edge_annotations).first;
+        }
+        if (textured) texture_.emplace(mesh);
     }
-    void merge_edges(Mesh&, Edge kept, Edge removed) override { edges_[kept] = unite(edges_[kept], edges_[removed]); }
+    void merge_vertices(Mesh&, Vertex kept, Vertex removed) override {
+        if (annotated_) vertices_[kept] = unite(vertices_[kept], vertices_[removed]);
+    }
+    void merge_edges(Mesh&, Edge kept, Edge removed) override {
+        if (annotated_) edges_[kept] = unite(edges_[kept], edges_[removed]);
+    }
+    void place_vertex(Mesh& mesh, Halfedge h, const Point& position) override {
+        if (texture_) texture_->place_vertex(mesh, h, position);
+    }
+    void replace_halfedge(Mesh&, Halfedge kept, Halfedge replaced) override {
+        if (texture_) texture_->replace_halfedge(kept, replaced);
+    }
 
 private:
     std::uint32_t unite(std::uint32_t a, std::uint32_t b) {
@@ -52,9 +72,39 @@ private:
         return table_.intern(ids);
     }
     AnnotationTable& table_;
+    bool annotated_;
     Mesh::Property_map<Vertex, std::uint32_t> vertices_;
     Mesh::Property_map<Edge, std::uint32_t> edges_;
+    std::optional<CornerTexture> texture_;
 };
+
+/// Texture coordinates of a refined mesh: those of old vertices, and the means of those of the parents of new vertices, in the
+/// old face that contains the face.
+std::vector<TexturePoint> refined_texture(const Mesh& mesh, const RefineResult& refined,
+                                          const std::vector<std::array<Index, 3>>& old_triangles,
+                                          const std::vector<TexturePoint>& old_texture) {
+    std::vector<TexturePoint> texture;
+    if (old_texture.empty()) return texture;
+    std::vector<std::vector<Index>> parts(old_triangles.size());
+    for (Index face = 0; face < refined.face_origin.size(); ++face) parts[refined.face_origin[face]].push_back(face);
+    texture.resize(3 * refined.face_origin.size());
+    std::map<Index, TexturePoint> at;  // texture coordinates of vertices in the current old face
+    const std::function<TexturePoint(Index)> coordinates = [&](Index vertex) {
+        if (const auto entry = at.find(vertex); entry != at.end()) return entry->second;
+        const auto [a, b] = refined.parents[vertex - refined.old_vertices];
+        const TexturePoint first = coordinates(a), second = coordinates(b);
+        return at[vertex] = {(first[0] + second[0]) / 2, (first[1] + second[1]) / 2};
+    };
+    for (std::size_t old_face = 0; old_face < old_triangles.size(); ++old_face) {
+        at.clear();
+        for (std::size_t k = 0; k < 3; ++k) at[old_triangles[old_face][k]] = old_texture[3 * old_face + k];
+        for (const Index face : parts[old_face]) {
+            const auto vertices = corners(mesh, Face(face));
+            for (std::size_t k = 0; k < 3; ++k) texture[3 * static_cast<std::size_t>(face) + k] = coordinates(vertices[k]);
+        }
+    }
+    return texture;
+}
 
 BoundMesh::Totals totals_of(const Mesh& mesh) { return {mesh.number_of_vertices(), mesh.number_of_faces(), surface_area(mesh)}; }
 
@@ -62,8 +112,6 @@ BoundMesh::Totals totals_of(const Mesh& mesh) { return {mesh.number_of_vertices(
 
 BoundMesh::BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated)
     : mesh(std::move(file.mesh)), extras(std::move(file.extras)), annotations(std::move(annotated)) {
-    if (!extras.corner_texture.empty()) notes.emplace_back("texture coordinates per corner are not carried and are left out");
-    extras.corner_texture.clear();
     before = after = totals_of(mesh);
     if (!annotations) return;
     for (const Annotation& annotation : annotations->annotations) {
@@ -75,10 +123,11 @@ BoundMesh::BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated)
 SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
     keep_curved();
     AnnotationTable table = attach();
-    std::optional<AnnotationMerger> merger;
-    if (annotations) merger.emplace(mesh, table);
-    const MarkedParts parts = marked(table, options.outlines == SimplifyOptions::Outlines::protect);
-    SimplifyResult result = ostraka::simplify(mesh, options, parts, merger ? &*merger : nullptr);
+    const bool textured = !extras.corner_texture.empty();
+    BoundData data(mesh, table, annotations.has_value(), textured);
+    MarkedParts parts = marked(table, options.outlines == SimplifyOptions::Outlines::protect);
+    if (textured || !extras.face_materials.empty()) parts.seams = texture_seams(mesh, extras);
+    SimplifyResult result = ostraka::simplify(mesh, options, parts, annotations || textured ? &data : nullptr);
     detach(table, result.vertex_map);
     return result;
 }
@@ -86,8 +135,13 @@ SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
 RefineResult BoundMesh::refine(const RefineOptions& options) {
     keep_curved();
     const AnnotationTable table = attach();
+    const std::vector<std::array<Index, 3>> old_triangles =
+        extras.corner_texture.empty() ? std::vector<std::array<Index, 3>>() : to_soup(mesh).triangles;
+    const std::vector<TexturePoint> old_texture = detach_texture(mesh);
     RefineResult result = ostraka::refine(mesh, options);
-    const auto from_parents = [&]<class Value>(const char* name, const std::vector<Value>&, const auto& between) {
+    extras.corner_texture = refined_texture(mesh, result, old_triangles, old_texture);
+    attach_texture(mesh, extras.corner_texture);
+    const auto from_parents = [&]<class Value>(const std::string& name, const std::vector<Value>&, const auto& between) {
         auto [map, found] = mesh.property_map<Vertex, Value>(name);
         if (!found) return;
         for (std::size_t i = 0; i < result.parents.size(); ++i) {
@@ -100,10 +154,8 @@ RefineResult BoundMesh::refine(const RefineOptions& options) {
         return a;
     });
     from_parents(vertex_label, extras.vertex_labels, [](std::int32_t a, std::int32_t) { return a; });
-    from_parents(vertex_texture, extras.vertex_texture, [](std::array<float, 2> a, const std::array<float, 2>& b) {
-        for (std::size_t k = 0; k < 2; ++k) a[k] = (a[k] + b[k]) / 2;
-        return a;
-    });
+    for (std::size_t i = 0; i < extras.vertex_values.size(); ++i)
+        from_parents(name_of_values("v", i), extras.vertex_values[i].values, [](double a, double b) { return a / 2 + b / 2; });
     std::vector<Index> kept(result.old_vertices);
     for (Index v = 0; v < kept.size(); ++v) kept[v] = v;
     detach(table, kept);
@@ -130,9 +182,14 @@ AnnotationTable BoundMesh::attach() {
     }
     to_map<Face>(mesh, face_colour, extras.face_colours);
     to_map<Face>(mesh, face_label, extras.face_labels);
+    to_map<Face>(mesh, face_material, extras.face_materials);
     to_map<Vertex>(mesh, vertex_colour, extras.vertex_colours);
     to_map<Vertex>(mesh, vertex_label, extras.vertex_labels);
-    to_map<Vertex>(mesh, vertex_texture, extras.vertex_texture);
+    for (std::size_t i = 0; i < extras.vertex_values.size(); ++i)
+        to_map<Vertex>(mesh, name_of_values("v", i), extras.vertex_values[i].values);
+    for (std::size_t i = 0; i < extras.face_values.size(); ++i)
+        to_map<Face>(mesh, name_of_values("f", i), extras.face_values[i].values);
+    attach_texture(mesh, extras.corner_texture);
     return table;
 }
 
@@ -140,9 +197,14 @@ void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& v
     after = totals_of(mesh);
     from_map<Face>(mesh, face_colour, mesh.number_of_faces(), extras.face_colours);
     from_map<Face>(mesh, face_label, mesh.number_of_faces(), extras.face_labels);
+    from_map<Face>(mesh, face_material, mesh.number_of_faces(), extras.face_materials);
     from_map<Vertex>(mesh, vertex_colour, mesh.number_of_vertices(), extras.vertex_colours);
     from_map<Vertex>(mesh, vertex_label, mesh.number_of_vertices(), extras.vertex_labels);
-    from_map<Vertex>(mesh, vertex_texture, mesh.number_of_vertices(), extras.vertex_texture);
+    for (std::size_t i = 0; i < extras.vertex_values.size(); ++i)
+        from_map<Vertex>(mesh, name_of_values("v", i), mesh.number_of_vertices(), extras.vertex_values[i].values);
+    for (std::size_t i = 0; i < extras.face_values.size(); ++i)
+        from_map<Face>(mesh, name_of_values("f", i), mesh.number_of_faces(), extras.face_values[i].values);
+    extras.corner_texture = detach_texture(mesh);
     if (!annotations) return;
     annotations = collect_annotations(mesh, table, AnnotationSet(*annotations), vertex_map);
     detach_annotations(mesh);

@@ -288,6 +288,7 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
     if (shape->set && shape->set->up) add_members(recipe, r, "up", *shape->set->up);
     RecipeStart start;
     start.face_labels = shape->mesh->extras.face_labels;
+    start.attributes = &shape->mesh->extras;
     if (shape->set) {  // annotations to which a selection may refer
         start.annotations.annotations = shape->set->annotations;
         start.annotations.up = shape->set->up;

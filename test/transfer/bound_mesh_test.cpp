@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 namespace ostraka {
 namespace {
 
@@ -99,17 +102,115 @@ TEST(BoundMesh, SmallAnnotationsDegenerateWithANote) {
     EXPECT_GT(degenerate, 0U);
 }
 
-TEST(BoundMesh, TextureOfCornersIsLeftOutWithANote) {
-    MeshFile file = labelled_ball();
-    file.extras.corner_texture.resize(3 * file.mesh.number_of_faces());
-    BoundMesh bound(std::move(file));
-    EXPECT_EQ(bound.notes.size(), 1U);
+/// A tube with two charts: u runs around the tube, from 0 to 1 on each half, v along the axis. Chart 1 has its own material.
+MeshFile tube_in_two_charts() {
+    MeshFile file{build_mesh(test::tube(64, 48)), {}, {}, {}};
+    file.extras.appearance.materials.resize(2);
+    for (const Face face : file.mesh.faces()) {
+        const Point middle = centroid(file.mesh, face);
+        const bool upper = middle.y() > 0;
+        file.extras.face_materials.push_back(upper ? 1 : 0);
+        for (const Vertex v : corners(file.mesh, face)) {
+            const Point& p = file.mesh.point(v);
+            double angle = std::atan2(p.y(), p.x());
+            if (std::fabs(p.y()) < 1e-9) angle = p.x() > 0 ? 0 : upper ? M_PI : -M_PI;
+            file.extras.corner_texture.push_back({static_cast<float>(std::fabs(angle) / M_PI), static_cast<float>(p.z() / 3)});
+        }
+    }
+    return file;
+}
+
+/// Each corner has the texture coordinates of its place on the tube, within `tolerance`; seams are straight.
+void expect_textured_tube(const BoundMesh& bound, double tolerance) {
+    ASSERT_EQ(bound.extras.corner_texture.size(), 3 * bound.mesh.number_of_faces());
+    ASSERT_EQ(bound.extras.face_materials.size(), bound.mesh.number_of_faces());
+    for (const Face face : bound.mesh.faces()) {
+        const bool upper = bound.extras.face_materials[face] == 1;
+        const auto vertices = corners(bound.mesh, face);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Point& p = bound.mesh.point(vertices[k]);
+            const auto [u, v] = bound.extras.corner_texture[3 * std::size_t(face) + k];
+            ASSERT_NEAR(u, std::atan2(std::max(0.0, upper ? p.y() : -p.y()), p.x()) / M_PI, tolerance);
+            ASSERT_NEAR(v, p.z() / 3, tolerance);
+            ASSERT_GT(upper ? p.y() : -p.y(), -1e-9);  // no face crosses a seam
+        }
+    }
+    EXPECT_TRUE(bound.notes.empty());
+}
+
+TEST(BoundMesh, TextureFollowsSimplificationAndRefinement) {
+    BoundMesh bound(tube_in_two_charts());
     SimplifyOptions fewer;
-    fewer.vertices = 500;
+    fewer.vertices = 300;
+    EXPECT_TRUE(bound.simplify(fewer).reached);
+    expect_textured_tube(bound, 0.02);
+    RefineOptions more;
+    more.levels = 1;
+    bound.refine(more);
+    // Midpoints lie inside the tube; their angle is exact by symmetry only up to the length of an edge.
+    expect_textured_tube(bound, 0.03);
+}
+
+TEST(BoundMesh, SeamsAreKeptWhenOutlinesAreNot) {
+    BoundMesh bound(tube_in_two_charts());
+    SimplifyOptions fewer;
+    fewer.vertices = 12;
+    fewer.outlines = SimplifyOptions::Outlines::ignore;
     bound.simplify(fewer);
-    EXPECT_TRUE(bound.extras.corner_texture.empty());
-    EXPECT_FALSE(bound.annotations.has_value());
-    EXPECT_TRUE(bound.changes.empty());
+    std::set<Index> materials(bound.extras.face_materials.begin(), bound.extras.face_materials.end());
+    EXPECT_EQ(materials.size(), 2U);
+    expect_textured_tube(bound, 0.3);
+}
+
+TEST(BoundMesh, TheTextureOfAFlatChartIsExact) {
+    MeshFile file{build_mesh(test::grid(30, 20, false, false,
+                                        [](double u, double v) {
+                                            return std::array<double, 3>{7 * u, 5 * v, 0};
+                                        })),
+                  {},
+                  {},
+                  {}};
+    const auto texture_of = [](const Point& p) { return TexturePoint{float(0.1 + p.x() / 10), float(p.y() / 8 - p.x() / 20)}; };
+    for (const Face face : file.mesh.faces())
+        for (const Vertex v : corners(file.mesh, face)) file.extras.corner_texture.push_back(texture_of(file.mesh.point(v)));
+    BoundMesh bound(std::move(file));
+    SimplifyOptions fewer;
+    fewer.vertices = 40;
+    bound.simplify(fewer);
+    RefineOptions more;
+    more.vertices = 333;
+    bound.refine(more);
+    for (const Face face : bound.mesh.faces()) {
+        const auto vertices = corners(bound.mesh, face);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const TexturePoint expected = texture_of(bound.mesh.point(vertices[k])),
+                               actual = bound.extras.corner_texture[3 * std::size_t(face) + k];
+            ASSERT_NEAR(actual[0], expected[0], 1e-6);
+            ASSERT_NEAR(actual[1], expected[1], 1e-6);
+        }
+    }
+}
+
+TEST(BoundMesh, ValuesOfVerticesAndFacesFollow) {
+    MeshFile file{build_mesh(test::tube(32, 24)), {}, {}, {}};
+    NamedValues height{"height", {}}, side{"side", {}};
+    for (const Vertex v : file.mesh.vertices()) height.values.push_back(file.mesh.point(v).z());
+    for (const Face f : file.mesh.faces()) side.values.push_back(centroid(file.mesh, f).x() > 0 ? 1 : -1);
+    file.extras.vertex_values = {height};
+    file.extras.face_values = {side};
+    BoundMesh bound(std::move(file));
+    SimplifyOptions fewer;
+    fewer.vertices = 200;
+    bound.simplify(fewer);
+    RefineOptions more;
+    more.levels = 1;
+    bound.refine(more);
+    ASSERT_EQ(bound.extras.vertex_values.size(), 1U);
+    ASSERT_EQ(bound.extras.vertex_values[0].values.size(), bound.mesh.number_of_vertices());
+    for (const Vertex v : bound.mesh.vertices())
+        ASSERT_NEAR(bound.extras.vertex_values[0].values[v], bound.mesh.point(v).z(), 0.3);
+    ASSERT_EQ(bound.extras.face_values[0].values.size(), bound.mesh.number_of_faces());
+    for (const double value : bound.extras.face_values[0].values) ASSERT_EQ(std::fabs(value), 1);
 }
 
 }  // namespace ostraka

@@ -91,6 +91,8 @@ struct IndexMap {
     /// True: old elements were matched to the nearest new elements, not to identical elements.
     bool nearest = false;
 };
+/// The document of an index map, without provenance.
+Json to_json(const IndexMap& map);
 /// An output that is an index map.
 class IndexMapOutput : public Slot {
 public:

@@ -46,16 +46,19 @@ float linear_from_srgb(std::uint8_t channel);
 /// Linear light, clamped to 0 to 1, as the nearest sRGB channel.
 std::uint8_t srgb_from_linear(float light);
 
-/// Reads the colour of a material at texture coordinates from decoded images. Images are decoded and reduced (a pyramid of
-/// halved images) once, at construction; safe to use from several threads.
+/// Reads the colour of a material at texture coordinates from decoded images. Images are decoded and reduced (a pyramid of images
+/// of half the size, means in linear light of each channel, as graphics processors make them) once, at construction; safe to use
+/// from several threads.
 class TextureSampler {
 public:
-    /// `where`: file for messages. Throws Error (input) as `decode` does.
+    /// Decodes the images of materials. `where`: file for messages. Throws Error (input) as `decode` does, and Error (failure) if
+    /// the images do not fit into memory: 6.7 bytes for each pixel.
     TextureSampler(const Appearance& appearance, const std::string& where);
 
     /// Linear red, green, blue and opacity of a material at `at`, base colour included. `footprint`: width of the area whose mean
-    /// colour is asked for, in texture coordinates (0: bilinear in the full image; else trilinear in the pyramid). `material`
-    /// no_index: white.
+    /// colour is asked for, in texture coordinates (up to a pixel of the image: bilinear in the image, or its nearest pixel if
+    /// the material says so; else trilinear in the pyramid). Without a readable image: the base colour. `material` no_index:
+    /// white.
     [[nodiscard]] std::array<float, 4> colour(Index material, TexturePoint at, float footprint = 0) const;
     /// Size of the material's image in pixels; {0, 0} without an image.
     [[nodiscard]] std::array<int, 2> size(Index material) const;
@@ -65,10 +68,16 @@ public:
 private:
     struct Level {
         int width = 0, height = 0;
-        std::vector<std::array<std::uint16_t, 4>> rgba;  ///< linear light, 0 to 65535
+        std::vector<std::array<std::uint16_t, 4>> rgba;  ///< linear light and opacity, 0 to 65535
     };
+    struct Pyramid {
+        Pixels full;                ///< no pixels: no image
+        std::vector<Level> levels;  ///< the smaller ones, to 1 x 1 pixel
+    };
+    [[nodiscard]] const Pyramid* pyramid_of(Index material) const;  ///< null without an image
+
     std::vector<Material> materials_;
-    std::vector<std::vector<Level>> pyramids_;  ///< one per image, the full image first
+    std::vector<Pyramid> pyramids_;  ///< one per image
 };
 
 }  // namespace ostraka

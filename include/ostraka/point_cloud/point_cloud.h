@@ -3,6 +3,7 @@
 
 #include "ostraka/core/options.h"
 #include "ostraka/files/file.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/mesh/mesh.h"
 
 #include <optional>
@@ -11,16 +12,25 @@
 
 namespace ostraka {
 
+/// Points with their attributes. Each list of attributes is empty or has one entry per point.
 struct PointCloud {
     std::vector<Point> points;
-    std::vector<Vector> normals;     ///< empty, or one unit vector per point, pointing outwards
-    std::vector<std::string> notes;  ///< messages about contents of the file that were ignored
+    std::vector<Vector> normals;      ///< empty, or one unit vector per point, pointing outwards
+    std::vector<Colour> colours;      ///< empty, or one colour per point; alpha 0: the point has no colour, 255: it has one
+    std::vector<double> intensities;  ///< empty, or one number per point, as the file has it; NaN: the point has none
+    std::vector<std::string> notes;   ///< messages about contents of the file that were interpreted, dropped or ignored
 };
 
-/// Reads the points of a file without faces: PLY, OFF or OBJ, or text with x y z, or x y z nx ny nz, per line (.xyz, .pts, .asc,
-/// .txt; lines that begin with # are comments). Normals come from the PLY properties nx, ny, nz or from the text; if any normal
-/// has length zero, all normals are dropped. Returns nothing for a file with faces. Throws Error (input) for a file that cannot
-/// be read.
+/// Extensions of the files that hold points only: .e57, .las, .pts, .ptx, .pcd, .xyz and so on. Meshes' extensions (.ply, .obj,
+/// .off) may hold points too.
+const std::vector<std::string>& point_cloud_endings();
+
+/// Reads the points of a file without faces: E57, LAS 1.0 to 1.4, PTS, PTX, PCD (text, binary, LZF), PLY, OFF, OBJ, or text with
+/// x y z and further columns per line (.xyz, .asc, .csv, .txt). A header line, such as //X Y Z R G B, names the columns; without
+/// one they are distinguished by their values: normals have length 1, colours are whole numbers from 0 to 255, a single column is
+/// the intensity; a note reports this. Several scans of a file are merged, with their poses applied. Empty, invalid and infinite
+/// points are dropped and counted in a note; if any normal has length zero, all normals are dropped. Returns nothing for a file
+/// with faces. Throws Error (input) for a file that cannot be read, such as LAZ. Memory is at most 16 times the file and 256 MB.
 std::optional<PointCloud> read_point_cloud(const Path& file);
 
 struct CloudOptions {
@@ -42,8 +52,9 @@ double point_spacing(const std::vector<Point>& points);
 
 struct CloudSurface {
     Mesh mesh;                       ///< its vertices are the points that belong to a face, in the order of the cloud
-    std::vector<Index> sources;      ///< for each vertex, index of its point in the cloud
+    std::vector<Index> sources;      ///< for each vertex, index of its point in the cloud; no_index: it is no point
     std::size_t border_loops = 0;    ///< number of border loops that remain
+    double border_length = 0;        ///< total length of these loops
     std::vector<std::string> notes;  ///< remarks on the reconstruction
 };
 

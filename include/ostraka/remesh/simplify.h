@@ -21,6 +21,7 @@ struct SimplifyOptions {
     double outline_weight = 1;
     /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
     double border_weight = 1;
+    bool keep_border = false;  ///< true: border vertices and edges stay as they are, so that neighbouring tiles still fit
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -29,6 +30,9 @@ struct SimplifyOptions {
 struct MarkedParts {
     std::vector<bool> edges;     ///< for each edge, whether it is marked; empty: none is marked
     std::vector<bool> vertices;  ///< for each vertex, whether it is marked; empty: none is marked
+    /// For each edge, whether texture coordinates or materials differ between its faces; empty: nowhere. Seams are simplified
+    /// along their curves like outlines, whatever `SimplifyOptions::outlines` is, and never merged.
+    std::vector<bool> seams = {};
 };
 
 /// Callbacks for every merge of two vertices or edges, called while both still exist, so that values bound to them can be merged.
@@ -40,6 +44,10 @@ public:
     virtual void merge_vertices(Mesh& /*mesh*/, Vertex /*kept*/, Vertex /*removed*/) {}
     /// Called before edge `removed` is merged into edge `kept`.
     virtual void merge_edges(Mesh& /*mesh*/, Edge /*kept*/, Edge /*removed*/) {}
+    /// Called before the source of `h` is merged into its target, and before the target moves to `position`.
+    virtual void place_vertex(Mesh& /*mesh*/, Halfedge /*h*/, const Point& /*position*/) {}
+    /// Called before `kept` takes the place of `replaced` in the face of `replaced`: data bound to the corner of a face move.
+    virtual void replace_halfedge(Mesh& /*mesh*/, Halfedge /*kept*/, Halfedge /*replaced*/) {}
 };
 
 struct SimplifyResult {

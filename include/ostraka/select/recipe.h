@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/files/file.h"
+#include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
 
@@ -12,6 +13,8 @@ struct RecipeStart {
     std::vector<std::int32_t> face_labels;  ///< label of each face of the mesh; empty: none
     AnnotationSet annotations;              ///< annotations that the steps of the recipe extend and edit
     Path folder;                            ///< folder to which file names in the recipe are relative
+    /// Colours, texture and values of the mesh, for selections by them; must outlive the call; null: none.
+    const MeshExtras* attributes = nullptr;
 };
 
 /// Executes a recipe (*.recipe.json). Measures and known descriptors are computed. If the recipe names a class, the whole object

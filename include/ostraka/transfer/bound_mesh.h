@@ -13,7 +13,7 @@
 namespace ostraka {
 
 /// A mesh with all data bound to it. The data are updated by each call of `simplify` and `refine`, which may be called
-/// repeatedly. Per-corner texture coordinates are dropped; a note reports this.
+/// repeatedly. Seams of the texture are simplified along their curves; the coordinates of corners follow the surface.
 class BoundMesh {
 public:
     /// `annotated`: annotations of the mesh; empty: none.
@@ -22,13 +22,13 @@ public:
     /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as parts to be preserved; with
     /// `options.outlines` = protect, the pins of measures are marked as well. Throws as ostraka::simplify does.
     SimplifyResult simplify(const SimplifyOptions& options);
-    /// Refines the mesh. A new vertex gets the mean of the colours and texture coordinates of the two vertices between which it
-    /// lies, and the label of one of the two. Throws as ostraka::refine does.
+    /// Refines the mesh. A new vertex gets the mean of the colours and values of the two vertices between which it lies, and the
+    /// label of one of the two; a new corner gets the mean of the texture coordinates. Throws as ostraka::refine does.
     RefineResult refine(const RefineOptions& options);
 
     /// Current state of the mesh and its data. Measures and known descriptors of the annotations are recomputed after each step.
     Mesh mesh;
-    MeshExtras extras;                         ///< colours, labels and texture coordinates
+    MeshExtras extras;                         ///< colours, labels, texture and values
     std::optional<AnnotationSet> annotations;  ///< annotations of the mesh; empty: none
     std::vector<std::string> notes;            ///< remarks on data that could not be preserved
 

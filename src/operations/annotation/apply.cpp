@@ -57,7 +57,7 @@ struct AnnotationApply final : Operation {
     }
 
     AnnotationSet follow(Context& context, const MeshFile& file) const {
-        RecipeStart start{labels_in(file), {}, recipe.path().parent_path()};
+        RecipeStart start{labels_in(file), {}, recipe.path().parent_path(), &file.extras};
         if (edited) start.annotations = edited.on(file.mesh);
         AnnotationSet set;
         context.record([&] { set = follow_recipe(recipe.load<Json>(read_json), file.mesh, std::move(start), recipe.file()); });

@@ -20,12 +20,12 @@ Collection single_object(const Path& file) {
     if (name.ends_with(ending)) {
         object.name = name.substr(0, name.size() - ending.size());
         object.annotations = file;
-        for (const char* mesh : {".ply", ".obj", ".off", ".stl"})
+        for (const char* mesh : {".ply", ".obj", ".off", ".stl", ".glb", ".gltf", ".3mf"})
             if (object.mesh.empty() && file_exists(file.parent_path() / (object.name + mesh)))
                 object.mesh = file.parent_path() / (object.name + mesh);
         if (object.mesh.empty())
             fail_input(file.string(), "there is no mesh of the same name in its folder",
-                       fmt::format("put {}.ply (or .obj, .off, .stl) there", object.name));
+                       fmt::format("put {}.ply (or .obj, .glb, .gltf, .off, .stl, .3mf) there", object.name));
     } else {
         object.name = file.stem().string();
         object.mesh = file;

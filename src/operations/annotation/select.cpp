@@ -42,6 +42,7 @@ struct AnnotationSelect final : Operation {
         if (start.face_labels.empty() && !file.extras.vertex_labels.empty())
             start.face_labels = face_labels_from_vertices(file.mesh, file.extras.vertex_labels);
         start.folder = Path(record.file()).parent_path();
+        start.attributes = &file.extras;
         if (!makes) start.annotations = annotations.on(file.mesh);
         const std::string before =
             begins ? std::string() : record.load<std::string>([](const Path& path) { return read_file(path); });

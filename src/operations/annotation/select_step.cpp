@@ -10,16 +10,22 @@ namespace ostraka {
 namespace {
 
 const std::vector<std::string>& threshold_names() {
-    static const std::vector<std::string> names{"x", "y", "z", "mean-curvature", "gaussian-curvature", "thickness", "distance"};
+    static const std::vector<std::string> names{"x",         "y",        "z",     "mean-curvature", "gaussian-curvature",
+                                                "thickness", "distance", "colour"};
     return names;
 }
+
+/// Begins the name of values that the mesh file holds.
+constexpr std::string_view file_values_prefix = "values:";
 
 /// Throws unless `of` is the name of a quantity, or a file.
 void check_threshold(const std::string& of) {
     const auto& names = threshold_names();
-    if (std::find(names.begin(), names.end(), of) != names.end() || !extension(of).empty() || file_exists(of)) return;
+    if (std::find(names.begin(), names.end(), of) != names.end() || of.starts_with(file_values_prefix) ||
+        !extension(of).empty() || file_exists(of))
+        return;
     fail_usage("--threshold '" + printable(of, 60) + "' is no known quantity and no file",
-               "use " + joined(names) + " or a file of values (.npy or text)");
+               "use " + joined(names) + ", values:NAME for the values NAME of the mesh file, or a file of values (.npy or text)");
 }
 
 }  // namespace
@@ -35,8 +41,10 @@ void SelectStep::list_options(OptionList& list) {
     list("halfspace", halfspace, "selects one side of a plane: a point and the normal towards this side, as six numbers");
     list("nearest", nearest, "selects the vertex nearest to x,y,z");
     list("threshold", threshold,
-         "selects places where this quantity lies between --above and --below; distance is measured from --seed",
-         Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
+         "selects places where this quantity lies between --above and --below; distance is measured from --seed, colour is the "
+         "difference (CIEDE2000) from the colour at --seed or from --like",
+         Words{threshold_names(), "values:NAME for the values NAME of the mesh file, a file of values (.npy or text)",
+               check_threshold});
     list("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
     list("path", path, "selects the shortest paths along edges that join these picks").words();
     list("lasso", lasso, "selects the part that a path through these picks encloses; --seed lies within the part").words();
@@ -58,6 +66,7 @@ void SelectStep::list_options(OptionList& list) {
          "with --threshold: minimum value; lengths in the unit of --frame, curvature in the inverse of this unit, values of a "
          "file unchanged");
     list("below", below, "with --threshold: maximum value, in the unit of --above");
+    list("like", like, "with --threshold colour: the colour, as #rrggbb");
     list("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
     list("scale", scale, "with --threshold of a curvature: radius of averaging; 0: automatic", Range{0, 1},
          "share of the diagonal");
@@ -195,6 +204,18 @@ private:
         } else if (of == "distance") {
             if (step_.seed.empty()) fail_usage("a threshold on the distance needs a place to start from", "add --seed PICK");
             add_members(value, a_, "distance", picks({step_.seed}, "seed"));
+        } else if (of == "colour") {
+            if (step_.seed.empty() == step_.like.empty())
+                fail_usage("a threshold on the colour needs a place or a colour to compare with",
+                           "add --seed PICK, or --like '#rrggbb'");
+            if (step_.like.empty()) {
+                JsonValue seeds = picks({step_.seed}, "seed");
+                add_members(value, a_, "colour", json_object(a_, "at", JsonValue(seeds[0], a_)));
+            } else {
+                add_members(value, a_, "colour", step_.like);
+            }
+        } else if (of.starts_with(file_values_prefix)) {
+            add_members(value, a_, "values", of.substr(file_values_prefix.size()));
         } else {
             add_members(value, a_, "map", of);
         }

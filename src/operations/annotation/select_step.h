@@ -17,7 +17,7 @@ struct SelectStep {
     std::vector<int> faces, labels;
     // modifiers
     bool through = false, closed = false, stroke = false, invert = false, quantiles = false;
-    std::string seed, metric = "euclidean", frame = "mesh";
+    std::string seed, like, metric = "euclidean", frame = "mesh";
     std::optional<double> radius, above, below;
     double scale = 0, smoothing = 0.26;
     int grow = 0, shrink = 0;

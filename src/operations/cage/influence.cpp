@@ -72,9 +72,8 @@ struct CageInfluence final : Operation {
             const Rgb c = colour_of(scale, value);
             extras.vertex_colours.push_back({c.red, c.green, c.blue, 255});
         }
-        WriteOptions writing;
-        writing.vertex_quality = std::move(values);
-        output.write(on_cage ? around : subject, std::move(extras), std::move(writing));
+        extras.vertex_values.push_back({"quality", std::move(values)});
+        output.write(on_cage ? around : subject, std::move(extras));
     }
 
     /// Cage vertices above the threshold, or the ten strongest.

@@ -2,6 +2,7 @@
 #include "operations/measure/measured_object.h"
 
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/measure/surface_colour.h"
 
 #include <fmt/core.h>
 
@@ -19,6 +20,8 @@ struct MeasureDescribe final : Operation {
             .named();
         p.options("annotation", chosen, "id or tag of an annotation to describe; repeatable; all annotations if left out");
         options.list_options(p.options);
+        p.options("colours", colours,
+                  "describe the colours of regions too: mean and spread in CIELAB, mean as sRGB, range of the lightness");
         p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
         p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});
     }
@@ -27,6 +30,9 @@ struct MeasureDescribe final : Operation {
         const Mesh& mesh = object.mesh->mesh;
         const std::vector<NamedMap> named_maps = read_maps(mesh);
         AnnotationSet set = object.read(report);
+        if (colours && !has_colours(object.mesh->extras))
+            fail_input(object.mesh.file(), "has neither an image nor colours",
+                       "leave out --colours, or give the file with its image");
         if (!object.annotations && chosen.empty())
             report.note("the whole object is described; --annotations FILE describes its parts");
         DescriptorSearch search(mesh, options);
@@ -34,7 +40,8 @@ struct MeasureDescribe final : Operation {
         report.empty_table("annotations");
         report.empty_table("");
         for (Annotation* annotation : selected(set)) {
-            const std::vector<Quantity> quantities = quantities_of(*annotation, search, named_maps);
+            std::vector<Quantity> quantities = quantities_of(*annotation, search, named_maps);
+            if (colours && annotation->type == AnnotationType::region) add_colours({mesh, set}, *annotation, quantities);
             store(*annotation, quantities, set.unit);
             report_result(report, *annotation, quantities, set.unit);
         }
@@ -79,6 +86,16 @@ struct MeasureDescribe final : Operation {
         }
     }
 
+    /// Adds the colours of a region.
+    void add_colours(AnnotatedMeshView annotated, const Annotation& region, std::vector<Quantity>& quantities) const {
+        const ColourMeasures measures = measure_colour(annotated, region, object.mesh->extras, object.mesh.file());
+        const auto& [red, green, blue] = measures.mean_rgb;
+        quantities.push_back({"colour mean (CIELAB)", {measures.mean.begin(), measures.mean.end()}, true, 0, {}});
+        quantities.push_back({"colour spread (CIELAB)", {measures.spread}, false, 0, {}});
+        quantities.push_back({"colour mean (sRGB)", {double(red), double(green), double(blue)}, true, 0, {}});
+        quantities.push_back({"lightness 10 to 90 %", {measures.lightness_low, measures.lightness_high}, true, 0, {}});
+    }
+
     static void report_result(Report& report, const Annotation& annotation, const std::vector<Quantity>& quantities,
                               const std::string& unit) {
         auto& allocator = report.allocator();
@@ -103,6 +120,7 @@ struct MeasureDescribe final : Operation {
     ValuesInput maps;
     std::vector<std::string> chosen;
     DescriptorOptions options;
+    bool colours = false;
 };
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include "ostraka/annotation/remap.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/io/carry_extras.h"
 #include "ostraka/registration/pose_json.h"
 #include "ostraka/synthetic/fragments.h"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -50,16 +52,23 @@ struct MeshBreak final : Operation {
             piece_annotations.up.reset();
             annotations_out.write(std::move(piece_annotations), piece.mesh, output.file_name());
         }
-        MeshExtras extras;
-        const auto copy_values = [](const auto& source, const std::vector<Index>& indices, auto& target) {
-            if (!source.empty())
-                for (const Index i : indices) target.push_back(source[i]);
-        };
-        copy_values(input->extras.vertex_colours, piece.vertices, extras.vertex_colours);
-        copy_values(input->extras.vertex_labels, piece.vertices, extras.vertex_labels);
-        copy_values(input->extras.face_colours, piece.faces, extras.face_colours);
-        copy_values(input->extras.face_labels, piece.faces, extras.face_labels);
+        const std::vector<Index> piece_corners = corners_in(surface, piece);
+        MeshExtras extras = carried(input->extras, {&piece.vertices, &piece.faces, &piece_corners});
         output.write(std::move(piece.mesh), std::move(extras));
+    }
+
+    /// For each corner of the piece, its corner of the whole surface.
+    static std::vector<Index> corners_in(const Mesh& surface, const SyntheticFragment& piece) {
+        std::vector<Index> indices;
+        indices.reserve(3 * piece.faces.size());
+        for (const Face face : piece.mesh.faces()) {
+            const auto whole_corners = corners(surface, Face(piece.faces[face]));
+            for (const Vertex v : corners(piece.mesh, face)) {
+                const auto place = std::find(whole_corners.begin(), whole_corners.end(), Vertex(piece.vertices[v]));
+                indices.push_back(3 * piece.faces[face] + static_cast<Index>(place - whole_corners.begin()));
+            }
+        }
+        return indices;
     }
 
     [[nodiscard]] Point centre(const Mesh& mesh, const AnnotationSet* set) const {

@@ -11,7 +11,7 @@ namespace {
 
 struct MeshConvert final : Operation {
     void declare(Parameters& p) override {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; tetrahedra: .mesh, .vtu");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf; tetrahedra: .mesh, .vtu");
         p.output("output", Kind::mesh, output.with_ascii_option(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle, the index of its source polygon");

@@ -3,6 +3,7 @@
 
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/annotation/part.h"
+#include "ostraka/io/carry_extras.h"
 
 #include <fmt/core.h>
 
@@ -65,39 +66,44 @@ struct MeshExtract final : AnnotatedMeshOperation {
         output.write(std::move(part.mesh), std::move(extras));
     }
 
-    /// Transfers colours and labels of the whole to the part. Vertex colours on the cuts are interpolated; faces that close
-    /// cuts have no label and a neutral colour.
+    /// Carries the attributes of the whole to the part. Vertex colours, values and texture coordinates on the cuts are
+    /// interpolated; faces that close cuts have no label, no material and a neutral colour.
     [[nodiscard]] MeshExtras extras_of(const CutPart& part, Report& report) const {
         const MeshExtras& source = mesh->extras;
-        MeshExtras extras;
-        const auto face_of_whole = [&](Index face) {
-            return face == no_index ? no_index : part.whole ? part.whole->face_origin[face] : face;
-        };
-        for (const Index face : part.faces) {
-            const Index f = face_of_whole(face);
-            if (!source.face_labels.empty()) extras.face_labels.push_back(f == no_index ? no_label : source.face_labels[f]);
-            if (!source.face_colours.empty())
-                extras.face_colours.push_back(f == no_index ? Colour{190, 190, 190, 255} : source.face_colours[f]);
+        std::vector<Index> faces;
+        for (const Index face : part.faces)
+            faces.push_back(face == no_index ? no_index : part.whole ? part.whole->face_origin[face] : face);
+        MeshExtras kept = source;
+        if (part.whole) {  // values of vertices are interpolated on the cuts
+            kept.vertex_labels.clear();
+            for (NamedValues& column : kept.vertex_values) column.values = part.whole->vertex_values(mesh->mesh, column.values);
+            kept.vertex_colours = colours_on_cut(*part.whole);
+            if (!source.vertex_labels.empty()) report.note("labels of vertices are not carried to the part");
         }
-        if (!source.vertex_colours.empty()) {
-            extras.vertex_colours.resize(part.vertices.size());
-            for (std::size_t channel = 0; channel < 4; ++channel) {
-                std::vector<double> values;
-                for (const Colour& colour : source.vertex_colours) values.push_back(colour[channel]);
-                if (part.whole) values = part.whole->vertex_values(mesh->mesh, values);
-                for (std::size_t v = 0; v < part.vertices.size(); ++v)
-                    extras.vertex_colours[v][channel] = static_cast<std::uint8_t>(std::lround(values[part.vertices[v]]));
-            }
+        kept.corner_texture.clear();
+        MeshExtras extras = carried(kept, {&part.vertices, &faces, nullptr});
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            if (faces[f] != no_index) continue;
+            if (!extras.face_labels.empty()) extras.face_labels[f] = no_label;
+            if (!extras.face_colours.empty()) extras.face_colours[f] = Colour{190, 190, 190, 255};
         }
-        const auto copy_values = [&](const auto& values, auto& target) {
-            if (!values.empty() && !part.whole)
-                for (const Index v : part.vertices) target.push_back(values[v]);
-        };
-        copy_values(source.vertex_labels, extras.vertex_labels);
-        copy_values(source.vertex_texture, extras.vertex_texture);
-        if (!source.corner_texture.empty() || (part.whole && !(source.vertex_labels.empty() && source.vertex_texture.empty())))
-            report.note("texture coordinates and labels of vertices are not carried to the part");
+        extras.corner_texture = texture_at_positions(part.mesh, faces, mesh->mesh, source.corner_texture);
         return extras;
+    }
+
+    /// Vertex colours of the cut mesh, interpolated at the new vertices.
+    [[nodiscard]] std::vector<Colour> colours_on_cut(const CutMesh& cut) const {
+        const std::vector<Colour>& source = mesh->extras.vertex_colours;
+        if (source.empty()) return {};
+        std::vector<Colour> colours(cut.mesh.number_of_vertices());
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            std::vector<double> values;
+            for (const Colour& colour : source) values.push_back(colour[channel]);
+            values = cut.vertex_values(mesh->mesh, values);
+            for (std::size_t v = 0; v < colours.size(); ++v)
+                colours[v][channel] = static_cast<std::uint8_t>(std::lround(values[v]));
+        }
+        return colours;
     }
 
     MeshOutput output;

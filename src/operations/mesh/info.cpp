@@ -17,8 +17,15 @@ std::vector<std::string> names_of(const MeshExtras& extras) {
     if (!extras.face_colours.empty()) names.emplace_back("face colours");
     if (!extras.vertex_labels.empty()) names.emplace_back("vertex labels");
     if (!extras.face_labels.empty()) names.emplace_back("face labels");
-    if (!extras.vertex_texture.empty()) names.emplace_back("texture coordinates per vertex");
-    if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates per corner");
+    if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates");
+    if (!extras.appearance.materials.empty()) names.push_back(counted(extras.appearance.materials.size(), "material"));
+    for (const SharedImage& image : extras.appearance.images)
+        names.push_back(image ? fmt::format("image {} of {} x {}", printable(image->name, 60), image->width, image->height)
+                              : std::string("an image that is missing"));
+    for (const NamedValues& column : extras.vertex_values)
+        names.push_back(fmt::format("values '{}' of vertices", printable(column.name, 60)));
+    for (const NamedValues& column : extras.face_values)
+        names.push_back(fmt::format("values '{}' of faces", printable(column.name, 60)));
     return names;
 }
 
@@ -36,7 +43,7 @@ std::size_t count_degenerate(const PolygonSoup& soup) {
 
 struct MeshInfo final : Operation {
     void declare(Parameters& p) override {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf");
         options.list_options(p.options);
         declare_diagnosis(p.report);
         p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"), number("crack_width"));

@@ -23,7 +23,7 @@ struct MeshRemesh final : MeshResize {
         const Mesh& mesh = input->mesh;
         const MeshExtras& extras = input->extras;
         if (!extras.vertex_colours.empty() || !extras.face_colours.empty() || !extras.vertex_labels.empty() ||
-            !extras.face_labels.empty() || !extras.vertex_texture.empty() || !extras.corner_texture.empty())
+            !extras.face_labels.empty() || !extras.corner_texture.empty())
             report.note("colours, labels and texture coordinates belong to the old mesh and are left out");
         const Stopwatch stopwatch;
         RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });

@@ -13,7 +13,7 @@ namespace {
 
 struct MeshRepair final : Operation {
     void declare(Parameters& p) override {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf");
         p.output("output", Kind::mesh, output, "mesh to write: .ply, .obj, .off, .stl, .glb");
         p.output_option("vertex-map", Kind::index_map, vertex_map,
                         "JSON file to write: new index of each old vertex, -1 if it was dropped");

@@ -16,7 +16,7 @@ namespace ostraka {
 /// Declarations and reports of meshes before and after the change.
 struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf");
         p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: .ply, .obj, .off, .stl, .glb");
         for (const std::string mesh : {"input", "output"})
             p.report.values(integer(mesh + ".vertices"), integer(mesh + ".faces"), number(mesh + ".area", "", "length^2"));
