@@ -12,7 +12,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr double steps = 65535;
+constexpr double quantised_steps = 65535;
 
 /// The elements of a vertex attribute, encoded; an element has a multiple of four bytes.
 template <class Element>
@@ -41,7 +41,7 @@ void add_texture(glb::Builder& builder, JsonValue& attributes, const io::Texture
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t k = 0; k < 2; ++k) {
                 const float value = textured.texture[i][k];
-                if (std::isfinite(value)) places[i][k] = static_cast<std::uint16_t>(std::lround(steps * double{value}));
+                if (std::isfinite(value)) places[i][k] = static_cast<std::uint16_t>(std::lround(quantised_steps * double{value}));
             }
         texture = builder.add_compressed_accessor({packed_vertices(places), count, 4, "ATTRIBUTES"}, glb::array_buffer,
                                                   glb::short_word, count, "VEC2");
@@ -63,14 +63,14 @@ void add_texture(glb::Builder& builder, JsonValue& attributes, const io::Texture
 
 std::string quantised_glb(const TriangleSoup& soup, const std::array<double, 3>& origin, double largest_side,
                           const io::TexturedVertices* textured) {
-    const double step = largest_side > 0 ? largest_side / steps : 1;
+    const double step = largest_side > 0 ? largest_side / quantised_steps : 1;
     using Quantised = std::array<std::uint16_t, 4>;  // padded by a fourth value to the required stride
     std::vector<Quantised> points(textured != nullptr ? textured->vertex.size() : soup.points.size());
-    std::array<double, 3> low{steps, steps, steps}, high{0, 0, 0};
+    std::array<double, 3> low{quantised_steps, quantised_steps, quantised_steps}, high{0, 0, 0};
     for (std::size_t i = 0; i < points.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) {
             const auto& point = soup.points[textured != nullptr ? textured->vertex[i] : i];
-            const double value = std::clamp(std::round((point[k] - origin[k]) / step), 0.0, steps);
+            const double value = std::clamp(std::round((point[k] - origin[k]) / step), 0.0, quantised_steps);
             points[i][k] = static_cast<std::uint16_t>(value);
             low[k] = std::min(low[k], value);
             high[k] = std::max(high[k], value);
