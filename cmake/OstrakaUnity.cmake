@@ -1,9 +1,9 @@
 # Compiles files in batches: files of one module, sorted by name, up to a number of bytes, or files of several small modules. A batch
-# reads common headers and instantiates common templates only once. Files that take long by themselves, and files with flags of their
-# own, are compiled separately.
+# reads common headers and instantiates common templates only once. Files that take long by themselves, files with flags of their own,
+# and jpeg.cpp, whose library defines macros with common names, are compiled separately.
 set(OSTRAKA_UNITY_BATCH 250000 CACHE STRING "Bytes of source a batch")
 set(OSTRAKA_UNITY_JOINED 150000 CACHE STRING "Bytes up to which small modules share a batch")
-set(OSTRAKA_UNITY_ALONE src/coords/cage_interior.cpp src/algebra/dense.cpp src/workbench/server.cpp)
+set(OSTRAKA_UNITY_ALONE src/coords/cage_interior.cpp src/algebra/dense.cpp src/workbench/server.cpp src/image/jpeg.cpp)
 # Files with the largest algorithms of CGAL, grouped by the templates they share.
 set(OSTRAKA_UNITY_TOGETHER "src/axis/skeleton.cpp|src/remesh/remesh.cpp|src/io/wrap.cpp"
   "src/point_cloud/point_cloud.cpp|src/point_cloud/point_surface.cpp")

@@ -1,6 +1,7 @@
 // Meshes, clouds and exchange formats as subjects.
 #include "subjects.h"
 
+#include "ostraka/image/image.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
@@ -55,6 +56,11 @@ std::string read_cloud(const Path& file) {
     return std::to_string(cloud->points.size()) + " points, " + std::to_string(normals) + " normals";
 }
 
+std::string decode_image(const Path& file) {
+    const Pixels pixels = decode(read_image(file), file.string());
+    return std::to_string(pixels.rgba.size()) + " pixels";
+}
+
 void add_call(std::vector<Subject>& subjects, const std::string& name, std::vector<SubjectFile> files, Target target,
               const std::string& call) {
     Subject subject;
@@ -65,6 +71,23 @@ void add_call(std::vector<Subject>& subjects, const std::string& name, std::vect
     subject.targets = {std::move(target)};
     subject.act = call_of_file;
     subjects.push_back(std::move(subject));
+}
+
+/// A GIF of 2 x 2 pixels in two colours.
+using namespace std::string_view_literals;
+constexpr std::string_view gif = "GIF89a\2\0\2\0\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\2\0\2\0\0\2\3\x44\x02\x05\0;"sv;
+
+void make_images() {
+    make_folder("images");
+    Pixels pixels{48, 32, {}};
+    for (std::uint32_t i = 0; i < 48 * 32; ++i)
+        pixels.rgba.push_back({static_cast<std::uint8_t>(5 * i), static_cast<std::uint8_t>(i / 48 * 7),
+                               static_cast<std::uint8_t>(i * i / 7), static_cast<std::uint8_t>(255 - i / 48)});
+    write_file("images/image.png", encode(pixels, ImageFormat::png, {}).bytes);
+    write_file("images/image.jpg", encode(pixels, ImageFormat::jpeg, {}).bytes);
+    write_file("images/image.webp", encode(pixels, ImageFormat::webp, {}).bytes);
+    write_file("images/lossless.webp", encode(pixels, ImageFormat::webp, {}, 100).bytes);
+    write_file("images/image.gif", gif);
 }
 
 /// Recipes of the project, on the existing meshes.
@@ -104,6 +127,7 @@ void make_formats(const Path& project) {
     write_file("clouds/points.xyz", points_text(sphere.mesh, "", 1));
     write_file("clouds/points.obj", points_text(sphere.mesh, "v ", 2));
     write_file("clouds/points.ply", read_file(inputs / "points-only.ply"));
+    make_images();
     make_folder("exchange");
     Stopper stopper;
     const auto quoted = [](const Path& file) { return "\"" + file.string() + "\""; };
@@ -129,14 +153,18 @@ void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& s
         add_call(subjects, "repair " + name, {seed}, {kind, name},
                  call_text("mesh repair", file + R"(,"output":"out/out.ply"})"));
     }
-    for (const std::string& name : files_in(seeds / "clouds")) {
-        Subject subject;
-        subject.name = "cloud " + name;
-        subject.files = {{name, seeds / "clouds" / name}};
-        subject.targets = {{"cloud", name}};
-        subject.act = [name](Stopper&) { return read_cloud(name); };
-        subjects.push_back(std::move(subject));
-    }
+    const auto add_reader = [&](const char* folder, const char* kind, std::string (*read)(const Path&)) {
+        for (const std::string& name : files_in(seeds / folder)) {
+            Subject subject;
+            subject.name = std::string(kind) + " " + name;
+            subject.files = {{name, seeds / folder / name}};
+            subject.targets = {{kind, name}};
+            subject.act = [name, read](Stopper&) { return read(name); };
+            subjects.push_back(std::move(subject));
+        }
+    };
+    add_reader("clouds", "cloud", read_cloud);
+    add_reader("images", "image", decode_image);
     for (const std::string& name : files_in(seeds / "exchange")) {
         const SubjectFile seed{name, seeds / "exchange" / name};
         if (name.ends_with(".ttl") || name.ends_with(".rdf"))
