@@ -40,9 +40,9 @@ constexpr std::size_t check_every = 1 << 16;  ///< number of elements between tw
 /// Vertices of a primitive: mesh vertices with one feature per set.
 struct Corners {
     std::vector<Index> vertices;
-    std::vector<std::array<int, 3>> colours;  ///< empty: the colours of the texture
-    std::vector<TexturePoint> texture;        ///< empty: no texture
-    int material = 0;                         ///< index of the glTF material
+    std::vector<std::array<int, 3>> colours;   ///< empty: the colours of the texture
+    std::vector<TexturePoint> texture;         ///< empty: no texture
+    int material = 0;                          ///< index of the glTF material
     std::vector<std::vector<Index>> features;  ///< one list per set
     std::vector<std::uint32_t> indices;
 };
@@ -104,7 +104,8 @@ private:
     /// Adds the materials, and the images as the last views, and completes the file.
     std::string with_materials() {
         std::vector<Index> used{no_index};  // of lines, points and faces without a material
-        for (Index material = 0; textured_ && material < extras_.appearance.materials.size(); ++material) used.push_back(material);
+        for (Index material = 0; textured_ && material < extras_.appearance.materials.size(); ++material)
+            used.push_back(material);
         io::GlbMaterials materials(extras_.appearance, std::move(used), where_);
         materials.add_to(builder_, false);
         if (!object_.annotations.annotations.empty()) add_extensions_used({"EXT_mesh_features", "EXT_structural_metadata"});
@@ -153,9 +154,9 @@ private:
 
     /// A vertex of a face: faces that agree in all of these share a copy of the vertex.
     struct Look {
-        Index kind;                ///< number of the combination of features
-        std::size_t part;          ///< number of the primitive
-        TexturePoint texture;      ///< texture coordinates
+        Index kind;            ///< number of the combination of features
+        std::size_t part;      ///< number of the primitive
+        TexturePoint texture;  ///< texture coordinates
         std::array<int, 3> colour;
         bool operator==(const Look&) const = default;
     };
@@ -470,7 +471,8 @@ std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, 
     if (along_edges.cut() || informed || several_materials) originals = annotations_to_json(object, mesh_file, provenance);
     MeshExtras extras_of_cut;
     if (looks && along_edges.cut()) extras_of_cut = cut_extras(*along_edges.cut(), object.mesh, extras);
-    return FeatureWriter(along_edges.object(), mesh_file, provenance, originals, along_edges.cut() ? extras_of_cut : extras, notes)
+    return FeatureWriter(along_edges.object(), mesh_file, provenance, originals, along_edges.cut() ? extras_of_cut : extras,
+                         notes)
         .write();
 }
 

@@ -163,14 +163,15 @@ struct Render final : Operation {
         if (!titles.empty()) scene.title = titles[k] == "none" ? "" : titles[k];
         else if (meshes.size() > 1) scene.title = meshes.file_name(k);
         const bool has_values = maps.has(k) || has_property(extras);
-        if (!property.empty() && !has_values && meshes.size() == 1) fail_input(meshes.file(k), no_property(extras), "leave out --property");
+        if (!property.empty() && !has_values && meshes.size() == 1)
+            fail_input(meshes.file(k), no_property(extras), "leave out --property");
         // Of several meshes, those that do not have the colours show what they have.
         const bool has_colours = is_available(colouring, extras, has_values, annotations.has(k));
         const SurfaceColouring colours =
             chosen_colouring(has_colours || meshes.size() == 1 ? colouring : SurfaceColouring::automatic, extras, has_values,
                              annotations.has(k), meshes.file(k));
-        const bool coloured = render_options.drawing == RenderOptions::Drawing::surface ||
-                              render_options.drawing == RenderOptions::Drawing::points;
+        const bool coloured =
+            render_options.drawing == RenderOptions::Drawing::surface || render_options.drawing == RenderOptions::Drawing::points;
         if (coloured) {
             const std::string hidden = hidden_colours(colours, extras);
             if (!hidden.empty()) context.notes(meshes.size() > 1 ? meshes.file(k) : std::string(), {hidden});
@@ -219,7 +220,8 @@ struct Render final : Operation {
     }
 
     [[nodiscard]] const NamedValues* property_in(const std::vector<NamedValues>& values) const {
-        const auto named = std::find_if(values.begin(), values.end(), [&](const NamedValues& one) { return one.name == property; });
+        const auto named =
+            std::find_if(values.begin(), values.end(), [&](const NamedValues& one) { return one.name == property; });
         return property.empty() || named == values.end() ? nullptr : &*named;
     }
     [[nodiscard]] bool has_property(const MeshExtras& extras) const {
@@ -229,7 +231,8 @@ struct Render final : Operation {
         std::vector<std::string> names;
         for (const auto* values : {&extras.vertex_values, &extras.face_values})
             for (const NamedValues& named : *values) names.push_back(named.name);
-        return fmt::format("has no property '{}'{}", property, names.empty() ? "" : "; its properties are " + joined(names, ", "));
+        return fmt::format("has no property '{}'{}", property,
+                           names.empty() ? "" : "; its properties are " + joined(names, ", "));
     }
     void colour_by_property(Scene& scene, const MeshExtras& extras) const {
         if (const NamedValues* values = property_in(extras.vertex_values)) scene.vertex_values = values->values;

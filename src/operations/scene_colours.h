@@ -21,7 +21,7 @@ std::string to_string(SurfaceColouring colouring);  ///< name of a colouring
 
 /// What a page shows first; the viewer of the page switches.
 enum class PageColouring { automatic, texture, own, annotations, values, plain };
-Choices page_colouring_names();                    ///< names of these, in this order, for an option
+Choices page_colouring_names();                       ///< names of these, in this order, for an option
 std::string page_colouring(PageColouring colouring);  ///< as PageObject::colouring
 inline constexpr const char* page_colouring_help =
     "colours that the page shows first: texture or own colours in the file, annotations, values (the first map) or clay; auto: "

@@ -141,8 +141,7 @@ JsonValue materials_json(const MeshExtras& extras, const std::string& name, cons
             add_members(entry, allocator, "image", page_images.number(material.image), "wrap", wrap);
             if (material.nearest) add_members(entry, allocator, "nearest", true);
         }
-        if (faces.at(i).size() < extras.face_materials.size())
-            add_members(entry, allocator, "faces", keep(runs_of(faces.at(i))));
+        if (faces.at(i).size() < extras.face_materials.size()) add_members(entry, allocator, "faces", keep(runs_of(faces.at(i))));
         list.PushBack(entry, allocator);
     }
     return json_object(allocator, "materials", std::move(list), "images", std::move(page_images.list()));

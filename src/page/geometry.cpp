@@ -95,8 +95,8 @@ std::string quantised_glb(const TriangleSoup& soup, const std::array<double, 3>&
     JsonValue attributes = json_object(allocator, "POSITION", position);
     if (textured != nullptr) add_texture(builder, attributes, *textured);
     const std::array extensions{"KHR_mesh_quantization", "EXT_meshopt_compression"};
-    JsonValue primitive = json_object(allocator, "attributes", std::move(attributes), "indices", indices, "mode",
-                                      glb::triangles_mode);
+    JsonValue primitive =
+        json_object(allocator, "attributes", std::move(attributes), "indices", indices, "mode", glb::triangles_mode);
     add_members(builder.document(), allocator, "extensionsUsed", extensions, "extensionsRequired", extensions, "meshes",
                 json_list_of(json_object(allocator, "primitives", json_list_of(std::move(primitive), allocator)), allocator),
                 "nodes", json_list_of(json_object(allocator, "mesh", 0, "scale", std::array{step, step, step}), allocator),

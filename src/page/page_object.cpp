@@ -340,8 +340,9 @@ std::size_t Page::add(const PageObject& object) {
         JsonValue exact(rapidjson::kObjectType);
         JsonValue& holder = object.exact ? exact : target;  // of what is sent once
         if (!object.exact) {
-            add_members(target, allocator, "geometry",
-                        add_bytes(quantised_glb(shape, bounding_box.low, bounding_box.largest(), textured ? &*textured : nullptr)));
+            add_members(
+                target, allocator, "geometry",
+                add_bytes(quantised_glb(shape, bounding_box.low, bounding_box.largest(), textured ? &*textured : nullptr)));
         } else {
             add_members(exact, allocator, "key", object.exact->key + part);
             if (object.exact->sends_shape) add_exact(exact, shape, bounding_box.low, keep, allocator);

@@ -83,9 +83,10 @@ void RenderOptions::list_options(OptionList& list) {
     list("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
          Choices{"all", "each"});
     list("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
-    list("light", light,
-         "light: shaded (a lamp at the viewer's upper left), or flat (the colours exactly as in the image or file, without shade)",
-         Choices{"shaded", "flat"});
+    list(
+        "light", light,
+        "light: shaded (a lamp at the viewer's upper left), or flat (the colours exactly as in the image or file, without shade)",
+        Choices{"shaded", "flat"});
     list("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
     list("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
          Range{0, 1024});

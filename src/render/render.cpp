@@ -154,9 +154,8 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
         return;
     }
     const std::string unit = detail::clean_text(scene.unit);
-    const std::string text =
-        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) + (unit.empty() ? "" : " " + unit) +
-        (print_scale.empty() ? "" : " (" + print_scale + ")");
+    const std::string text = (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) +
+                             (unit.empty() ? "" : " " + unit) + (print_scale.empty() ? "" : " (" + print_scale + ")");
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }

@@ -83,9 +83,9 @@ public:
 
     /// Light along the ray through the pixel coordinates x, y; `spacing`: distance of neighbouring rays in pixels.
     [[nodiscard]] Light sample(double x, double y, double spacing) const {
-        constexpr int max_layers = 16;             // translucent triangles that are drawn over each other
-        constexpr float invisible = 1.0F / 512;    // opacity left over that no longer changes a pixel
-        constexpr double beyond = 1e-5;            // distance of the next layer
+        constexpr int max_layers = 16;           // translucent triangles that are drawn over each other
+        constexpr float invisible = 1.0F / 512;  // opacity left over that no longer changes a pixel
+        constexpr double beyond = 1e-5;          // distance of the next layer
         Camera::Ray ray = camera_.ray(x, y);
         Light sum = Light::Zero();
         float remaining = 1;

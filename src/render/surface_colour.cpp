@@ -116,8 +116,8 @@ Light SurfaceColour::textured(const Surface::Hit& hit, Index material, double x,
         probes[side] = static_cast<int>(std::clamp(std::ceil(length), 1.0, double(max_probes)));
         texels = std::max(texels, length / probes[side]);
     }
-    // A cell wider than a pixel of the image is read from one level of the pyramid, the first that is no finer: between two levels
-    // the finer one would be seen with gaps.
+    // A cell wider than a pixel of the image is read from one level of the pyramid, the first that is no finer: between two
+    // levels the finer one would be seen with gaps.
     if (texels > 1) texels = std::exp2(std::ceil(std::log2(texels) - 1e-6));
     const auto footprint = static_cast<float>(texels / std::max(width, height));
     Light sum = Light::Zero();
@@ -125,8 +125,7 @@ Light SurfaceColour::textured(const Surface::Hit& hit, Index material, double x,
         for (int j = 0; j < probes[1]; ++j) {
             const double across = (i + 0.5) / probes[0] - 0.5, along = (j + 0.5) / probes[1] - 0.5;
             const Eigen::Vector2d at = corners * inside_triangle(hit.weights + across * step[0] + along * step[1]);
-            const auto colour =
-                sampler.colour(material, {static_cast<float>(at.x()), static_cast<float>(at.y())}, footprint);
+            const auto colour = sampler.colour(material, {static_cast<float>(at.x()), static_cast<float>(at.y())}, footprint);
             sum += Light(colour[0], colour[1], colour[2], colour[3]);
         }
     return sum / static_cast<float>(probes[0] * probes[1]);

@@ -239,7 +239,8 @@ TEST(PageLook, OwnColoursOfVerticesAndFacesAreKept) {
     Textured textured(nullptr);
     textured.extras = {};
     for (std::size_t v = 0; v < textured.soup.points.size(); ++v)
-        textured.extras.vertex_colours.push_back({static_cast<std::uint8_t>(v), 2, static_cast<std::uint8_t>(255 - v % 256), 255});
+        textured.extras.vertex_colours.push_back(
+            {static_cast<std::uint8_t>(v), 2, static_cast<std::uint8_t>(255 - v % 256), 255});
     PageObject object = textured.object();
     object.colouring = "clay";
     Page page("a sphere");

@@ -191,8 +191,7 @@ TEST_F(RenderCommand, LabelsOfTheFileAreShown) {
     ASSERT_EQ(run_command("render --no-legend --size 300x300 --view back " + file.string() + " " + png.string()).code, 0);
     EXPECT_EQ(picture().at(150, 130), pixel(category_colour(1)));
     ASSERT_EQ(
-        run_command("render --no-legend --colour clay --size 300x300 --view back " + file.string() + " " + png.string()).code,
-        0);
+        run_command("render --no-legend --colour clay --size 300x300 --view back " + file.string() + " " + png.string()).code, 0);
     EXPECT_EQ(picture().at(150, 130), pixel(clay));
 }
 
@@ -220,8 +219,7 @@ TEST_F(RenderCommand, ColoursOfTheFileAreShownOrANoteSaysThatTheyAreNot) {
     result = draw("--colour clay");
     EXPECT_NE(result.err.find("colours in the file are not shown"), std::string::npos) << result.err;
     EXPECT_EQ(picture().at(150, 130), pixel(clay));
-    const Path annotations =
-        scratch.file("coloured.ant.json", R"({"format": "ostraka-annotations", "version": 1, "annotations": [
+    const Path annotations = scratch.file("coloured.ant.json", R"({"format": "ostraka-annotations", "version": 1, "annotations": [
           {"id": 1, "tag": "face", "colour": [200, 30, 10], "type": "region", "faces": [0, 1]}]})");
     result = draw("--annotations " + annotations.string());
     EXPECT_NE(result.err.find("colours in the file are not shown"), std::string::npos) << result.err;
@@ -241,8 +239,9 @@ TEST_F(RenderCommand, TexturesAreShownExactlyInFlatLight) {
     Pixels pixels{2, 2, {{250, 10, 20, 255}, {30, 240, 50, 255}, {60, 70, 230, 255}, {80, 90, 100, 255}}};
     write_file(scratch / "pot.png", encode(pixels, ImageFormat::png, "pot.png").bytes);
     scratch.file("pot.mtl", "newmtl body\nKd 1 1 1\nmap_Kd pot.png\n");
-    const Path file = scratch.file("pot.obj", "mtllib pot.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-                                              "usemtl body\nf 1/1 2/2 3/3 4/4\n");
+    const Path file = scratch.file("pot.obj",
+                                   "mtllib pot.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                   "usemtl body\nf 1/1 2/2 3/3 4/4\n");
     const auto result = run_command("render --no-scale-bar --light flat --size 400x400 --view front --dpi 254 --json " +
                                     file.string() + " " + png.string());
     ASSERT_EQ(result.code, 0) << result.err;

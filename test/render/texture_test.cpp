@@ -41,8 +41,8 @@ Scene square(const Appearance& appearance, float repeats = 1) {
     scene.texture = std::make_shared<const TextureSampler>(appearance, "test");
     for (const auto& triangle : scene.mesh.triangles)
         for (const Index v : triangle)
-            scene.corner_texture.push_back({repeats * static_cast<float>(scene.mesh.points[v][0]),
-                                            repeats * static_cast<float>(scene.mesh.points[v][2])});
+            scene.corner_texture.push_back(
+                {repeats * static_cast<float>(scene.mesh.points[v][0]), repeats * static_cast<float>(scene.mesh.points[v][2])});
     return scene;
 }
 
@@ -143,8 +143,7 @@ TEST(Texture, ChartsDoNotBleedIntoEachOther) {
 
 TEST(Texture, ASeamBetweenChartsIsSharp) {
     // The two triangles of the square are charts of the same colour at the two ends of an image that is black between them.
-    const auto atlas =
-        png_of(512, 64, [](int column, int) { return column < 128 || column >= 384 ? green : black; });
+    const auto atlas = png_of(512, 64, [](int column, int) { return column < 128 || column >= 384 ? green : black; });
     Scene scene = square(appearance_of(atlas));
     scene.corner_texture = {{0, 0}, {0.24F, 0}, {0.24F, 1}, {0.76F, 0}, {1, 1}, {0.76F, 1}};
     const Rendering rendering = render({scene}, flat("150x150"));
@@ -224,7 +223,8 @@ TEST(Texture, WhatIsTransparentShowsWhatIsBehind) {
 
 TEST(Texture, IsTheSameForAnyNumberOfThreadsAndFromTheSide) {
     const auto image = png_of(256, 256, [](int column, int row) {
-        return Rgba{static_cast<std::uint8_t>(column), static_cast<std::uint8_t>(row), static_cast<std::uint8_t>(7 * column), 255};
+        return Rgba{static_cast<std::uint8_t>(column), static_cast<std::uint8_t>(row), static_cast<std::uint8_t>(7 * column),
+                    255};
     });
     RenderOptions options = flat();
     options.view = "55,35";
@@ -299,8 +299,7 @@ TEST(PrintScale, AnObjectHasItsSizeOnPaper) {
         EXPECT_NEAR(rendering.panes[0].pixels_per_unit, 10 * factor, 1e-9);
         EXPECT_NEAR(rendering.pixels_per_metre, 10000, 1e-9);
         double width = 0;
-        for (int column = 0; column < 600; ++column)
-            width += static_cast<double>(rendering.picture.at(column, 200) >> 24U) / 255;
+        for (int column = 0; column < 600; ++column) width += static_cast<double>(rendering.picture.at(column, 200) >> 24U) / 255;
         EXPECT_NEAR(width, 200 * factor, 1);
     }
     options.print_scale = "3:1";  // 600 pixels

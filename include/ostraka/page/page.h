@@ -93,7 +93,7 @@ struct PageObject {
     std::vector<std::string> conflicts = {};       ///< messages on conflicting constraints
     /// Indices of the regions that can be moved apart in the viewer, since they share no vertex.
     std::vector<std::size_t> parts = {};
-    const MeshExtras* extras = nullptr;    ///< colours and texture of the mesh; null: none
+    const MeshExtras* extras = nullptr;  ///< colours and texture of the mesh; null: none
     /// Colours that the page shows first: texture, own (of vertices or faces), annotations, values (the first map) or clay; auto:
     /// annotations if there are any, otherwise the first of texture and own colours that there is.
     std::string colouring = "auto";

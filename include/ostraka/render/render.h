@@ -31,12 +31,12 @@ struct RenderOptions {
     bool edges = false;         ///< draw the edges of the mesh over the surface
     /// Drawing style; lines: visible contours, creases and borders; wire: edges.
     enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
-    bool contours = false;  ///< draw contours, creases and borders over the surface
-    bool labels = false;    ///< write names beside the object, with leader lines, instead of a legend
-    bool axes = false;      ///< draw the directions of the mesh's axes
-    int supersample = 0;    ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
-    bool deep = false;      ///< write a PNG with 16 bits per channel
-    double dpi = 0;         ///< pixels per inch of paper; 0: 300 with `print_scale`, else 96 in SVG and PDF and unstated in PNG
+    bool contours = false;    ///< draw contours, creases and borders over the surface
+    bool labels = false;      ///< write names beside the object, with leader lines, instead of a legend
+    bool axes = false;        ///< draw the directions of the mesh's axes
+    int supersample = 0;      ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
+    bool deep = false;        ///< write a PNG with 16 bits per channel
+    double dpi = 0;           ///< pixels per inch of paper; 0: 300 with `print_scale`, else 96 in SVG and PDF and unstated in PNG
     std::string print_scale;  ///< scale on paper such as "1:2" (half the size), see parse_print_scale; empty: as large as fits
     enum class Theme { light, dark } theme = Theme::light;  ///< colours of text and background
     std::string background = "auto";   ///< colour of the background, as `parse_colour` accepts; auto: colour of the theme
@@ -78,14 +78,14 @@ struct Pane {
 
 /// A rendered picture or document.
 struct Rendering {
-    int width = 0, height = 0;  ///< pixels
-    Picture picture;            ///< the picture, if the output format is pixels
-    DeepPicture deep;           ///< the picture with 16 bits per channel, if requested
-    std::string document;       ///< contents of the file, if the output format is SVG or PDF
+    int width = 0, height = 0;    ///< pixels
+    Picture picture;              ///< the picture, if the output format is pixels
+    DeepPicture deep;             ///< the picture with 16 bits per channel, if requested
+    std::string document;         ///< contents of the file, if the output format is SVG or PDF
     double pixels_per_metre = 0;  ///< resolution on paper, for write_png; 0: unstated
-    std::vector<Pane> panes;    ///< panes of the picture, one per scene and view
-    double build_seconds = 0;   ///< seconds spent building the search trees
-    double draw_seconds = 0;    ///< seconds spent on the rest of the rendering
+    std::vector<Pane> panes;      ///< panes of the picture, one per scene and view
+    double build_seconds = 0;     ///< seconds spent building the search trees
+    double draw_seconds = 0;      ///< seconds spent on the rest of the rendering
 };
 
 /// Draws the scenes side by side. Rays are traced through a bounding volume hierarchy (Embree); the first hit is shaded by a
