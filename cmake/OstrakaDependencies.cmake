@@ -12,6 +12,8 @@ find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(GIF REQUIRED)
 pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
+find_package(EXPAT REQUIRED)
+pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
 # Found by path: the compile definitions of their packages are needed in one file only.

@@ -82,6 +82,7 @@ const PlyElement* PlyHeader::find(std::string_view name) const {
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
     TextReader reader(bytes, file, 0);
     PlyHeader header;
+    reader.set_position(without_byte_order_mark(bytes).data());
     if (!reader.next_line() || reader.word() != "ply")
         fail_input(file, "does not start with the line ply", "check that this is a PLY file");
     bool has_format = false;
@@ -97,7 +98,9 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
             has_format = true;
             reader.word();  // the version is always 1.0
         } else if (keyword == "comment" || keyword == "obj_info") {
-            if (reader.word() == "TextureFile") header.has_texture_file = true;
+            if (reader.word() != "TextureFile") continue;
+            if (header.texture_files.size() >= 1000) reader.fail("more than 1000 texture files are named");
+            header.texture_files.emplace_back(reader.rest_of_line());
             continue;
         } else if (keyword == "element") {
             if (header.elements.size() >= 1000) reader.fail("more than 1000 elements are declared");

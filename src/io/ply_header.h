@@ -37,15 +37,15 @@ struct PlyElement {
 /// The header of a PLY file.
 struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
-    std::vector<PlyElement> elements;  ///< element types in the order of the file
-    std::size_t size = 0;              ///< number of bytes before the first element
-    bool has_texture_file = false;     ///< true: a comment names a texture file
+    std::vector<PlyElement> elements;        ///< element types in the order of the file
+    std::size_t size = 0;                    ///< number of bytes before the first element
+    std::vector<std::string> texture_files;  ///< images that comments "TextureFile NAME" name
     /// The element type of this name; null if there is none.
     [[nodiscard]] const PlyElement* find(std::string_view name) const;
 };
 
-/// Reads the header of a PLY file. Throws Error (input) with the line of the header. Numbers of elements are those given in the
-/// file, unchecked.
+/// Reads the header of a PLY file, which may follow a byte order mark. Throws Error (input) with the line of the header. Numbers
+/// of elements are those given in the file, unchecked.
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file);
 
 }  // namespace ostraka::io

@@ -1,4 +1,4 @@
-#include "io/formats.h"
+#include "io/materials.h"
 #include "io/text_reader.h"
 #include "ostraka/core/message_text.h"
 
@@ -15,9 +15,9 @@ namespace {
 /// Statements of the format that do not concern the data we keep; any other word is an error, since a damaged keyword would
 /// silently shift all later indices.
 const std::set<std::string_view> ignored_statements{
-    "vn",    "vp",       "l",        "p",   "g",          "o",         "s",      "mg",    "usemtl", "mtllib", "maplib", "usemap",
-    "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech",  "stech", "curv",   "curv2",  "surf",   "parm",
-    "trim",  "hole",     "scrv",     "sp",  "end",        "con",       "cstype", "deg",   "bmat",   "step"};
+    "vp",       "l",    "p",          "g",         "o",     "s",      "mg",   "maplib", "usemap", "bevel", "c_interp",
+    "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech", "stech",  "curv", "curv2",  "surf",   "parm",  "trim",
+    "hole",     "scrv", "sp",         "end",       "con",   "cstype", "deg",  "bmat",   "step"};
 
 /// "\" before a line end continues the line: both are replaced by blanks, the line end by one that still counts as a line.
 void join_continued_lines(std::string& text) {
@@ -36,26 +36,55 @@ public:
     ObjReader(std::string_view text, const std::string& file) : reader_(text, file, '#') {}
 
     PolygonSoup read() {
-        while (reader_.next_line()) {
-            const char* line = reader_.position();
-            const std::string_view keyword = reader_.word();
-            if (keyword == "v") vertex();
-            else if (keyword == "f" || keyword == "fo") face();
-            else if (keyword == "vt") texture();
-            else if (ignored_statements.contains(keyword)) ignored_.insert(keyword);
-            else
-                reader_.fail("unknown statement " + in_quotes(keyword), "correct the line, or start it with # to have it skipped",
-                             line);
-        }
+        while (reader_.next_line()) statement();
         check_forward_references();
         finish_colours();
-        finish_texture();
+        finish_appearance();
+        if (has_normals_) ignored_.insert("vn");
         if (!ignored_.empty()) soup_.notes.push_back("statements not kept: " + joined(ignored_));
         if (weights_ > 0) soup_.notes.push_back(std::to_string(weights_) + " vertices have a weight, which is not kept");
+        if (bad_alphas_ > 0)
+            soup_.notes.push_back(std::to_string(bad_alphas_) +
+                                  " vertices have an opacity that is not a number; they are opaque");
+        if (last_face_may_be_cut_)
+            soup_.notes.emplace_back("the last face has no line end: the file may be cut off in its last face");
         return std::move(soup_);
     }
 
 private:
+    /// The faces that follow a statement usemtl.
+    struct MaterialRun {
+        std::size_t first_face;
+        std::string_view name;
+    };
+
+    void statement() {
+        const char* line = reader_.position();
+        const std::string_view keyword = reader_.word();
+        if (keyword == "v") vertex();
+        else if (keyword == "f" || keyword == "fo") face();
+        else if (keyword == "vt") texture();
+        else if (keyword == "vn") has_normals_ = true;
+        else if (keyword == "usemtl") use_material();
+        else if (keyword == "mtllib") libraries_.push_back(raw_line());
+        else if (ignored_statements.contains(keyword)) ignored_.insert(keyword);
+        else
+            reader_.fail("unknown statement " + in_quotes(keyword), "correct the line, or start it with # to have it skipped",
+                         line);
+    }
+
+    /// The remaining text of the line, with comments, since names of files and materials may contain #.
+    [[nodiscard]] std::string_view raw_line() const {
+        const std::string_view text(reader_.position(), reader_.remaining());
+        return text.substr(0, std::min(text.find('\n'), text.size()));
+    }
+
+    void use_material() {
+        const std::size_t face_count = soup_.polygon_count();
+        if (!runs_.empty() && runs_.back().first_face == face_count) runs_.pop_back();
+        runs_.push_back({face_count, raw_line()});
+    }
+
     void vertex() {
         std::array<double, 3> point{};
         for (double& x : point) x = reader_.finite("a coordinate");
@@ -66,7 +95,8 @@ private:
         std::size_t count = 0;
         while (!reader_.line_done()) {
             if (count == 4) reader_.fail("a vertex has more than seven numbers", {}, first);
-            extra_values[count++] = static_cast<float>(reader_.number("a colour or weight"));
+            extra_values[count] = count < 3 ? static_cast<float>(reader_.number("a colour or weight")) : opacity();
+            ++count;
         }
         if (count == 1) {
             if (extra_values[0] != 1) ++weights_;
@@ -76,6 +106,12 @@ private:
         colours_.resize(soup_.points.size(), {-1, -1, -1, -1});
         if (count == 3) extra_values[3] = -1;
         colours_.back() = extra_values;
+    }
+
+    float opacity() {
+        const auto value = number_of(reader_.word());
+        if (!value) ++bad_alphas_;
+        return value ? static_cast<float>(*value) : -1;
     }
 
     void texture() {
@@ -118,10 +154,11 @@ private:
                              {}, start);
             }
             if (uv != no_index) {
-                corner_uv_.resize(soup_.corners.size(), no_index);
-                corner_uv_.back() = uv;
+                if (corner_uv_.size() + 1 != soup_.corners.size()) corner_uv_.resize(soup_.corners.size() - 1, no_index);
+                corner_uv_.push_back(uv);
             }
         }
+        last_face_may_be_cut_ = reader_.remaining() == 0;
         close_polygon(soup_, reader_.file());
     }
 
@@ -162,37 +199,78 @@ private:
             soup_.notes.push_back(std::to_string(out_of_range) + " colour values are out of range and were clamped");
     }
 
-    /// Texture coordinates are per vertex if every corner refers to those with the number of its vertex, else per corner.
+    void finish_appearance() {
+        const Materials materials =
+            libraries_.empty() && runs_.empty() ? Materials() : read_materials(soup_, reader_.file(), libraries_, !runs_.empty());
+        finish_texture();
+        if (runs_.empty()) {
+            if (materials.index.size() != 1 || soup_.extras.corner_texture.empty()) return;
+            runs_.push_back({0, materials.index.begin()->first});
+            soup_.notes.emplace_back("no face names a material: the only one is that of all faces");
+        }
+        std::set<std::string> unknown;
+        soup_.extras.face_materials.assign(materials.index.empty() ? 0 : soup_.polygon_count(), no_index);
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+            const std::size_t end = r + 1 < runs_.size() ? runs_[r + 1].first_face : soup_.polygon_count();
+            const auto entry = materials.index.find(name_on_line(runs_[r].name));
+            if (entry == materials.index.end()) {
+                const std::string_view name = name_on_line(runs_[r].name);
+                if (end > runs_[r].first_face && !name.empty() && name != "(null)" && unknown.size() <= max_named)
+                    unknown.insert(printable(std::string(name), 100));
+                continue;
+            }
+            std::fill(soup_.extras.face_materials.begin() + static_cast<std::ptrdiff_t>(runs_[r].first_face),
+                      soup_.extras.face_materials.begin() + static_cast<std::ptrdiff_t>(end), entry->second);
+            shift_texture(runs_[r].first_face, end, materials.shifts[entry->second]);
+        }
+        if (unknown.empty()) return;
+        const bool are_more = unknown.size() > max_named;
+        if (are_more) unknown.erase(std::prev(unknown.end()));
+        soup_.notes.push_back(fmt::format("materials that no MTL file describes are not kept: {}{}", joined(unknown),
+                                          are_more ? " and others" : ""));
+    }
+
     void finish_texture() {
         if (corner_uv_.empty()) {
             if (!texture_.empty()) soup_.notes.emplace_back("texture coordinates that no face uses are not kept");
             return;
         }
         corner_uv_.resize(soup_.corners.size(), no_index);
-        if (texture_.size() == soup_.points.size() && corner_uv_ == soup_.corners) {
-            soup_.extras.vertex_texture = std::move(texture_);
-            return;
-        }
         std::size_t missing = 0;
         soup_.extras.corner_texture.reserve(corner_uv_.size());
         for (const Index uv : corner_uv_) {
             missing += uv == no_index;
-            soup_.extras.corner_texture.push_back(uv == no_index ? std::array<float, 2>{0, 0} : texture_[uv]);
+            soup_.extras.corner_texture.push_back(uv == no_index ? TexturePoint{0, 0} : texture_[uv]);
         }
         if (missing > 0)
             soup_.notes.push_back(std::to_string(missing) + " face corners have no texture coordinates and were given (0, 0)");
     }
 
+    void shift_texture(std::size_t first_face, std::size_t end, const TextureShift& shift) {
+        if (shift.is_identity() || soup_.extras.corner_texture.empty()) return;
+        for (std::size_t c = soup_.polygon_begin[first_face]; c < soup_.polygon_begin[end]; ++c) {
+            if (corner_uv_[c] == no_index) continue;
+            TexturePoint& point = soup_.extras.corner_texture[c];
+            point = shift(point);
+            for (float& x : point)
+                if (!std::isfinite(x)) x = 0;
+        }
+    }
+
+    static constexpr std::size_t max_named = 20;
     TextReader reader_;
     PolygonSoup soup_;
     std::vector<std::array<float, 4>> colours_;  ///< -1 if the file gives no colour
-    std::vector<std::array<float, 2>> texture_;
+    std::vector<TexturePoint> texture_;
     std::vector<Index> corner_uv_;
+    std::vector<std::string_view> libraries_;
+    std::vector<MaterialRun> runs_;
     std::int64_t largest_ = -1, largest_uv_ = -1;
     const char* largest_at_ = nullptr;
     const char* largest_uv_at_ = nullptr;
     std::set<std::string_view> ignored_;
-    std::size_t weights_ = 0;
+    std::size_t weights_ = 0, bad_alphas_ = 0;
+    bool has_normals_ = false, last_face_may_be_cut_ = false;
 };
 
 }  // namespace

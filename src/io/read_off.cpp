@@ -48,6 +48,10 @@ public:
         for (std::size_t v = 0; v < vertices_; ++v) vertex(v);
         for (std::size_t f = 0; f < faces_; ++f) face(f);
         if (!soup_.extras.face_colours.empty()) soup_.extras.face_colours.resize(faces_, white);
+        if (header_.texture) {
+            soup_.extras.corner_texture.reserve(soup_.corners.size());
+            for (const Index v : soup_.corners) soup_.extras.corner_texture.push_back(texture_[v]);
+        }
         if (header_.normals) soup_.notes.emplace_back("vertex normals are not kept");
         if (palette_ > 0) soup_.notes.push_back(std::to_string(palette_) + " faces refer to a palette colour, which is not kept");
         if (uncoloured_ > 0 && uncoloured_ < faces_)
@@ -130,7 +134,7 @@ private:
             const auto s = static_cast<float>(coordinate("a texture coordinate"));
             const auto t = static_cast<float>(coordinate("a texture coordinate"));
             if (!std::isfinite(s) || !std::isfinite(t)) reader_.fail("a texture coordinate does not fit a float");
-            soup_.extras.vertex_texture.push_back({s, t});
+            texture_.push_back({s, t});
         }
     }
 
@@ -201,13 +205,14 @@ private:
     TextReader reader_;
     PolygonSoup soup_;
     Header header_;
+    std::vector<TexturePoint> texture_;  ///< texture coordinates of the vertices
     std::size_t vertices_ = 0, faces_ = 0, palette_ = 0, uncoloured_ = 0, out_of_range_ = 0;
 };
 
 }  // namespace
 
 bool looks_like_off(std::string_view bytes) {
-    TextReader reader(bytes.substr(0, 4096), {}, '#');
+    TextReader reader(without_byte_order_mark(bytes).substr(0, 4096), {}, '#');
     return reader.skip_space() && parse_header(reader.word()).has_value();
 }
 

@@ -1,4 +1,4 @@
-#include "io/formats.h"
+#include "io/ply_content.h"
 #include "io/ply_rows.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
@@ -15,73 +15,15 @@ namespace ostraka::io {
 
 namespace {
 
-enum class Role : std::uint8_t { none, x, y, z, red, green, blue, alpha, label, s, t, corners, texture, count };
-constexpr std::size_t role_count = static_cast<std::size_t>(Role::count);
-
-Role vertex_role(const PlyProperty& property) {
-    if (property.is_list) return Role::none;
-    const std::string& name = property.name;
-    if (name == "x") return Role::x;
-    if (name == "y") return Role::y;
-    if (name == "z") return Role::z;
-    if (name == "s" || name == "u" || name == "texture_u" || name == "texture_s") return Role::s;
-    if (name == "t" || name == "v" || name == "texture_v" || name == "texture_t") return Role::t;
-    return Role::none;
-}
-
-/// Roles that vertices and faces share.
-Role common_role(const PlyProperty& property) {
-    if (property.is_list) return Role::none;
-    const std::string& name = property.name;
-    if (name == "red" || name == "diffuse_red") return Role::red;
-    if (name == "green" || name == "diffuse_green") return Role::green;
-    if (name == "blue" || name == "diffuse_blue") return Role::blue;
-    if (name == "alpha" || name == "diffuse_alpha") return Role::alpha;
-    const std::string lower = lower_case(name);
-    if (!is_real(property.type) && (lower.find("label") != std::string::npos || lower.starts_with("segment"))) return Role::label;
-    return Role::none;
-}
-
-Role face_role(const PlyProperty& property) {
-    if (!property.is_list) return Role::none;
-    if (property.name == "vertex_indices" || property.name == "vertex_index") return Role::corners;
-    if (property.name == "texcoord") return Role::texture;
-    return Role::none;
-}
-
-/// Assigns roles to the properties of an element; if several properties could have a role, the first one gets it.
-struct Plan {
-    std::vector<Role> roles;
-    std::array<PlyType, role_count> type{};
-    std::array<bool, role_count> has{};
-    std::vector<std::string> unused;
-
-    template <class RoleOf>
-    Plan(const PlyElement& element, RoleOf role_of) {
-        for (const PlyProperty& property : element.properties) {
-            Role role = role_of(property);
-            if (role == Role::none) role = common_role(property);
-            const auto r = static_cast<std::size_t>(role);
-            if (has[r]) role = Role::none;
-            if (role == Role::none) {
-                unused.push_back(property.name);
-            } else {
-                has[r] = true;
-                type[r] = property.type;
-            }
-            roles.push_back(role);
-        }
-    }
-    [[nodiscard]] bool with(Role role) const { return has[static_cast<std::size_t>(role)]; }
-    [[nodiscard]] bool coloured() const { return with(Role::red) && with(Role::green) && with(Role::blue); }
-};
-
 template <class Rows>
 class PlyBody {
 public:
     PlyBody(Rows rows, const PlyHeader& header, const std::string& file) : rows_(std::move(rows)), header_(header), file_(file) {
         if (const PlyElement* vertex = header.find("vertex")) vertex_count_ = vertex->count;
     }
+
+    PlyBody(const PlyBody&) = delete;
+    PlyBody& operator=(const PlyBody&) = delete;
 
     PolygonSoup read() {
         if (header_.find("vertex") == nullptr && (header_.find("face") != nullptr || header_.find("tristrips") != nullptr))
@@ -96,21 +38,15 @@ public:
             else skip_element(element);
         }
         if (!rows_.only_space_left()) soup_.notes.emplace_back("the data after the last element is ignored");
-        if (header_.has_texture_file) soup_.notes.emplace_back("the name of the texture image is not kept");
         if (wrapped_ > 0) soup_.notes.push_back(std::to_string(wrapped_) + " labels above 2147483647 were made negative");
-        if (out_of_range_ > 0)
-            soup_.notes.push_back(std::to_string(out_of_range_) + " colour values are out of range and were clamped");
-        if (bad_texture_ > 0)
-            soup_.notes.push_back(std::to_string(bad_texture_) +
-                                  " texture coordinates are missing or not finite and were set to 0");
-        return std::move(soup_);
+        return finish_ply(std::move(content_), header_, file_);
     }
 
     /// The floating-point properties of an element for which `wanted` is true, in the order of the file; empty if there is no
     /// such element.
     template <class Wanted>
-    std::vector<PlyColumn> columns(std::string_view element_name, Wanted wanted) {
-        std::vector<PlyColumn> result;
+    std::vector<NamedValues> columns(std::string_view element_name, Wanted wanted) {
+        std::vector<NamedValues> result;
         for (const PlyElement& element : header_.elements) {
             check_size(element);
             if (element.name != element_name) {
@@ -126,7 +62,7 @@ public:
                 result.push_back({property.name, {}});
             }
             if (result.empty()) break;
-            for (PlyColumn& column : result) column.values.reserve(element.count);
+            for (NamedValues& column : result) column.values.reserve(element.count);
             for (std::size_t i = 0; i < element.count; ++i) {
                 rows_.begin(element, i);
                 for (std::size_t k = 0; k < column_index.size(); ++k) {
@@ -171,21 +107,18 @@ private:
         if (element.count > 0) soup_.notes.push_back("element not kept: " + element.name);
     }
 
-    void note_unused(const PlyElement& element, const Plan& plan) {
+    void note_unused(const PlyElement& element, const PlyPlan& plan) {
         if (element.count == 0 || plan.unused.empty()) return;
         soup_.notes.push_back(fmt::format("{} properties not kept: {}", element.name, joined(plan.unused)));
     }
 
-    Colour colour(const std::array<double, role_count>& row, const Plan& plan) {
-        Colour result = white;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::size_t role = static_cast<std::size_t>(Role::red) + k;
-            if (!plan.has[role]) continue;
-            const PlyType type = plan.type[role];
-            if (is_real(type)) result[k] = channel_from_unit(row[role], out_of_range_);
-            else result[k] = channel_from_byte(type == PlyType::uint16 ? std::round(row[role] / 257) : row[role], out_of_range_);
+    /// Lists for the values of an element, in the order of its properties.
+    static void add_value_lists(const PlyElement& element, const PlyPlan& plan, std::vector<NamedValues>& lists) {
+        for (std::size_t k = 0; k < plan.roles.size(); ++k) {
+            if (plan.roles[k] != Role::value) continue;
+            lists.push_back({element.properties[k].name, {}});
+            lists.back().values.reserve(element.count);
         }
-        return result;
     }
 
     std::int32_t label(double value) {
@@ -199,7 +132,7 @@ private:
     }
 
     void vertices(const PlyElement& element) {
-        const Plan plan(element, vertex_role);
+        const PlyPlan plan(element, true);
         if (element.count > 0 && !(plan.with(Role::x) && plan.with(Role::y) && plan.with(Role::z)))
             fail_input(file_, "the vertices lack one of the properties x, y and z", "export it again with coordinates");
         note_unused(element, plan);
@@ -207,32 +140,42 @@ private:
         const bool coloured = plan.coloured(), labelled = plan.with(Role::label),
                    textured = plan.with(Role::s) && plan.with(Role::t);
         soup_.points.reserve(element.count);
-        if (coloured) extras.vertex_colours.reserve(element.count);
+        if (coloured) content_.vertex_colours = PlyColours(plan, element.count);
         if (labelled) extras.vertex_labels.reserve(element.count);
-        if (textured) extras.vertex_texture.reserve(element.count);
+        if (textured) content_.vertex_texture.reserve(element.count);
+        add_value_lists(element, plan, extras.vertex_values);
         std::array<double, role_count> row{};
         const auto value_of = [&row](Role role) { return row[static_cast<std::size_t>(role)]; };
         for (std::size_t i = 0; i < element.count; ++i) {
             rows_.begin(element, i);
+            std::size_t list = 0;
             for (std::size_t k = 0; k < plan.roles.size(); ++k) {
-                if (plan.roles[k] == Role::none) skip_property(element.properties[k]);
-                else row[static_cast<std::size_t>(plan.roles[k])] = rows_.value(element.properties[k].type);
+                const PlyProperty& property = element.properties[k];
+                if (plan.roles[k] == Role::none) skip_property(property);
+                else if (plan.roles[k] == Role::value) extras.vertex_values[list++].values.push_back(rows_.value(property.type));
+                else row[static_cast<std::size_t>(plan.roles[k])] = rows_.value(property.type);
             }
-            if (!(std::isfinite(value_of(Role::x)) && std::isfinite(value_of(Role::y)) && std::isfinite(value_of(Role::z))))
-                rows_.fail(fmt::format("vertex {} has a coordinate that is not finite", i), "correct or remove the vertex");
             rows_.end(element, i);
             soup_.points.push_back({value_of(Role::x), value_of(Role::y), value_of(Role::z)});
-            if (coloured) extras.vertex_colours.push_back(colour(row, plan));
+            if (!is_finite(soup_.points.back())) content_.unplaced.push_back(static_cast<Index>(i));
+            if (coloured) content_.vertex_colours.add(row);
             if (labelled) extras.vertex_labels.push_back(label(value_of(Role::label)));
-            if (textured) {
-                extras.vertex_texture.push_back({static_cast<float>(value_of(Role::s)), static_cast<float>(value_of(Role::t))});
-                for (float& x : extras.vertex_texture.back()) {
-                    if (std::isfinite(x)) continue;
-                    x = 0;
-                    ++bad_texture_;
-                }
-            }
+            if (textured) content_.vertex_texture.push_back(texture_point(value_of(Role::s), value_of(Role::t)));
         }
+    }
+
+    static bool is_finite(const std::array<double, 3>& point) {
+        return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+    }
+
+    TexturePoint texture_point(double s, double t) {
+        TexturePoint point{static_cast<float>(s), static_cast<float>(t)};
+        for (float& x : point) {
+            if (std::isfinite(x)) continue;
+            x = 0;
+            ++content_.bad_texture;
+        }
+        return point;
     }
 
     Index corner(PlyType type, const std::string& element, std::size_t row) {
@@ -244,43 +187,60 @@ private:
     }
 
     void faces(const PlyElement& element) {
-        const Plan plan(element, face_role);
+        const PlyPlan plan(element, false);
         if (element.count > 0 && !plan.with(Role::corners))
             fail_input(file_, "the faces have no list vertex_indices", "export it again with faces");
         if (plan.with(Role::corners) && is_real(plan.type[static_cast<std::size_t>(Role::corners)]))
             fail_input(file_, "the vertex indices of the faces are real numbers", "export it again");
         note_unused(element, plan);
         auto& extras = soup_.extras;
-        const bool coloured = plan.coloured(), labelled = plan.with(Role::label), textured = plan.with(Role::texture);
+        const bool coloured = plan.coloured(), labelled = plan.with(Role::label), textured = plan.with(Role::texture),
+                   numbered = plan.with(Role::image);
         soup_.polygon_begin.reserve(element.count + 1);
         soup_.corners.reserve(std::min(3 * element.count, rows_.remaining()));
-        if (coloured) extras.face_colours.reserve(element.count);
+        if (coloured) content_.face_colours = PlyColours(plan, element.count);
         if (labelled) extras.face_labels.reserve(element.count);
+        if (numbered) content_.image_of_face.reserve(element.count);
+        add_value_lists(element, plan, extras.face_values);
         std::array<double, role_count> row{};
         std::vector<float> texture;
         for (std::size_t i = 0; i < element.count; ++i) {
             rows_.begin(element, i);
-            for (std::size_t k = 0; k < plan.roles.size(); ++k) {
-                const PlyProperty& property = element.properties[k];
-                if (plan.roles[k] == Role::none) {
-                    skip_property(property);
-                } else if (plan.roles[k] == Role::corners) {
-                    for (std::size_t n = list_length(property); n > 0; --n)
-                        soup_.corners.push_back(corner(property.type, "face", i));
-                } else if (plan.roles[k] == Role::texture) {
-                    texture.clear();
-                    for (std::size_t n = list_length(property); n > 0; --n)
-                        texture.push_back(static_cast<float>(rows_.value(property.type)));
-                } else {
-                    row[static_cast<std::size_t>(plan.roles[k])] = rows_.value(property.type);
-                }
-            }
+            face_properties(element, plan, i, row, texture);
             rows_.end(element, i);
             close_polygon(soup_, file_);
-            if (coloured) extras.face_colours.push_back(colour(row, plan));
+            if (coloured) content_.face_colours.add(row);
             if (labelled) extras.face_labels.push_back(label(row[static_cast<std::size_t>(Role::label)]));
+            if (numbered) content_.image_of_face.push_back(image_number(row[static_cast<std::size_t>(Role::image)]));
             if (textured) add_texture(texture);
         }
+    }
+
+    void face_properties(const PlyElement& element, const PlyPlan& plan, std::size_t face, std::array<double, role_count>& row,
+                         std::vector<float>& texture) {
+        std::size_t list = 0;
+        for (std::size_t k = 0; k < plan.roles.size(); ++k) {
+            const PlyProperty& property = element.properties[k];
+            if (plan.roles[k] == Role::none) {
+                skip_property(property);
+            } else if (plan.roles[k] == Role::value) {
+                soup_.extras.face_values[list++].values.push_back(rows_.value(property.type));
+            } else if (plan.roles[k] == Role::corners) {
+                for (std::size_t n = list_length(property); n > 0; --n)
+                    soup_.corners.push_back(corner(property.type, "face", face));
+            } else if (plan.roles[k] == Role::texture) {
+                texture.clear();
+                for (std::size_t n = list_length(property); n > 0; --n)
+                    texture.push_back(static_cast<float>(rows_.value(property.type)));
+            } else {
+                row[static_cast<std::size_t>(plan.roles[k])] = rows_.value(property.type);
+            }
+        }
+    }
+
+    /// -1 (no image) for numbers that no image can have.
+    static std::int32_t image_number(double number) {
+        return number >= 0 && number <= std::numeric_limits<std::int32_t>::max() ? static_cast<std::int32_t>(number) : -1;
     }
 
     void add_texture(const std::vector<float>& coordinates) {
@@ -288,19 +248,22 @@ private:
         const std::size_t count = soup_.corners.size() - texture.size();
         const bool usable = coordinates.size() == 2 * count &&
                             std::all_of(coordinates.begin(), coordinates.end(), [](float x) { return std::isfinite(x); });
-        if (!usable) ++bad_texture_;
+        if (!usable) ++content_.bad_texture;
         for (std::size_t k = 0; k < count; ++k)
-            texture.push_back(usable ? std::array<float, 2>{coordinates[2 * k], coordinates[2 * k + 1]}
-                                     : std::array<float, 2>{0, 0});
+            texture.push_back(usable ? TexturePoint{coordinates[2 * k], coordinates[2 * k + 1]} : TexturePoint{0, 0});
     }
 
     /// Each strip is a sequence of vertices; every three consecutive ones form a triangle, every second triangle is reversed;
     /// -1 starts a new strip.
     void strips(const PlyElement& element) {
-        const Plan plan(element, face_role);
+        const PlyPlan plan(element, false);
         if (element.count > 0 && !plan.with(Role::corners))
             fail_input(file_, "the triangle strips have no list vertex_indices", "export it again with faces");
-        note_unused(element, plan);
+        std::vector<std::string> not_kept;
+        for (std::size_t k = 0; k < plan.roles.size(); ++k)
+            if (plan.roles[k] != Role::corners) not_kept.push_back(element.properties[k].name);
+        if (element.count > 0 && !not_kept.empty())
+            soup_.notes.push_back("properties of triangle strips not kept: " + joined(not_kept));
         for (std::size_t i = 0; i < element.count; ++i) {
             rows_.begin(element, i);
             for (std::size_t k = 0; k < plan.roles.size(); ++k) {
@@ -338,8 +301,9 @@ private:
     Rows rows_;
     const PlyHeader& header_;
     std::string file_;
-    PolygonSoup soup_;
-    std::size_t vertex_count_ = 0, wrapped_ = 0, out_of_range_ = 0, bad_texture_ = 0;
+    PlyContent content_;
+    PolygonSoup& soup_ = content_.soup;
+    std::size_t vertex_count_ = 0, wrapped_ = 0;
 };
 
 /// Calls read(body) for a file in any of the three encodings.
@@ -355,7 +319,10 @@ auto read_body(const std::string& bytes, const std::string& file, Read&& read) {
 
 }  // namespace
 
-bool looks_like_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r"); }
+bool looks_like_ply(std::string_view bytes) {
+    bytes = without_byte_order_mark(bytes);
+    return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
 
 PolygonSoup read_ply(const std::string& bytes, const std::string& file) {
     return read_body(bytes, file, [](auto body) { return body.read(); });
@@ -372,27 +339,12 @@ std::vector<std::array<double, 3>> read_ply_vectors(const Path& file, const std:
     const auto columns = io::read_body(bytes, file.string(), [&](auto body) { return body.columns("vertex", wanted); });
     std::array<const std::vector<double>*, 3> axes{};
     for (std::size_t k = 0; k < 3; ++k)
-        for (const PlyColumn& column : columns)
+        for (const NamedValues& column : columns)
             if (column.name == names[k]) axes[k] = &column.values;
     std::vector<std::array<double, 3>> result;
     if (axes[0] == nullptr || axes[1] == nullptr || axes[2] == nullptr) return result;
     for (std::size_t i = 0; i < axes[0]->size(); ++i) result.push_back({(*axes[0])[i], (*axes[1])[i], (*axes[2])[i]});
     return result;
-}
-
-PlyNumbers read_ply_numbers(const Path& file) {
-    const std::string bytes = read_file(file);
-    if (!io::looks_like_ply(bytes)) return {};
-    const auto numbers_of = [&](const char* element) {
-        const auto wanted = [](const std::string& name) {
-            const std::initializer_list<const char*> standard_names{"x",     "y",    "z",     "nx", "ny", "nz", "red",
-                                                                    "green", "blue", "alpha", "s",  "t",  "u",  "v"};
-            return std::find(standard_names.begin(), standard_names.end(), name) == standard_names.end() &&
-                   !name.starts_with("texture_") && !name.starts_with("diffuse_");
-        };
-        return io::read_body(bytes, file.string(), [&](auto body) { return body.columns(element, wanted); });
-    };
-    return {numbers_of("vertex"), numbers_of("face")};
 }
 
 }  // namespace ostraka

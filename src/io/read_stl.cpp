@@ -65,19 +65,94 @@ private:
     std::vector<Index> slots_;
 };
 
+/// Colours in the two attribute bytes of the triangles of a binary file. VisCAM and SolidView: the highest bit is set if the
+/// triangle has a colour, then come five bits each of red, green and blue. Magics: the header contains "COLOR=" and four bytes,
+/// the colour of the object; the highest bit is set if the triangle has that colour, then come blue, green and red.
+class FacetColours {
+public:
+    explicit FacetColours(std::string_view header) {
+        const std::size_t at = header.find("COLOR=");
+        is_magics_ = at != std::string_view::npos && at + 10 <= header.size();
+        if (is_magics_) std::memcpy(object_colour_.data(), header.data() + at + 6, 4);
+    }
+
+    void add(std::uint16_t attribute) {
+        any_bits_ = any_bits_ || attribute != 0;
+        any_marked_ = any_marked_ || (attribute & 0x8000U) != 0;
+        attributes_.push_back(attribute);
+    }
+
+    /// Moves the colours to the soup if the triangles have some.
+    void finish(PolygonSoup& soup) const {
+        // Magics files whose attributes are all zero have the colour of the object only.
+        const bool coloured = is_magics_ ? any_bits_ || object_colour_ != white : any_marked_;
+        if (any_bits_ && !coloured)
+            soup.notes.emplace_back("attribute bytes of the triangles, which are no colours, are not kept");
+        if (!coloured) return;
+        std::size_t uncoloured = 0;
+        soup.extras.face_colours.reserve(attributes_.size());
+        for (const std::uint16_t attribute : attributes_) {
+            const bool marked = (attribute & 0x8000U) != 0;
+            if (is_magics_) {
+                soup.extras.face_colours.push_back(marked || !any_bits_ ? object_colour_ : colour(attribute, 0, 10));
+            } else {
+                uncoloured += !marked;
+                soup.extras.face_colours.push_back(marked ? colour(attribute, 10, 0) : white);
+            }
+        }
+        if (uncoloured > 0) soup.notes.push_back(fmt::format("{} triangles have no colour and were made white", uncoloured));
+    }
+
+private:
+    static Colour colour(std::uint16_t attribute, unsigned red_bit, unsigned blue_bit) {
+        const auto channel = [attribute](unsigned bit) {
+            const unsigned value = (attribute >> bit) & 31U;
+            return static_cast<std::uint8_t>((value * 255 + 15) / 31);
+        };
+        return {channel(red_bit), channel(5), channel(blue_bit), 255};
+    }
+    bool is_magics_ = false, any_bits_ = false, any_marked_ = false;
+    Colour object_colour_ = white;
+    std::vector<std::uint16_t> attributes_;
+};
+
+/// True if the bytes of a triangle are finite numbers, not all zero.
+bool is_facet(const char* facet) {
+    bool any = false;
+    for (std::size_t k = 3; k < 12; ++k) {
+        float value = 0;
+        std::memcpy(&value, facet + 4 * k, 4);
+        if (!std::isfinite(value)) return false;
+        any = any || value != 0;
+    }
+    return any;
+}
+
+/// Number of triangles in a binary file. A count in the header that is too small for the file is corrected if triangles follow.
+std::size_t corrected_count(std::string_view bytes, const std::string& file, std::vector<std::string>& notes) {
+    const std::size_t count = facet_count(bytes), room = (bytes.size() - header_size) / facet_size;
+    if (count > room)
+        fail_input(file, fmt::format("the header promises {} triangles, but the file has room for {}", count, room),
+                   "the file is cut off or not an STL file");
+    const bool is_whole = (bytes.size() - header_size) % facet_size == 0;
+    bool all_facets = room > count && (is_whole || count == 0);
+    for (std::size_t f = count; f < room && all_facets; ++f) all_facets = is_facet(bytes.data() + header_size + f * facet_size);
+    if (all_facets)
+        notes.push_back(fmt::format("the header says {} triangles, but the file has {}, which were read", count, room));
+    const std::size_t result = all_facets ? room : count;
+    if (const std::size_t rest = bytes.size() - header_size - result * facet_size; rest > 0)
+        notes.push_back(fmt::format("the {} bytes after the last triangle are ignored", rest));
+    return result;
+}
+
 PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
     if (bytes.size() < header_size) fail_input(file, "is too short for an STL file", "the file is cut off");
-    const std::size_t count = facet_count(bytes);
-    if (count > (bytes.size() - header_size) / facet_size)
-        fail_input(file,
-                   fmt::format("the header promises {} triangles, but the file has room for {}", count,
-                               (bytes.size() - header_size) / facet_size),
-                   "the file is cut off or not an STL file");
     PolygonSoup soup;
+    const std::size_t count = corrected_count(bytes, file, soup.notes);
     soup.corners.reserve(3 * count);
     soup.polygon_begin.reserve(count + 1);
     PointMerger merge(soup.points);
-    bool attributes = false;
+    FacetColours colours(bytes.substr(0, 80));
     for (std::size_t f = 0; f < count; ++f) {
         const char* facet = bytes.data() + header_size + f * facet_size;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -90,10 +165,11 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
             soup.corners.push_back(merge({values[0], values[1], values[2]}));
         }
         close_polygon(soup, file);
-        attributes = attributes || facet[48] != 0 || facet[49] != 0;
+        std::uint16_t attribute = 0;
+        std::memcpy(&attribute, facet + 48, 2);
+        colours.add(attribute);
     }
-    if (attributes) soup.notes.emplace_back("attribute bytes of the triangles (colours, in some programs) are not kept");
-    if (bytes.size() > header_size + count * facet_size) soup.notes.emplace_back("the data after the last triangle is ignored");
+    colours.finish(soup);
     return soup;
 }
 
@@ -172,28 +248,34 @@ private:
 
 }  // namespace
 
+namespace {
+bool is_binary_of_size(std::string_view bytes) {
+    return bytes.size() >= header_size && bytes.size() == header_size + facet_count(bytes) * facet_size;
+}
+}  // namespace
+
 /// Text files may start with any word and binary files with "solid": the size decides.
 bool looks_like_stl(std::string_view bytes) {
-    if (bytes.size() >= header_size && bytes.size() == header_size + facet_count(bytes) * facet_size) return true;
-    TextReader reader(bytes.substr(0, 4096), {}, 0);
+    if (is_binary_of_size(bytes)) return true;
+    TextReader reader(without_byte_order_mark(bytes).substr(0, 4096), {}, 0);
     return reader.skip_space() && reader.word() == "solid";
 }
 
 PolygonSoup read_stl(std::string& bytes, const std::string& file) {
-    const bool size_fits = bytes.size() >= header_size && bytes.size() == header_size + facet_count(bytes) * facet_size;
-    if (!size_fits) {
-        TextReader reader(bytes, file, 0);
-        std::string_view word;
-        if (reader.skip_space()) word = reader.word();
-        // A binary header is padded with zero bytes or blanks and has a triangle count; text has no zero bytes.
-        const bool text = bytes.find('\0') == std::string::npos;
-        if (same_word(word, "solid") && (text || bytes.find("facet") != std::string::npos)) {
-            normalise_text(bytes);
-            return AsciiStl(bytes, file).read();
-        }
-        if (text && bytes.size() < header_size)
-            fail_input(file, "starts with neither solid nor a binary header", "check that this is an STL file");
+    if (is_binary_of_size(bytes)) return read_binary(bytes, file);
+    const std::string_view content = without_byte_order_mark(bytes);
+    if (content.size() < bytes.size() && is_binary_of_size(content)) return read_binary(content, file);
+    TextReader reader(content, file, 0);
+    std::string_view word;
+    if (reader.skip_space()) word = reader.word();
+    // A binary header is padded with zero bytes or blanks and has a triangle count; text has no zero bytes.
+    const bool text = bytes.find('\0') == std::string::npos;
+    if (same_word(word, "solid") && (text || bytes.find("facet") != std::string::npos)) {
+        normalise_text(bytes);
+        return AsciiStl(bytes, file).read();
     }
+    if (text && bytes.size() < header_size)
+        fail_input(file, "starts with neither solid nor a binary header", "check that this is an STL file");
     return read_binary(bytes, file);
 }
 

@@ -219,8 +219,8 @@ void write_labels_note(const MeshExtras& extras, const char* format, Notes& note
     if (!extras.vertex_labels.empty()) notes.push_back(std::string(format) + " cannot store labels of vertices");
     if (!extras.vertex_colours.empty() || !extras.face_colours.empty())
         notes.push_back(std::string(format) + " cannot store colours");
-    if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
-        notes.push_back(std::string(format) + " cannot store texture coordinates");
+    if (!extras.corner_texture.empty()) notes.push_back(std::string(format) + " cannot store texture coordinates");
+    if (!extras.appearance.empty()) notes.push_back(std::string(format) + " cannot store materials and images");
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ std::string in_quotes(std::string_view word) {
 }
 
 void normalise_text(std::string& text) {
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.replace(0, 3, "   ");
+    if (without_byte_order_mark(text).size() < text.size()) text.replace(0, 3, "   ");
     if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
 }
 

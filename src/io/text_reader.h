@@ -87,6 +87,11 @@ private:
 /// A word in quotes for a message: printable characters only, at most 40.
 std::string in_quotes(std::string_view word);
 
+/// The text of a file without the byte order mark of UTF-8 at its beginning.
+inline std::string_view without_byte_order_mark(std::string_view bytes) {
+    return bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
+}
+
 /// Replaces carriage returns by line feeds if the text has no line feeds, and a byte order mark by blanks.
 void normalise_text(std::string& text);
 

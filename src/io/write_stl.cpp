@@ -100,8 +100,8 @@ Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         notes.emplace_back("STL does not store vertices; they will be numbered by first appearance on reading");
     if (!extras.vertex_colours.empty() || !extras.face_colours.empty()) notes.emplace_back("STL cannot store colours");
     if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("STL cannot store labels");
-    if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
-        notes.emplace_back("STL cannot store texture coordinates");
+    if (!extras.corner_texture.empty()) notes.emplace_back("STL cannot store texture coordinates");
+    if (!extras.appearance.empty()) notes.emplace_back("STL cannot store materials and images");
     return notes;
 }
 

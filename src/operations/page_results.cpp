@@ -2,7 +2,6 @@
 
 #include "ostraka/core/message_text.h"
 #include "ostraka/files/csv.h"
-#include "ostraka/io/ply.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
 #include <fmt/core.h>
@@ -49,15 +48,6 @@ void add_cells(const JsonValue& record, const std::string& prefix, Cells& cells)
 std::optional<double> finite_in(const JsonValue& object, const char* name) {
     const JsonValue* member = find_member(object, name);
     return member != nullptr && member->IsNumber() ? std::optional(member->GetDouble()) : std::nullopt;
-}
-
-/// Value per triangle, taken from its polygon.
-std::vector<double> triangle_values(const std::vector<double>& polygon_values, const MeshFile& mesh) {
-    if (mesh.polygon_of_triangle.empty()) return polygon_values;
-    std::vector<double> values;
-    for (const Index polygon : mesh.polygon_of_triangle)
-        values.push_back(polygon < polygon_values.size() ? polygon_values[polygon] : std::nan(""));
-    return values;
 }
 
 /// Mean of the finite values added for each element; NaN if there are none.
@@ -321,9 +311,8 @@ PageTable csv_table(const Path& file, const std::string& name) {
     return table;
 }
 
-std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
+std::vector<PageMap> value_maps(const MeshFile& mesh) {
     std::vector<PageMap> maps;
-    PlyNumbers numbers = read_ply_numbers(file);
     const auto add = [&](const std::string& name, std::vector<double> values, std::size_t elements) {
         const bool varied = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end();
         const bool finite = std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
@@ -331,8 +320,8 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
     };
     const std::size_t vertices = mesh.mesh.number_of_vertices();
     const auto has = [&](const char* name) {
-        return std::any_of(numbers.faces.begin(), numbers.faces.end(),
-                           [&](const PlyColumn& column) { return column.name == name; });
+        return std::any_of(mesh.extras.face_values.begin(), mesh.extras.face_values.end(),
+                           [&](const NamedValues& column) { return column.name == name; });
     };
     const std::vector<std::int32_t>& labels = mesh.extras.face_labels;
     const bool completed = has("distance") && has("confidence") && labels.size() == mesh.mesh.number_of_faces() &&
@@ -344,11 +333,8 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
                         "observed, interpolated or hypothesis",
                         origin_of_vertices(mesh),
                         {{"observed", {186, 120, 82}}, {"interpolated", {214, 180, 120}}, {"hypothesis", {170, 180, 190}}}});
-    for (PlyColumn& column : numbers.vertices) add(column.name, std::move(column.values), vertices);
-    for (PlyColumn& column : numbers.faces) {
-        const std::vector<double> values = triangle_values(column.values, mesh);
-        if (values.size() == mesh.mesh.number_of_faces()) add(column.name, vertex_means(mesh.mesh, values), vertices);
-    }
+    for (const NamedValues& column : mesh.extras.vertex_values) add(column.name, column.values, vertices);
+    for (const NamedValues& column : mesh.extras.face_values) add(column.name, vertex_means(mesh.mesh, column.values), vertices);
     return maps;
 }
 

@@ -158,7 +158,7 @@ struct MakeReport final : Operation {
         std::vector<std::string> notes = object.file.notes;
         std::erase_if(notes, [](const std::string& note) { return note.find("properties not kept") != std::string::npos; });
         context.notes(name, notes);  // additional properties become maps of the page
-        object.maps = ply_maps(file, object.file);
+        object.maps = value_maps(object.file);
         Path annotations = file;
         annotations.replace_extension(".ant.json");
         const bool is_listed = std::any_of(results.sources.begin(), results.sources.end(), [&](const Source& source) {

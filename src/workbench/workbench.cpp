@@ -251,8 +251,7 @@ void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes
             shown_shape.set = shape->set ? &*shape->set : nullptr;
             shown_shape.graph = shape->graph ? &*shape->graph : nullptr;
             shown_shape.cage = shape->cage ? &shape->cage->mesh : nullptr;
-            if (i == state.active && !deformed && extension(file) == ".ply")
-                shown_shape.maps = ply_maps(session_.path_of(file), *shape->mesh);
+            if (i == state.active && !deformed) shown_shape.maps = value_maps(*shape->mesh);
             if (i == state.active) shown_shape.files = workbench::files_for(session_, deformed);
             scene.add(shown_shape);
             shown_objects.PushBack(json_object(a, "object", i, "deformed", deformed), a);

@@ -46,7 +46,8 @@ struct PolygonSoup {
     MeshExtras extras;                          ///< attributes per vertex and per polygon
     std::vector<std::string> notes;             ///< messages about content of the file that was not kept
     /// Vertex of each vertex in the file, where vertices of the file that were doubled for their texture coordinates or normals
-    /// were joined again; empty: vertex i of the file is vertex i.
+    /// were joined again; no_index: a vertex without coordinates that no face uses, which was dropped; empty: vertex i of the
+    /// file is vertex i.
     std::vector<Index> vertex_of_file_vertex = {};
     [[nodiscard]] std::size_t polygon_count() const { return polygon_begin.size() - 1; }
 };

@@ -63,9 +63,9 @@ Json cell_of(const auto& value) {
 /// (input).
 PageTable csv_table(const Path& file, const std::string& name);
 
-/// Maps of an object from the additional numeric vertex properties of its PLY file; for a completed object also the map of
-/// observed, interpolated and hypothetical surface.
-std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh);
+/// Maps of an object from the further numbers of its vertices and faces (MeshExtras::vertex_values, face_values); for a completed
+/// object also the map of observed, interpolated and hypothetical surface.
+std::vector<PageMap> value_maps(const MeshFile& mesh);
 /// Transfers a map to a simplified mesh. `new_index`: for each vertex of the original mesh, its index in the simplified mesh
 /// (`no_index` if removed); `vertices`: number of vertices of the simplified mesh.
 PageMap simplified_map(const PageMap& map, const std::vector<Index>& new_index, std::size_t vertices);
