@@ -6,13 +6,15 @@
 #include "interchange/text.h"
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/annotation/curves.h"
+#include "ostraka/annotation/cut_extras.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/glb.h"
+#include "ostraka/io/glb_materials.h"
+#include "ostraka/io/surface_look.h"
 #include "ostraka/mesh/limits.h"
 #include "ostraka/vocabulary/text_match.h"
 
@@ -21,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -37,7 +40,9 @@ constexpr std::size_t check_every = 1 << 16;  ///< number of elements between tw
 /// Vertices of a primitive: mesh vertices with one feature per set.
 struct Corners {
     std::vector<Index> vertices;
-    std::vector<std::array<int, 3>> colours;
+    std::vector<std::array<int, 3>> colours;   ///< empty: the colours of the texture
+    std::vector<TexturePoint> texture;         ///< empty: no texture
+    int material = 0;                          ///< index of the glTF material
     std::vector<std::vector<Index>> features;  ///< one list per set
     std::vector<std::uint32_t> indices;
 };
@@ -45,12 +50,14 @@ struct Corners {
 class FeatureWriter {
 public:
     /// `originals`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
+    /// `extras`: texture and colours of the surface.
     FeatureWriter(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance, const Json& originals,
-                  std::vector<std::string>& notes)
+                  const MeshExtras& extras, std::vector<std::string>& notes)
         : object_(object),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
           native_(annotations_to_json(object, mesh_file, provenance)),
           originals_(originals),
+          extras_(extras),
           notes_(notes) {}
 
     std::string write() {
@@ -59,14 +66,17 @@ public:
         if (object_.annotations.annotations.size() >= exact_in_float)
             fail_work(where_, "has more annotations than distinct feature ids", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
-        primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
+        const std::vector<Corners> surfaces = surface();
+        for (const Corners& part : surfaces) primitives.PushBack(primitive(part, glb::triangles_mode), a());
         const Corners drawn = lines(), marked = points();
         if (!drawn.vertices.empty()) primitives.PushBack(primitive(drawn, glb::lines_mode), a());
         if (!marked.vertices.empty()) primitives.PushBack(primitive(marked, glb::points_mode), a());
         if (!object_.annotations.annotations.empty()) add_table();
 
         JsonValue extras(rapidjson::kObjectType);
-        copy_members(extras, a(), native_, {"mesh", "class", "unit", "up", "provenance"});
+        // Triangle i is face i of the mesh only where there is one list of triangles.
+        if (surfaces.size() == 1) copy_members(extras, a(), native_, {"mesh"});
+        copy_members(extras, a(), native_, {"class", "unit", "up", "provenance"});
         if (originals_.IsObject()) {
             JsonValue original(rapidjson::kObjectType);
             copy_members(original, a(), originals_, {"mesh", "annotations"});
@@ -76,13 +86,9 @@ public:
             json_object(a(), "primitives", std::move(primitives), "extras", json_object(a(), "ostraka", std::move(extras)));
         JsonValue nodes = in_list(json_object(a(), "mesh", 0));
         const bool turned = add_display_node(nodes);
-        JsonValue material = json_object(a(), "pbrMetallicRoughness", json_object(a(), "metallicFactor", 0, "roughnessFactor", 1),
-                                         "doubleSided", true);
         Json& root = builder_.document();
         add_members(root, a(), "scene", 0, "scenes", in_list(json_object(a(), "nodes", std::array{turned ? 1 : 0})), "nodes",
-                    std::move(nodes), "meshes", in_list(std::move(mesh)), "materials", in_list(std::move(material)));
-        if (!object_.annotations.annotations.empty())
-            add_members(root, a(), "extensionsUsed", std::array{"EXT_mesh_features", "EXT_structural_metadata"});
+                    std::move(nodes), "meshes", in_list(std::move(mesh)));
         const auto empty = std::count_if(
             object_.annotations.annotations.begin(), object_.annotations.annotations.end(), [](const Annotation& annotation) {
                 return annotation.points.empty() && annotation.polylines.empty() && annotation.faces.empty();
@@ -91,11 +97,32 @@ public:
             notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
                              " without elements: present in the table, but not on the mesh");
         if (rounded_) notes_.emplace_back("GLB stores coordinates in single precision; they were rounded");
-        return builder_.finish(where_, "simplify the mesh");
+        return with_materials();
     }
 
 private:
+    /// Adds the materials, and the images as the last views, and completes the file.
+    std::string with_materials() {
+        std::vector<Index> used{no_index};  // of lines, points and faces without a material
+        for (Index material = 0; textured_ && material < extras_.appearance.materials.size(); ++material)
+            used.push_back(material);
+        io::GlbMaterials materials(extras_.appearance, std::move(used), where_);
+        materials.add_to(builder_, false);
+        if (!object_.annotations.annotations.empty()) add_extensions_used({"EXT_mesh_features", "EXT_structural_metadata"});
+        notes_.insert(notes_.end(), materials.notes().begin(), materials.notes().end());
+        std::string file = builder_.finish(where_, "simplify the mesh");
+        for (const SharedImage& image : materials.images()) {
+            file += image->bytes;
+            file.append((alignment - image->bytes.size() % alignment) % alignment, '\0');
+        }
+        return file;
+    }
     JsonAllocator& a() { return builder_.allocator(); }
+    void add_extensions_used(std::initializer_list<const char*> names) {
+        Json& root = builder_.document();
+        if (!root.HasMember("extensionsUsed")) add_members(root, a(), "extensionsUsed", JsonValue(rapidjson::kArrayType));
+        for (const char* name : names) root["extensionsUsed"].PushBack(json_string(name, a()), a());
+    }
     JsonValue in_list(JsonValue value) { return json_list_of(std::move(value), a()); }
     [[nodiscard]] Index none() const { return static_cast<Index>(object_.annotations.annotations.size()); }
 
@@ -125,38 +152,72 @@ private:
         return result;
     }
 
-    Corners surface() {
+    /// A vertex of a face: faces that agree in all of these share a copy of the vertex.
+    struct Look {
+        Index kind;            ///< number of the combination of features
+        std::size_t part;      ///< number of the primitive
+        TexturePoint texture;  ///< texture coordinates
+        std::array<int, 3> colour;
+        bool operator==(const Look&) const = default;
+    };
+
+    /// The primitive of a face: one per material, in the order of their first faces.
+    std::size_t part_of(Face face, std::vector<Corners>& parts, std::map<Index, std::size_t>& numbers) const {
+        const std::size_t materials = extras_.appearance.materials.size();
+        Index material = no_index;
+        if (textured_) material = extras_.face_materials[face.idx()];
+        const auto [place, added] = numbers.try_emplace(material < materials ? material : no_index, parts.size());
+        if (added) parts.emplace_back().material = material < materials ? static_cast<int>(material) + 1 : 0;
+        return place->second;
+    }
+
+    /// Colour of a corner: that of the file if it has colours or a texture, else that of the smallest region; grey without any.
+    [[nodiscard]] std::array<int, 3> colour_of(Face face, Vertex v, const std::vector<Index>& kind, bool has_material) const {
+        const auto opaque = [](const Colour& colour) { return std::array<int, 3>{colour[0], colour[1], colour[2]}; };
+        if (!extras_.face_colours.empty()) return opaque(extras_.face_colours[face.idx()]);
+        if (!extras_.vertex_colours.empty()) return opaque(extras_.vertex_colours[v.idx()]);
+        std::array<int, 3> colour{200, 200, 200};
+        if (textured_) return has_material ? std::array<int, 3>{255, 255, 255} : colour;
+        for (std::size_t s = kind.size(); s-- > 0;)
+            if (kind[s] != none() && !object_.annotations.annotations[kind[s]].all)
+                colour = object_.annotations.annotations[kind[s]].colour;
+        return colour;
+    }
+
+    std::vector<Corners> surface() {
         const std::vector<std::vector<Index>> sets = layers();
-        Corners result;
-        result.features.resize(sets.size());
-        // Faces with the same features share a vertex; others have copies of it.
+        std::vector<Corners> parts;
+        std::map<Index, std::size_t> part_numbers;
         std::map<std::vector<Index>, Index> kinds;
-        std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(object_.mesh.number_of_vertices());
+        std::vector<std::vector<std::pair<Look, std::uint32_t>>> copies(object_.mesh.number_of_vertices());
         std::vector<Index> kind(sets.size());
         for (const Face face : object_.mesh.faces()) {
             if (face.idx() % check_every == 0) check_cancelled();
             for (std::size_t s = 0; s < sets.size(); ++s) kind[s] = sets[s][face];
-            const Index number = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
+            Look look{};
+            look.kind = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
+            look.part = part_of(face, parts, part_numbers);
+            Corners& part = parts[look.part];
+            part.features.resize(sets.size());
+            const bool has_places = part.material > 0 && !extras_.corner_texture.empty();
+            std::size_t corner = 3 * std::size_t{face.idx()};
             for (const Vertex v : corners(object_.mesh, face)) {
+                if (has_places) look.texture = extras_.corner_texture[corner++];
+                look.colour = colour_of(face, v, kind, part.material > 0);
                 auto& vertex_copies = copies[v];
                 auto copy = std::find_if(vertex_copies.begin(), vertex_copies.end(),
-                                         [&](const auto& entry) { return entry.first == number; });
+                                         [&](const auto& entry) { return entry.first == look; });
                 if (copy == vertex_copies.end()) {
-                    copy =
-                        vertex_copies.insert(vertex_copies.end(), {number, static_cast<std::uint32_t>(result.vertices.size())});
-                    result.vertices.push_back(v);
-                    std::array<int, 3> colour{200, 200, 200};
-                    for (std::size_t s = sets.size(); s-- > 0;) {
-                        result.features[s].push_back(kind[s]);
-                        if (kind[s] != none() && !object_.annotations.annotations[kind[s]].all)
-                            colour = object_.annotations.annotations[kind[s]].colour;
-                    }
-                    result.colours.push_back(colour);
+                    copy = vertex_copies.insert(vertex_copies.end(), {look, static_cast<std::uint32_t>(part.vertices.size())});
+                    part.vertices.push_back(v);
+                    for (std::size_t s = sets.size(); s-- > 0;) part.features[s].push_back(kind[s]);
+                    part.colours.push_back(look.colour);
+                    if (has_places) part.texture.push_back(look.texture);
                 }
-                result.indices.push_back(copy->second);
+                part.indices.push_back(copy->second);
             }
         }
-        return result;
+        return parts;
     }
 
     Corners lines() {
@@ -209,7 +270,7 @@ private:
     JsonValue primitive(const Corners& primitive_corners, int mode) {
         const std::size_t count = primitive_corners.vertices.size();
         JsonValue attributes(rapidjson::kObjectType);
-        std::string positions, colours, origins;
+        std::string positions, colours, origins, texture;
         std::array<float, 3> low, high;
         low.fill(std::numeric_limits<float>::max());
         high.fill(std::numeric_limits<float>::lowest());
@@ -225,6 +286,10 @@ private:
                 high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], single);
                 append(positions, single);
             }
+            if (!primitive_corners.texture.empty()) {
+                append(texture, primitive_corners.texture[i][0]);
+                append(texture, 1 - primitive_corners.texture[i][1]);  // glTF counts from the top of the image
+            }
             for (const int channel : primitive_corners.colours[i])
                 append(colours, glb::linear_channel(static_cast<std::size_t>(channel)));
             append(colours, std::uint16_t{65535});
@@ -236,6 +301,8 @@ private:
         const int colour = builder_.add_accessor(colours, glb::array_buffer, 0, glb::short_word, count, "VEC4");
         builder_.mark_normalised(colour);
         attribute("COLOR_0", colour);
+        if (!texture.empty())
+            attribute("TEXCOORD_0", builder_.add_accessor(texture, glb::array_buffer, 0, glb::single, count, "VEC2"));
         if (object_.mesh.number_of_vertices() <= exact_in_float)
             attribute("_VERTEX", builder_.add_accessor(origins, glb::array_buffer, 0, glb::single, count, "SCALAR"));
         JsonValue ids(rapidjson::kArrayType);
@@ -266,7 +333,7 @@ private:
                         builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, primitive_corners.indices.size(),
                                               "SCALAR"));
         }
-        add_members(result, a(), "mode", mode, "material", 0);
+        add_members(result, a(), "mode", mode, "material", primitive_corners.material);
         if (!ids.Empty())
             add_members(result, a(), "extensions",
                         json_object(a(), "EXT_mesh_features", json_object(a(), "featureIds", std::move(ids))));
@@ -375,8 +442,11 @@ private:
     std::string where_;
     Json native_;
     const Json& originals_;
+    const MeshExtras& extras_;
+    bool textured_ = has_texture(extras_);
     std::vector<std::string>& notes_;
-    glb::Builder builder_{8, true};
+    static constexpr std::size_t alignment = 8;
+    glb::Builder builder_{alignment, true};
     JsonValue properties_{rapidjson::kObjectType}, columns_{rapidjson::kObjectType};
     bool rounded_ = false;
 };
@@ -384,15 +454,26 @@ private:
 }  // namespace
 
 std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance,
-                        std::vector<std::string>& notes) {
+                        std::vector<std::string>& notes, const MeshExtras& extras) {
     const EdgeAlignedAnnotations along_edges(object);
     if (along_edges.cut())
         notes.emplace_back("the mesh is cut along free outlines; the curves on the original mesh are stored as well");
     const bool informed = std::any_of(object.annotations.annotations.begin(), object.annotations.annotations.end(),
                                       [](const Annotation& annotation) { return !annotation.information.empty(); });
+    const bool looks = has_texture(extras) || has_own_colours(extras);
+    if (looks && !object.annotations.annotations.empty())
+        notes.emplace_back(fmt::format("the surface has the {} in the file; the colours of the annotations are in their table",
+                                       has_texture(extras) ? "texture" : "colours"));
     Json originals;
-    if (along_edges.cut() || informed) originals = annotations_to_json(object, mesh_file, provenance);
-    return FeatureWriter(along_edges.object(), mesh_file, provenance, originals, notes).write();
+    const bool several_materials = has_texture(extras) && !extras.face_materials.empty() &&
+                                   std::adjacent_find(extras.face_materials.begin(), extras.face_materials.end(),
+                                                      std::not_equal_to<>()) != extras.face_materials.end();
+    if (along_edges.cut() || informed || several_materials) originals = annotations_to_json(object, mesh_file, provenance);
+    MeshExtras extras_of_cut;
+    if (looks && along_edges.cut()) extras_of_cut = cut_extras(*along_edges.cut(), object.mesh, extras);
+    return FeatureWriter(along_edges.object(), mesh_file, provenance, originals, along_edges.cut() ? extras_of_cut : extras,
+                         notes)
+        .write();
 }
 
 }  // namespace ostraka

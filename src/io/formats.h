@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/io/textured_vertices.h"
 
 #include <optional>
 #include <span>
@@ -66,15 +67,6 @@ private:
     const TriangleSoup& soup_;
     const WriteOptions& options_;
 };
-
-/// The distinct pairs of vertex and texture coordinates of the corners of a triangle soup, ordered by vertex, then by first use.
-struct TexturedVertices {
-    std::vector<Index> vertex;          ///< for each pair, its vertex; vertices without faces come once
-    std::vector<TexturePoint> texture;  ///< for each pair, its texture coordinates
-    std::vector<Index> pair_of_corner;  ///< for each corner of each triangle, its pair
-};
-/// `corner_texture` has three entries per triangle.
-TexturedVertices textured_vertices(const TriangleSoup& soup, const std::vector<TexturePoint>& corner_texture);
 
 // Writers of mesh files: `extras` must be empty or complete. Each writer returns notes about data that the format cannot store.
 using Notes = std::vector<std::string>;

@@ -1,5 +1,5 @@
 #include "io/formats.h"
-#include "io/glb_materials.h"
+#include "ostraka/io/glb_materials.h"
 #include "io/text_writer.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"

@@ -1,4 +1,5 @@
 #include "operations/annotated_scene.h"
+#include "operations/scene_colours.h"
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/curves.h"
@@ -230,6 +231,7 @@ void draw_annotations(Scene& scene, AnnotatedMeshView given, const AnnotationSty
         scene.mesh = to_soup(mesh);
         if (!scene.vertex_values.empty()) scene.vertex_values = cut->vertex_values(given.mesh, scene.vertex_values);
         if (!scene.face_values.empty()) scene.face_values = cut->face_values(scene.face_values);
+        cut_scene_colours(scene, *cut, given.mesh);
         style.smooth = false;
     }
     AnnotationDrawing drawing(scene, {mesh, set}, style);
@@ -250,14 +252,18 @@ std::string up_words(const AnnotationSet& set) {
     return set.up ? joined(*set.up, ",", [](double x) { return number(x, 17); }) : "auto";
 }
 
-Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string& size) {
+Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const MeshExtras& extras, const std::string& size) {
     Scene scene;
     scene.mesh = to_soup(mesh);
     RenderOptions options;
     options.size = size;
     options.no_scale_bar = options.no_legend = true;
+    AnnotationStyle style;
+    style.painted = !has_texture(extras) && !has_own_colours(extras);
+    if (has_texture(extras)) show_texture(scene, extras, "the picture");
+    else show_own_colours(scene, extras);
     if (set != nullptr) {
-        draw_annotations(scene, {mesh, *set});
+        draw_annotations(scene, {mesh, *set}, style);
         options.up = up_words(*set);
     }
     return render({scene}, options).picture;

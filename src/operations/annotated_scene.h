@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/render/render.h"
 
 namespace ostraka {
@@ -20,8 +21,9 @@ void draw_annotations(Scene& scene, AnnotatedMeshView object, const AnnotationSt
 /// Upward direction stated in the annotations, in the text form that `render` accepts.
 std::string up_words(const AnnotationSet& set);
 
-/// A small picture of an object; `set`: annotations to draw, or null; `size`: "WIDTHxHEIGHT" in pixels.
-Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string& size);
+/// A small picture of an object with its texture or colours, on which annotations are drawn as outlines; without them, regions
+/// are painted. `set`: annotations to draw, or null; `size`: "WIDTHxHEIGHT" in pixels.
+Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const MeshExtras& extras, const std::string& size);
 
 /// Adds the edges and control points of a cage to the scene; they are drawn even where the object hides them.
 void draw_cage(Scene& scene, const Mesh& cage);

@@ -1,8 +1,9 @@
 // publish: an annotated object as a static web folder: IIIF manifest, GLB with features, annotations, a page.
 #include "operations/annotated_scene.h"
 #include "operations/operations.h"
+#include "operations/scene_colours.h"
 
-#include "ostraka/annotation/curves.h"
+#include "ostraka/annotation/cut_extras.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/geom/eigen.h"
@@ -68,6 +69,7 @@ struct Publish final : AnnotatedMeshOperation {
         p.output("folder", Kind::folder, folder, "folder to write; created if missing");
         p.options("address", address, "web address at which the folder will be served, such as https://museum.example/pot");
         p.options("title", title, "title of the object; by default the name of the mesh");
+        p.options("colour", colouring, page_colouring_help, page_colouring_names());
         p.options("rights", rights, "web address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
         p.options("credit", credit, "statement that a viewer must show");
         p.report.values(text("manifest"), integer("annotations", "annotations"));
@@ -89,17 +91,22 @@ struct Publish final : AnnotatedMeshOperation {
         const std::string name = title.empty() ? Path(mesh.file_name()).stem().string() : title;
         folder.open();
         std::vector<std::string> notes;
-        const std::string model = feature_glb(subject, mesh.file(), context.provenance(), notes);
+        const MeshExtras& extras = mesh->extras;
+        const std::string model = feature_glb(subject, mesh.file(), context.provenance(), notes, extras);
         report.notes(notes);
         write_file(folder.in("model.glb"), model);
         write_file(folder.in("annotations.jsonld"), web_annotations(subject, mesh.file(), context.provenance()));
-        write_png(folder.in("thumbnail.png"), thumbnail(subject.mesh, &subject.annotations, "400x300"));
+        write_png(folder.in("thumbnail.png"), thumbnail(subject.mesh, &subject.annotations, extras, "400x300"));
         Page page(name);
         PageObject page_object;
         page_object.name = name;
         const EdgeAlignedAnnotations along_edges(subject);  // free outlines are shown on the mesh cut along them
         page_object.mesh = &along_edges.object().mesh;
         page_object.annotations = &along_edges.object().annotations;
+        MeshExtras extras_of_cut;
+        if (along_edges.cut()) extras_of_cut = cut_extras(*along_edges.cut(), subject.mesh, extras);
+        page_object.extras = along_edges.cut() ? &extras_of_cut : &extras;
+        page_object.colouring = page_colouring(colouring);
         page.add(page_object);
         if (!subject.annotations.annotations.empty()) page.add(annotation_table(subject, 0, name));
         write_file(folder.in("index.html"), page.html(context.provenance().to_line()));
@@ -178,6 +185,7 @@ struct Publish final : AnnotatedMeshOperation {
 
     FolderOutput folder;
     std::string address, title, rights, credit;
+    PageColouring colouring = PageColouring::automatic;
 };
 
 }  // namespace

@@ -1,10 +1,13 @@
 // render: a picture of meshes, their annotations and maps.
 #include "operations/annotated_scene.h"
 #include "operations/operations.h"
+#include "operations/scene_colours.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/render/render.h"
+#include "ostraka/vocabulary/text_match.h"
 
 #include <fmt/core.h>
 
@@ -40,15 +43,20 @@ struct Render final : Operation {
         p.options("title", titles, "title under the object; given once per mesh; 'none' for a mesh without a title");
         p.options("map-on", map_on, "whether a map has values per vertex or per face; auto: by the number of values",
                   Choices{"auto", "vertex", "face"});
+        p.options("property", property,
+                  "name of numbers of the vertices or faces in the mesh file, such as a PLY property, to show as a map");
         p.options("map-label", map_label, "label of the colour bar, including the unit");
         p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");
-        p.options("colour-by", colour_by,
-                  "whether the mesh is coloured by the labels or by the colours in its file; auto: by those that are present",
-                  Choices{"auto", "labels", "colours", "none"});
+        p.options("colour", colouring,
+                  "colours of the surface: the texture, own colours or labels in the file, annotations, values (a map) or "
+                  "clay; auto: values or annotations if they are given, otherwise the first of texture, labels and own colours "
+                  "in the file, otherwise clay",
+                  colouring_names());
         p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
         options.list_options(p.options);
         p.report.values(text("picture"));
         for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
+        p.report.values(number("dpi"), text("scale"));
         p.report.table("panes", integer("object"), text("view"), integer("vertices"), integer("faces"),
                        number("pixelsPerUnit", "", "pixels"), number("scaleBar", "", "length"), integer("markers"),
                        integer("markersShown"), any("camera"));
@@ -77,7 +85,10 @@ struct Render final : Operation {
         const Stopwatch reading;
         std::vector<Scene> scenes;
         for (std::size_t k = 0; k < meshes.size(); ++k) scenes.push_back(read(context, k, render_options));
-        if (const std::string map = first_map(); !map.empty()) render_options.scale = common_scale(scenes, map);
+        const bool shows_values = std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
+            return !scene.vertex_values.empty() || !scene.face_values.empty();
+        });
+        if (shows_values) render_options.scale = common_scale(scenes, property.empty() ? first_map() : property);
         if (render_options.fit == RenderOptions::Fit::all && units_differ(scenes)) {
             report.note("the objects have different units: each is drawn at a scale of its own");
             render_options.fit = RenderOptions::Fit::each;
@@ -98,6 +109,8 @@ struct Render final : Operation {
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
         report("picture", picture.file_name())("width", rendering.width)("height", rendering.height);
+        if (rendering.pixels_per_metre > 0) report("dpi", rendering.pixels_per_metre * 0.0254);
+        if (!options.print_scale.empty()) report("scale", options.print_scale);
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];
@@ -111,8 +124,8 @@ struct Render final : Operation {
 
     static void write(const Path& file, const Rendering& rendering) {
         if (!rendering.document.empty()) write_file(file, rendering.document);
-        else if (!rendering.deep.rgba.empty()) write_png(file, rendering.deep);
-        else write_png(file, rendering.picture);
+        else if (!rendering.deep.rgba.empty()) write_png(file, rendering.deep, rendering.pixels_per_metre);
+        else write_png(file, rendering.picture, rendering.pixels_per_metre);
     }
 
     /// Renders one full revolution of the camera, starting at the view of the picture.
@@ -129,7 +142,6 @@ struct Render final : Operation {
     }
 
     enum class MapOn { automatic, vertex, face };
-    enum class ColourBy { automatic, labels, colours, none };
 
     /// Reads the k-th object; its annotations give the up direction unless the options do.
     Scene read(Context& context, std::size_t k, RenderOptions& render_options) const {
@@ -150,23 +162,38 @@ struct Render final : Operation {
         }
         if (!titles.empty()) scene.title = titles[k] == "none" ? "" : titles[k];
         else if (meshes.size() > 1) scene.title = meshes.file_name(k);
-        if (maps.has(k)) colour_by_map(scene, polygon_of_triangle, k);
+        const bool has_values = maps.has(k) || has_property(extras);
+        if (!property.empty() && !has_values && meshes.size() == 1)
+            fail_input(meshes.file(k), no_property(extras), "leave out --property");
+        // Of several meshes, those that do not have the colours show what they have.
+        const bool has_colours = is_available(colouring, extras, has_values, annotations.has(k));
+        const SurfaceColouring colours =
+            chosen_colouring(has_colours || meshes.size() == 1 ? colouring : SurfaceColouring::automatic, extras, has_values,
+                             annotations.has(k), meshes.file(k));
+        const bool coloured =
+            render_options.drawing == RenderOptions::Drawing::surface || render_options.drawing == RenderOptions::Drawing::points;
+        if (coloured) {
+            const std::string hidden = hidden_colours(colours, extras);
+            if (!hidden.empty()) context.notes(meshes.size() > 1 ? meshes.file(k) : std::string(), {hidden});
+        }
+        if (colours == SurfaceColouring::values && maps.has(k)) colour_by_map(scene, polygon_of_triangle, k);
+        else if (colours == SurfaceColouring::values) colour_by_property(scene, extras);
+        else if (colours == SurfaceColouring::texture && coloured) show_texture(scene, extras, meshes.file(k));
+        else if (colours == SurfaceColouring::own && coloured) show_own_colours(scene, extras);
+        else if (colours == SurfaceColouring::labels && coloured) colour_by_labels(scene, extras);
         if (annotations.has(k)) {
             const Mesh& mesh = meshes.get(k).mesh;
             const AnnotationSet& set = annotations.on(mesh, k);
             AnnotationStyle style;
             style.smooth = outlines == Outlines::smooth;
             style.measures = measures;
-            style.painted = render_options.drawing == RenderOptions::Drawing::surface ||
-                            render_options.drawing == RenderOptions::Drawing::points;
+            style.painted = coloured && colours == SurfaceColouring::annotations;
             draw_annotations(scene, {mesh, set}, style);
             if (render_options.up == "auto" && set.up) render_options.up = up_words(set);
-        } else if (!maps.has(k) && render_options.drawing != RenderOptions::Drawing::lines &&
-                   render_options.drawing != RenderOptions::Drawing::wire) {
-            colour_by_file(scene, extras, meshes.file(k));
         }
         if (cages.has(k)) draw_cage(scene, cages.get(k).mesh);
         if (!unit.empty()) scene.unit = unit;
+        scene.unit_metres = converted(1, scene.unit, "m").value_or(0);
         return scene;
     }
 
@@ -192,20 +219,24 @@ struct Render final : Operation {
         for (const auto label : labels) scene.face_colours.push_back(colours[label]);
     }
 
-    /// Uses the labels or colours stored in the file, if requested.
-    void colour_by_file(Scene& scene, const MeshExtras& extras, const std::string& file) const {
-        const bool labels = !extras.face_labels.empty() || !extras.vertex_labels.empty();
-        const bool colours = !extras.face_colours.empty() || !extras.vertex_colours.empty();
-        if (colour_by == ColourBy::labels && !labels) fail_input(file, "holds no labels", "leave out --colour-by");
-        if (colour_by == ColourBy::colours && !colours) fail_input(file, "holds no colours", "leave out --colour-by");
-        const auto opaque = [](const Colour& colour) { return Rgb{colour[0], colour[1], colour[2]}; };
-        if (colour_by == ColourBy::labels || (colour_by == ColourBy::automatic && labels)) {
-            colour_by_labels(scene, extras);
-        } else if (colour_by != ColourBy::none && colours) {
-            for (const auto& colour : extras.face_colours) scene.face_colours.push_back(opaque(colour));
-            if (extras.face_colours.empty())
-                for (const auto& colour : extras.vertex_colours) scene.vertex_colours.push_back(opaque(colour));
-        }
+    [[nodiscard]] const NamedValues* property_in(const std::vector<NamedValues>& values) const {
+        const auto named =
+            std::find_if(values.begin(), values.end(), [&](const NamedValues& one) { return one.name == property; });
+        return property.empty() || named == values.end() ? nullptr : &*named;
+    }
+    [[nodiscard]] bool has_property(const MeshExtras& extras) const {
+        return property_in(extras.vertex_values) != nullptr || property_in(extras.face_values) != nullptr;
+    }
+    [[nodiscard]] std::string no_property(const MeshExtras& extras) const {
+        std::vector<std::string> names;
+        for (const auto* values : {&extras.vertex_values, &extras.face_values})
+            for (const NamedValues& named : *values) names.push_back(named.name);
+        return fmt::format("has no property '{}'{}", property,
+                           names.empty() ? "" : "; its properties are " + joined(names, ", "));
+    }
+    void colour_by_property(Scene& scene, const MeshExtras& extras) const {
+        if (const NamedValues* values = property_in(extras.vertex_values)) scene.vertex_values = values->values;
+        else scene.face_values = property_in(extras.face_values)->values;
     }
 
     void colour_by_map(Scene& scene, const std::vector<Index>& polygon, std::size_t k) const {
@@ -284,9 +315,9 @@ struct Render final : Operation {
     ValuesInput maps;
     std::vector<std::string> titles;
     std::vector<double> map_range;
-    std::string map_label, unit;
+    std::string map_label, unit, property;
     MapOn map_on = MapOn::automatic;
-    ColourBy colour_by = ColourBy::automatic;
+    SurfaceColouring colouring = SurfaceColouring::automatic;
     RenderOptions options;
 };
 

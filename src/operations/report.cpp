@@ -1,9 +1,10 @@
 // report: one self-contained HTML page of results: objects in 3D with tables and drawings.
 #include "operations/annotated_scene.h"
 #include "operations/operations.h"
+#include "operations/scene_colours.h"
 #include "ostraka/operations/page_results.h"
 
-#include "ostraka/annotation/curves.h"
+#include "ostraka/annotation/cut_extras.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/text.h"
@@ -65,6 +66,7 @@ struct MakeReport final : Operation {
                         "folder, kept beside the page, for the objects of a large collection: the page then loads each object "
                         "when it is selected");
         p.options("title", title, "title of the page; by default the name of the first result");
+        p.options("colour", colouring, page_colouring_help, page_colouring_names());
         p.options("unit", unit, "unit of the coordinates of objects whose annotations state no unit");
         p.options(
             "limit", limit,
@@ -415,10 +417,13 @@ struct MakeReport final : Operation {
             if (are_apart({object.file.mesh, *object.set}))
                 for (std::size_t i = 0; i < object.set->annotations.size(); ++i) shown.parts.push_back(i);
         }
+        shown.colouring = page_colouring(colouring);
         std::optional<BoundMesh> simplified_mesh;
+        shown.extras = &object.file.extras;
         if (object.file.mesh.number_of_vertices() > limit) {
             simplified_mesh = simplified(object, shown);
             shown.mesh = &simplified_mesh->mesh;
+            shown.extras = &simplified_mesh->extras;
             if (simplified_mesh->annotations) shown.annotations = &*simplified_mesh->annotations;
         } else {
             shown.mesh = &object.file.mesh;
@@ -427,7 +432,10 @@ struct MakeReport final : Operation {
         }
         std::optional<EdgeAlignedAnnotations> along_edges;  // free outlines are shown on the mesh cut along them
         if (shown.annotations != nullptr) along_edges.emplace(AnnotatedMeshView(*shown.mesh, *shown.annotations));
+        MeshExtras extras_of_cut;
         if (along_edges && along_edges->cut()) {
+            extras_of_cut = cut_extras(*along_edges->cut(), *shown.mesh, *shown.extras);
+            shown.extras = &extras_of_cut;
             for (PageMap& map : shown.maps) {
                 map.values = along_edges->cut()->vertex_values(*shown.mesh, map.values);
                 if (!map.categories.empty())
@@ -438,13 +446,14 @@ struct MakeReport final : Operation {
         }
         target_page.add(shown);
         if (!table.rows.empty()) target_page.add(std::move(table));
-        if (small_picture != nullptr) *small_picture = thumbnail(*shown.mesh, shown.annotations, "240x180");
+        if (small_picture != nullptr) *small_picture = thumbnail(*shown.mesh, shown.annotations, *shown.extras, "240x180");
     }
 
     /// Simplifies the mesh for display only: measures keep the values of the original.
     BoundMesh simplified(ShownObject& object, PageObject& shown) const {
         MeshFile copy;
         copy.mesh = object.file.mesh;
+        copy.extras = object.file.extras;
         BoundMesh bound(std::move(copy), object.set);
         SimplifyOptions options;
         options.vertices = limit;
@@ -475,6 +484,7 @@ struct MakeReport final : Operation {
     FolderOutput objects_folder;
     std::string title, unit;
     std::uint64_t limit = 200'000;
+    PageColouring colouring = PageColouring::automatic;
     std::optional<Page> report_page;
     std::optional<ShownObject> current;  ///< the object to which the following files belong
     std::size_t object_count = 0, drawings = 0;

@@ -1,5 +1,6 @@
 #include "ostraka/page/page.h"
 
+#include "page/appearance.h"
 #include "page/geometry.h"
 
 #include "ostraka/annotation/curves.h"
@@ -25,29 +26,8 @@ namespace {
 
 constexpr std::uint16_t no_value = 65535;
 
-/// Stores bytes in the page and returns their index.
-using Keep = std::function<std::size_t(std::string_view)>;
+using Keep = KeepBytes;
 using Relative = std::function<std::array<double, 3>(std::array<double, 3>)>;
-
-void add_number(std::string& bytes, std::size_t value) {
-    for (; value >= 128; value /= 128) bytes += static_cast<char>(value % 128 + 128);
-    bytes += static_cast<char>(value);
-}
-
-/// Encodes ascending numbers as gaps and runs.
-std::string runs_of(const std::vector<Index>& faces) {
-    std::string bytes;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < faces.size();) {
-        std::size_t end = i + 1;
-        while (end < faces.size() && faces[end] == faces[end - 1] + 1) ++end;
-        add_number(bytes, faces[i] - at);
-        add_number(bytes, end - i);
-        at = faces[end - 1] + std::size_t{1};
-        i = end;
-    }
-    return bytes;
-}
 
 using Triple = std::array<double, 3>;
 
@@ -104,20 +84,17 @@ std::string values_text(const Descriptor& descriptor) {
     return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
 }
 
-/// Exact positions, in single precision relative to the box, and triangles.
-JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObject::Exact& exact, const Keep& keep,
-                     JsonAllocator& allocator) {
-    JsonValue entry = json_object(allocator, "key", exact.key);
-    if (!exact.sends_shape) return entry;
+std::string_view bytes_of(const auto& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof values.front()};
+}
+
+/// Adds exact positions, in single precision relative to the box, and triangles.
+void add_exact(JsonValue& entry, const TriangleSoup& soup, const Triple& low, const Keep& keep, JsonAllocator& allocator) {
     std::vector<float> places;
     places.reserve(3 * soup.points.size());
     for (const Triple& p : soup.points)
         for (std::size_t k = 0; k < 3; ++k) places.push_back(static_cast<float>(p[k] - low[k]));
-    const auto bytes_of = [](const auto& values) {
-        return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values.front());
-    };
     add_members(entry, allocator, "positions", keep(bytes_of(places)), "triangles", keep(bytes_of(soup.triangles)));
-    return entry;
 }
 
 /// The points of a curve, lifted slightly off the surface so that the curve is not partly inside.
@@ -301,6 +278,22 @@ JsonValue slices_json(const PageSlices& slices, const Relative& relative, const 
 
 }  // namespace
 
+void Page::add_look(JsonValue& entry, const MeshExtras& extras, const std::optional<io::TexturedVertices>& textured, bool exact,
+                    const std::string& name) {
+    auto& allocator = document_.GetAllocator();
+    const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
+    if (JsonValue colours = colours_json(extras, keep, allocator); colours.IsObject())
+        add_members(entry, allocator, "colours", std::move(colours));
+    if (!has_texture(extras)) return;
+    std::vector<std::string> notes;
+    JsonValue texture = materials_json(extras, name, keep, allocator, notes);
+    if (textured && exact)
+        add_members(texture, allocator, "vertices", keep(bytes_of(textured->vertex)), "places", keep(bytes_of(textured->texture)),
+                    "corners", keep(bytes_of(textured->pair_of_corner)));
+    add_members(entry, allocator, "texture", std::move(texture));
+    for (const std::string& text : notes) note(text);
+}
+
 std::size_t Page::add(const PageObject& object) {
     auto& allocator = document_.GetAllocator();
     const Mesh& mesh = *object.mesh;
@@ -335,17 +328,30 @@ std::size_t Page::add(const PageObject& object) {
                     object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size, "up",
                     set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree",
                     std::move(tree), "relations", relations_json(object, set, layout, allocator));
+    const MeshExtras no_extras;
+    const MeshExtras& extras = object.extras != nullptr ? *object.extras : no_extras;
+    check_extras(extras, soup, object.name);
     // Packed, or exact for the viewer started by the command.
-    const auto add_shape = [&](JsonValue& target, const TriangleSoup& shape, const Box& bounding_box, const std::string& part) {
+    const auto add_shape = [&](JsonValue& target, const TriangleSoup& shape, const Box& bounding_box, const std::string& part,
+                               const MeshExtras& look) {
+        std::optional<io::TexturedVertices> textured;
+        if (has_texture(look) && !look.corner_texture.empty() && (!object.exact || object.exact->sends_shape))
+            textured = io::textured_vertices(shape, look.corner_texture);
+        JsonValue exact(rapidjson::kObjectType);
+        JsonValue& holder = object.exact ? exact : target;  // of what is sent once
         if (!object.exact) {
-            add_members(target, allocator, "geometry", add_bytes(quantised_glb(shape, bounding_box.low, bounding_box.largest())));
-            return;
+            add_members(
+                target, allocator, "geometry",
+                add_bytes(quantised_glb(shape, bounding_box.low, bounding_box.largest(), textured ? &*textured : nullptr)));
+        } else {
+            add_members(exact, allocator, "key", object.exact->key + part);
+            if (object.exact->sends_shape) add_exact(exact, shape, bounding_box.low, keep, allocator);
         }
-        PageObject::Exact exact = *object.exact;
-        exact.key += part;
-        add_members(target, allocator, "shape", exact_json(shape, bounding_box.low, exact, keep, allocator));
+        if (!object.exact || object.exact->sends_shape) add_look(holder, look, textured, object.exact.has_value(), object.name);
+        if (object.exact) add_members(target, allocator, "shape", std::move(exact));
     };
-    add_shape(entry, soup, box, "");
+    add_shape(entry, soup, box, "", extras);
+    if (object.colouring != "auto") add_members(entry, allocator, "colouring", object.colouring);
     add_nonempty_members(entry, allocator, "constraints",
                          json_list(object.constraints, allocator,
                                    [&](const PageConstraint& constraint) { return constraint_json(constraint, allocator); }));
@@ -363,7 +369,7 @@ std::size_t Page::add(const PageObject& object) {
         TriangleSoup cage = to_soup(*object.cage);
         const Box bounding_box = box_of(cage);
         JsonValue cage_entry = json_object(allocator, "vertices", cage.points.size(), "origin", relative(bounding_box.low));
-        add_shape(cage_entry, cage, bounding_box, "-cage");
+        add_shape(cage_entry, cage, bounding_box, "-cage", no_extras);
         add_members(entry, allocator, "cage", std::move(cage_entry));
     }
     const std::string_view corner_bytes(reinterpret_cast<const char*>(soup.triangles.data()),

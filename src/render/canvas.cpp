@@ -49,14 +49,20 @@ cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int
 
 namespace {
 
-cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string* bytes) {
+cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string* bytes, double dpi) {
+    const double points = 72.0 / dpi;
     if (kind == PictureKind::svg) {
-        cairo_surface_t* surface = cairo_svg_surface_create_for_stream(&append_bytes, bytes, width, height);
-        cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+        if (dpi == css_dpi) {
+            cairo_surface_t* surface = cairo_svg_surface_create_for_stream(&append_bytes, bytes, width, height);
+            cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+            return surface;
+        }
+        cairo_surface_t* surface = cairo_svg_surface_create_for_stream(&append_bytes, bytes, points * width, points * height);
+        cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PT);
+        cairo_surface_set_device_scale(surface, points, points);
         return surface;
     }
     if (kind == PictureKind::pdf) {
-        constexpr double points = 72.0 / 96;
         cairo_surface_t* surface = cairo_pdf_surface_create_for_stream(&append_bytes, bytes, points * width, points * height);
         cairo_surface_set_device_scale(surface, points, points);
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");  // makes the output reproducible
@@ -67,10 +73,10 @@ cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string
 
 }  // namespace
 
-Canvas::Canvas(int width, int height, PictureKind kind)
+Canvas::Canvas(int width, int height, PictureKind kind, double dpi)
     : kind_(kind),
       bytes_(std::make_unique<std::string>()),
-      surface_(surface_of(kind, width, height, bytes_.get()), &cairo_surface_destroy),
+      surface_(surface_of(kind, width, height, bytes_.get(), dpi), &cairo_surface_destroy),
       context_(cairo_create(surface_.get()), &cairo_destroy) {
     check();
     cairo_t* context = context_.get();

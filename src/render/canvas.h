@@ -18,10 +18,12 @@ std::string clean_text(const std::string& text);
 /// Write function for cairo; `bytes` points to the std::string to which the data are appended.
 cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length);
 
+inline constexpr double css_dpi = 96;  ///< pixels per inch of a document of which nothing else is stated
+
 class Canvas {
 public:
-    /// Width and height in pixels; in a PDF document a pixel is 1/96 inch.
-    Canvas(int width, int height, PictureKind kind = PictureKind::pixels);
+    /// Width and height in pixels; in a document a pixel is 1/dpi inch.
+    Canvas(int width, int height, PictureKind kind = PictureKind::pixels, double dpi = css_dpi);
 
     void fill(const Rgb& colour);  ///< fills the canvas with one colour
     /// Draws an image over the canvas: `columns` by `rows` pixels (0xAARRGGBB, premultiplied), scaled to this width and height.

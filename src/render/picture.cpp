@@ -6,9 +6,11 @@
 #include <cairo.h>
 #include <fmt/core.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -17,6 +19,22 @@ namespace ostraka {
 
 namespace {
 using CairoSurface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+
+/// Inserts the resolution after the header of a PNG file: the chunk pHYs, with whole pixels per metre.
+void add_resolution(std::string& png, double pixels_per_metre) {
+    const double rounded = std::round(pixels_per_metre);
+    if (!(rounded >= 1 && rounded <= 2147483647)) return;
+    const auto big_endian = [](std::uint32_t value) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> static_cast<unsigned>(shift) & 255U);
+        return bytes;
+    };
+    const std::string pixels = big_endian(static_cast<std::uint32_t>(rounded));
+    const std::string body = "pHYs" + pixels + pixels + '\1';  // 1: the unit is the metre
+    const auto checksum = ::crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+    constexpr std::size_t after_header = 8 + 25;  // the signature and the chunk IHDR
+    png.insert(after_header, big_endian(9) + body + big_endian(static_cast<std::uint32_t>(checksum)));
+}
 
 }  // namespace
 
@@ -68,7 +86,7 @@ Rgb parse_colour(const std::string& text) {
     return {channel(16), channel(8), channel(0)};
 }
 
-void write_png(const Path& file, const Picture& picture) {
+void write_png(const Path& file, const Picture& picture, double pixels_per_metre) {
     const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, picture.width, picture.height),
                                &cairo_surface_destroy);
     const auto failed = [](cairo_status_t status) {
@@ -85,10 +103,11 @@ void write_png(const Path& file, const Picture& picture) {
     if (const auto status = cairo_surface_write_to_png_stream(surface.get(), &detail::append_bytes, &bytes);
         status != CAIRO_STATUS_SUCCESS)
         failed(status);
+    add_resolution(bytes, pixels_per_metre);
     write_file(file, bytes);
 }
 
-void write_png(const Path& file, const DeepPicture& picture) {
+void write_png(const Path& file, const DeepPicture& picture, double pixels_per_metre) {
     std::string bytes;
     std::string message;
     const auto failed = [](png_structp png, png_const_charp text) {
@@ -125,6 +144,7 @@ void write_png(const Path& file, const DeepPicture& picture) {
     }
     png_destroy_write_struct(&png, &info);
     if (!message.empty()) throw Error(ErrorKind::failure, "picture", message, "use a smaller size");
+    add_resolution(bytes, pixels_per_metre);
     write_file(file, bytes);
 }
 

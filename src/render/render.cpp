@@ -6,6 +6,7 @@
 #include "ostraka/execution/parallel.h"
 #include "render/drawing.h"
 #include "render/labels.h"
+#include "render/options.h"
 #include "render/overlay.h"
 #include "render/shading.h"
 
@@ -16,32 +17,15 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 namespace ostraka {
 
 namespace {
 using detail::Camera;
 using detail::Canvas;
+using detail::parse_size;
+using detail::Size;
 using detail::Surface;
-
-struct Size {
-    int width, height;
-};
-
-Size parse_size(const std::string& text) {
-    constexpr int minimum = 16, maximum = 16384;
-    constexpr double max_pixels = 1 << 25;
-    Size size{};
-    char cross = 0, trailing = 0;
-    const bool valid = text.size() < 16 &&
-                       std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &cross, &size.height, &trailing) == 3 && cross == 'x';
-    if (!valid || size.width < minimum || size.height < minimum || size.width > maximum || size.height > maximum ||
-        double(size.width) * size.height > max_pixels)
-        fail_usage(fmt::format("the size '{}' is invalid", text),
-                   "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 33 million pixels");
-    return size;
-}
 
 /// A view of a scene with its pane and camera.
 struct Plan {
@@ -138,17 +122,8 @@ std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, cons
     return {surface.unit_length() / scale_by_width, surface.unit_length() / scale_by_height};
 }
 
-std::vector<View> views_of(const RenderOptions& options) {
-    if (options.views == "six") return standard_views();
-    std::vector<View> views;
-    std::istringstream stream(options.views);
-    for (std::string view; std::getline(stream, view, ';');) views.push_back(parse_view(view));
-    if (views.empty()) views.push_back(parse_view(options.view));
-    return views;
-}
-
 std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptions& options) {
-    const std::vector<View> views = views_of(options);
+    const std::vector<View> views = detail::views_of(options);
     const bool several = views.size() > 1;
     std::vector<Plan> plans;
     for (std::size_t scene = 0; scene < scenes.size(); ++scene)
@@ -168,7 +143,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_length, double strip, const detail::Style& style) {
+void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_length, double strip, const detail::Style& style,
+                   const std::string& print_scale) {
     Pane& pane = plan.pane;
     const double available_width = std::min(170 * style.size, 0.5 * pane.width);
     pane.bar_length = round_length(available_width / plan.camera.scale * unit_length);
@@ -178,8 +154,8 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
         return;
     }
     const std::string unit = detail::clean_text(scene.unit);
-    const std::string text =
-        (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) + (unit.empty() ? "" : " " + unit);
+    const std::string text = (plan.camera.distance > 0 ? "\xE2\x89\x88 " : "") + digits(pane.bar_length, 6) +
+                             (unit.empty() ? "" : " " + unit) + (print_scale.empty() ? "" : " (" + print_scale + ")");
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }
@@ -226,6 +202,7 @@ void draw_over(Canvas& canvas, const Scene& scene, const Surface& surface, const
         std::vector<Rgb> colours(scene.mesh.points.size(), style.ink);
         if (!scene.vertex_values.empty() && options.scale)
             for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour_of(*options.scale, scene.vertex_values[i]);
+        else if (scene.texture) detail::add_textured_points(colours, scene, surface, camera);
         else if (!scene.vertex_colours.empty()) colours = scene.vertex_colours;
         else if (!scene.face_colours.empty())
             for (std::size_t t = 0; t < scene.mesh.triangles.size(); ++t)
@@ -277,6 +254,7 @@ public:
         Rendering rendering;
         rendering.width = size_.width;
         rendering.height = size_.height;
+        if (options_.dpi > 0 || !options_.print_scale.empty()) rendering.pixels_per_metre = dpi_ / 0.0254;
         if (kind_ == PictureKind::pixels) rendering.picture = canvas_.picture();
         else rendering.document = canvas_.document();
         if (deep_) {
@@ -330,6 +308,24 @@ private:
         }
         equalise_scales(plans_, surfaces_, one_scale);
         for (Plan& plan : plans_) plan.camera.scale *= options_.zoom;
+        if (!options_.print_scale.empty()) print_at_scale();
+    }
+
+    /// Sets the cameras to the scale on paper.
+    void print_at_scale() {
+        constexpr double metres_per_inch = 0.0254, margin = 0.92;  // fraction of a pane that an object fills at most (camera.cpp)
+        const double pixels_per_metre = dpi_ / metres_per_inch * parse_print_scale(options_.print_scale);
+        double needed = 0;  // size of the picture that has room for the objects, relative to this one
+        for (Plan& plan : plans_) {
+            const double scale =
+                scenes_[plan.pane.scene].unit_metres * pixels_per_metre * surfaces_[plan.pane.scene]->unit_length();
+            needed = std::max(needed, margin * scale / plan.camera.scale);
+            plan.camera.scale = scale;
+        }
+        if (needed <= 1) return;
+        const auto side = [&](int pixels) { return static_cast<int>(std::ceil(1.02 * needed * pixels / 10)) * 10; };
+        fail_usage(fmt::format("at the scale {} and {} dpi the object is larger than the picture", options_.print_scale, dpi_),
+                   fmt::format("give --size {}x{}, or a smaller --dpi or --scale", side(size_.width), side(size_.height)));
     }
 
     void draw_pane(std::size_t index) {
@@ -356,7 +352,7 @@ private:
         const bool first_of_scene = index == 0 || plans_[index - 1].pane.scene != pane.scene;
         const bool every_bar = options_.fit == RenderOptions::Fit::each && scenes_.size() > 1;
         if (!options_.no_scale_bar && (index == 0 || (every_bar && first_of_scene)))
-            add_scale_bar(canvas_, plan, scene, surface.unit_length(), bar_height_, style_);
+            add_scale_bar(canvas_, plan, scene, surface.unit_length(), bar_height_, style_, options_.print_scale);
         if (!plan.caption.empty())
             canvas_.text(canvas_.elide(plan.caption, 17 * style_.size, 0.94 * pane.width), pane.left + pane.width / 2.0,
                          pane.top + pane.height + bar_height_ + 19 * style_.size, 17 * style_.size, style_.ink,
@@ -388,6 +384,7 @@ private:
         shading.ambient_occlusion = options_.ambient_occlusion;
         shading.samples = options_.samples;
         shading.edges = options_.edges;
+        shading.flat_light = options_.light == RenderOptions::Light::flat;
         shading.edge_width = std::max(0.6, 0.9 * style_.size) * factor;
         if (options_.scale) shading.scale = *options_.scale;
         return shading;
@@ -403,7 +400,8 @@ private:
     std::vector<std::unique_ptr<Surface>> surfaces_;
     detail::Style style_ = style_of(options_, size_);
     detail::Style overlay_style_ = scaled_style();  ///< of lines, markers and axes: smaller on a sheet of many panes
-    Canvas canvas_{size_.width, size_.height, kind_};
+    double dpi_ = options_.dpi > 0 ? options_.dpi : options_.print_scale.empty() ? detail::css_dpi : 300;
+    Canvas canvas_{size_.width, size_.height, kind_, dpi_};
     std::vector<detail::Light> surface_light_;  ///< of the whole sheet, for 16 bits per channel
     double edge_ = 18 * style_.size;
     double bar_height_ = options_.no_scale_bar ? 0 : detail::bar_strip * style_.size;
@@ -418,18 +416,13 @@ private:
 
 }  // namespace
 
-void check_render_options(const RenderOptions& options) {
-    check_options(options, "render");
-    (void)parse_size(options.size);
-    (void)parse_view(options.view);
-    (void)views_of(options);
-    (void)parse_up(options.up);
-    if (options.background != "auto") (void)parse_colour(options.background);
-}
-
 Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options, PictureKind kind) {
     check_render_options(options);
     if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "render several pictures");
+    for (const Scene& scene : scenes)
+        if (!options.print_scale.empty() && !(scene.unit_metres > 0))
+            fail_usage(fmt::format("--scale {} needs the unit of the coordinates", options.print_scale),
+                       "give a length such as --unit mm");
     const auto start = std::chrono::steady_clock::now();
     Sheet sheet(scenes, options, kind);
     const double build_seconds = seconds_since(start);
@@ -438,51 +431,6 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     rendering.build_seconds = build_seconds;
     rendering.draw_seconds = seconds_since(drawing_start);
     return rendering;
-}
-
-void RenderOptions::list_options(OptionList& list) {
-    list("size", size, "width and height of the picture in pixels, such as 1200x900");
-    list("view", view, "view direction", view_words());
-    list("views", views, "several views on one sheet",
-         Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
-                   RenderOptions candidate;
-                   candidate.views = text;
-                   static_cast<void>(views_of(candidate));
-               }});
-    list("up", up, "upward axis of the object; auto: that of the annotations, or z",
-         Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
-                   static_cast<void>(parse_up(text));
-               }});
-    list("projection", projection, "projection of the camera: orthographic or perspective",
-         Choices{"orthographic", "perspective"});
-    list("zoom", zoom, "magnification about the centre; 1 shows the whole object", Range{0.01, 1000});
-    list("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
-         Choices{"all", "each"});
-    list("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
-    list("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
-    list("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
-         Range{0, 1024});
-    list("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: no antialiasing", Range{1, 64});
-    list("edges", edges, "draw the edges of the mesh");
-    list("drawing", drawing,
-         "how the object is drawn: surface; lines (visible contours, creases and borders); wire (edges of the mesh); points",
-         Choices{"surface", "lines", "wire", "points"});
-    list("contours", contours, "draw contours, creases and borders over the surface");
-    list("labels", labels, "write the tags of annotations beside the object with leader lines, instead of a legend");
-    list("axes", axes, "draw the directions of the coordinate axes of the mesh");
-    list("supersample", supersample,
-         "number of samples per pixel in each direction, which are averaged in PNG and kept in SVG and PDF; 0: 1 for PNG, 2 for "
-         "SVG and PDF",
-         Range{0, 4});
-    list("deep", deep, "write a PNG with 16 bits per channel");
-    list("theme", theme, "colours of text and background: light or dark", Choices{"light", "dark"});
-    list("background", background, "colour of the background; auto: the background of --theme",
-         Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
-                   if (text != "auto") static_cast<void>(parse_colour(text));
-               }});
-    list("transparent", transparent, "leave the background transparent");
-    list("no-scale-bar", no_scale_bar, "leave out the scale bar");
-    list("no-legend", no_legend, "leave out the legend and the colour bar");
 }
 
 }  // namespace ostraka

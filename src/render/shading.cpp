@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 namespace ostraka::detail {
 
@@ -32,11 +31,6 @@ struct Tables {
 const Tables& tables() {
     static const Tables instance;
     return instance;
-}
-
-Light to_light(const Rgb& colour) {
-    const auto& t = tables();
-    return {t.linear_of[colour.red], t.linear_of[colour.green], t.linear_of[colour.blue], 1};
 }
 
 std::uint32_t to_pixel(const Light& light) {
@@ -79,38 +73,58 @@ std::vector<Eigen::Vector3d> sphere_directions(int count) {
 class Shader {
 public:
     Shader(const Scene& scene, const Surface& surface, const Camera& camera, const Shading& shading)
-        : scene_(scene),
-          surface_(surface),
+        : surface_(surface),
           camera_(camera),
           shading_(shading),
+          colour_(scene, surface, camera, shading.scale),
           sky_(sphere_directions(2 * shading.ambient_occlusion)) {
-        for (std::size_t i = 0; i < scene.patches.size(); ++i)
-            if (i == 0 || scene.patches[i].triangle != scene.patches[i - 1].triangle) patches_[scene.patches[i].triangle] = i;
         key_ = (-0.55 * camera.right + 0.6 * camera.up + 0.75 * camera.toward).normalized();
     }
 
-    [[nodiscard]] Light sample(double x, double y) const {
-        const Camera::Ray ray = camera_.ray(x, y);
+    /// Light along the ray through the pixel coordinates x, y; `spacing`: distance of neighbouring rays in pixels.
+    [[nodiscard]] Light sample(double x, double y, double spacing) const {
+        constexpr int max_layers = 16;           // translucent triangles that are drawn over each other
+        constexpr float invisible = 1.0F / 512;  // opacity left over that no longer changes a pixel
+        constexpr double beyond = 1e-5;          // distance of the next layer
+        Camera::Ray ray = camera_.ray(x, y);
+        Light sum = Light::Zero();
+        float remaining = 1;
         Surface::Hit hit;
-        if (!surface_.first_hit(ray.origin, ray.direction, hit)) return Light::Zero();
-        const Eigen::Vector3d viewer = -ray.direction;
-        Eigen::Vector3d flat = surface_.face_normal(hit.triangle);
-        Eigen::Vector3d normal = shading_.smooth ? surface_.smooth_normal(hit, shading_.crease_cosine) : flat;
-        const bool inside = flat.dot(viewer) < 0;
-        if (inside) {
-            flat = -flat;
-            normal = -normal;
+        for (int layer = 0; layer < max_layers && remaining > invisible; ++layer) {
+            if (!surface_.first_hit(ray.origin, ray.direction, hit)) break;
+            Light light = colour_(hit, x, y, spacing);
+            const float opacity = light[3];
+            if (opacity > 0) {
+                light[3] = 1;
+                sum += remaining * opacity * lit_by_lamp(light, hit, -ray.direction, x, y);
+                remaining *= 1 - opacity;
+            }
+            ray.origin = hit.point + beyond * ray.direction;
         }
-        Light light = to_light(surface_colour(hit));
-        if (inside) light *= Light(0.42F, 0.46F, 0.52F, 1);
-        double strength = brightness(normal, viewer);
-        if (!sky_.empty()) strength *= 0.25 + 0.75 * openness(hit.point, flat);
-        light.head<3>() = light.head<3>().unaryExpr([&](float c) { return lit(c, static_cast<float>(strength)); });
+        return sum;
+    }
+
+private:
+    /// The colour of an opaque surface under the lamp, with the edges of the mesh.
+    [[nodiscard]] Light lit_by_lamp(Light light, const Surface::Hit& hit, const Eigen::Vector3d& viewer, double x,
+                                    double y) const {
+        if (!shading_.flat_light) {
+            Eigen::Vector3d flat = surface_.face_normal(hit.triangle);
+            Eigen::Vector3d normal = shading_.smooth ? surface_.smooth_normal(hit, shading_.crease_cosine) : flat;
+            const bool inside = flat.dot(viewer) < 0;
+            if (inside) {
+                flat = -flat;
+                normal = -normal;
+                light *= Light(0.42F, 0.46F, 0.52F, 1);
+            }
+            double strength = brightness(normal, viewer);
+            if (!sky_.empty()) strength *= 0.25 + 0.75 * openness(hit.point, flat);
+            light.head<3>() = light.head<3>().unaryExpr([&](float c) { return lit(c, static_cast<float>(strength)); });
+        }
         if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_coverage(hit, x, y));
         return light;
     }
 
-private:
     /// 1 for a surface that faces the viewer, so that it has its own colour.
     [[nodiscard]] double brightness(const Eigen::Vector3d& normal, const Eigen::Vector3d& viewer) const {
         const auto sum = [&](double facing, double key, double up) {
@@ -133,42 +147,6 @@ private:
         return total > 0 ? open / total : 1;
     }
 
-    [[nodiscard]] Rgb surface_colour(const Surface::Hit& hit) const {
-        const auto& corners = surface_.corners(hit.triangle);
-        if (!scene_.vertex_values.empty()) {
-            double value = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double weight = hit.weights[static_cast<int>(k)];
-                if (weight != 0) value += weight * scene_.vertex_values[corners[k]];
-            }
-            return colour_of(shading_.scale, value);
-        }
-        if (!patches_.empty())
-            if (const auto patch = patches_.find(hit.triangle); patch != patches_.end()) return patch_colour(patch->second, hit);
-        if (!scene_.face_values.empty()) return colour_of(shading_.scale, scene_.face_values[hit.triangle]);
-        if (!scene_.face_colours.empty()) return scene_.face_colours[hit.triangle];
-        if (scene_.vertex_colours.empty()) return clay;
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Rgb& colour = scene_.vertex_colours[corners[k]];
-            sum += hit.weights[static_cast<int>(k)] * Eigen::Vector3d(colour.red, colour.green, colour.blue);
-        }
-        return {static_cast<std::uint8_t>(std::lround(sum[0])), static_cast<std::uint8_t>(std::lround(sum[1])),
-                static_cast<std::uint8_t>(std::lround(sum[2]))};
-    }
-
-    /// Colour of the patches of a triangle, which start at index `first`.
-    [[nodiscard]] Rgb patch_colour(std::size_t first, const Surface::Hit& hit) const {
-        Rgb colour;
-        double max_weight = -1;
-        for (std::size_t i = first; i < scene_.patches.size() && scene_.patches[i].triangle == hit.triangle; ++i) {
-            double weight = 0;
-            for (std::size_t k = 0; k < 3; ++k) weight += hit.weights[static_cast<int>(k)] * double(scene_.patches[i].weights[k]);
-            if (weight > max_weight) max_weight = weight, colour = scene_.patches[i].colour;
-        }
-        return colour;
-    }
-
     /// Coverage of the pixel by an edge line: 1 on the edge, 0 beyond its width.
     [[nodiscard]] double edge_coverage(const Surface::Hit& hit, double x, double y) const {
         std::array<Eigen::Vector2d, 3> screen;
@@ -188,15 +166,19 @@ private:
         return std::clamp(shading_.edge_width / 2 + 0.5 - nearest, 0.0, 1.0) * std::clamp(height / 3, 0.0, 1.0);
     }
 
-    const Scene& scene_;
     const Surface& surface_;
     const Camera& camera_;
     const Shading& shading_;
+    SurfaceColour colour_;
     std::vector<Eigen::Vector3d> sky_;
-    std::unordered_map<Index, std::size_t> patches_;  ///< index of the first patch of a triangle
     Eigen::Vector3d key_;
 };
 }  // namespace
+
+Light to_light(const Rgb& colour) {
+    const auto& t = tables();
+    return {t.linear_of[colour.red], t.linear_of[colour.green], t.linear_of[colour.blue], 1};
+}
 
 std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
                          const Shading& shading) {
@@ -205,9 +187,10 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
     std::vector<Light> light(columns * rows, Light::Zero());
     parallel_for(rows, 4, [&](std::size_t row) {
         for (std::size_t column = 0; column < columns; ++column)
-            light[row * columns + column] = shader.sample(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+            light[row * columns + column] = shader.sample(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5, 1);
     });
 
+    const double spacing = 1 / std::sqrt(static_cast<double>(shading.samples));
     std::vector<Light> finer(columns * rows);
     parallel_for(rows, 4, [&](std::size_t row) {
         for (std::size_t column = 0; column < columns; ++column) {
@@ -222,13 +205,30 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
                 // pixel.
                 for (int i = 1; i < shading.samples; ++i)
                     sum += shader.sample(static_cast<double>(column) + std::fmod(0.5 + i * 0.7548776662466927, 1.0),
-                                         static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
+                                         static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0), spacing);
                 sum /= static_cast<float>(shading.samples);
             }
             finer[index] = sum;
         }
     });
     return finer;
+}
+
+void add_textured_points(std::vector<Rgb>& colours, const Scene& scene, const Surface& surface, const Camera& camera) {
+    const ColourScale no_scale;
+    const SurfaceColour colour(scene, surface, camera, no_scale);
+    std::vector<char> done(colours.size(), 0);
+    for (std::size_t t = 0; t < scene.mesh.triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index point = scene.mesh.triangles[t][k];
+            if (done[point] != 0) continue;
+            done[point] = 1;
+            Light light = colour.at_corner(static_cast<Index>(t), k);
+            light[3] = 1;
+            const std::uint32_t pixel = to_pixel(light);
+            colours[point] = {static_cast<std::uint8_t>(pixel >> 16U & 255U), static_cast<std::uint8_t>(pixel >> 8U & 255U),
+                              static_cast<std::uint8_t>(pixel & 255U)};
+        }
 }
 
 std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int block_size) {

@@ -4,6 +4,7 @@
 #include "ostraka/render/colour_scale.h"
 #include "render/camera.h"
 #include "render/surface.h"
+#include "render/surface_colour.h"
 
 #include <cstdint>
 #include <vector>
@@ -17,15 +18,16 @@ struct Shading {
     int samples = 8;              ///< number of rays per pixel where colours change
     bool edges = false;           ///< draw the edges of the mesh
     double edge_width = 1;        ///< width of edges, pixels
+    bool flat_light = false;      ///< colours without light and shade
     ColourScale scale;            ///< colour scale of values
 };
-
-/// Linear red, green and blue, premultiplied by the coverage, followed by the coverage (0 to 1).
-using Light = Eigen::Array4f;
 
 /// Light of each pixel, rows from the top; zero coverage where no triangle is visible.
 std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
                          const Shading& shading);
+
+/// Colours the points that are corners of textured triangles by the texture there.
+void add_textured_points(std::vector<Rgb>& colours, const Scene& scene, const Surface& surface, const Camera& camera);
 
 /// Means over blocks of `block_size` by `block_size` pixels.
 std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int block_size);

@@ -41,6 +41,13 @@ void check(const Scene& scene) {
     length("values", scene.face_values.size(), mesh.triangles.size(), "faces");
     length("colours", scene.vertex_colours.size(), mesh.points.size(), "vertices");
     length("colours", scene.face_colours.size(), mesh.triangles.size(), "faces");
+    length("materials", scene.face_materials.size(), mesh.triangles.size(), "faces");
+    length("texture coordinates", scene.corner_texture.size(), 3 * mesh.triangles.size(), "corners");
+    const std::size_t materials = scene.texture ? scene.texture->materials().size() : 0;
+    for (const Index material : scene.face_materials)
+        if (material != no_index && material >= materials && scene.texture)
+            fail_input(where, fmt::format("a face has material {}, but there are {} materials", material, materials),
+                       "use materials of the texture");
     for (const ScenePatch& patch : scene.patches)
         if (patch.triangle >= mesh.triangles.size())
             fail_input(where, "assigns a colour to a triangle that does not exist", "use triangles of the mesh");

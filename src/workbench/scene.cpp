@@ -24,6 +24,7 @@ void Scene::add(const ShownShape& shape) {
     PageObject object;
     object.name = shape.name;
     object.mesh = shape.mesh;
+    object.extras = shape.extras;
     object.annotations = shape.set;
     object.graph = shape.graph;
     if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations({*shape.mesh, *shape.set}, *shape.graph);

@@ -12,6 +12,7 @@ namespace ostraka::workbench {
 struct ShownShape {
     std::string name, key;  ///< key: identifies the shape, so that it is sent only once
     const Mesh* mesh = nullptr;
+    const MeshExtras* extras = nullptr;  ///< colours and texture
     const AnnotationSet* set = nullptr;
     const RelationGraph* graph = nullptr;
     const Mesh* cage = nullptr;

@@ -247,6 +247,7 @@ void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes
             shown_shape.key = fmt::format("{}@{}", file, size_of_file(session_.path_of(file)));
             if (shape->cage) shown_shape.key += "+" + object.part(deformed ? "deformed cage" : "cage");
             shown_shape.mesh = &shape->mesh->mesh;
+            shown_shape.extras = &shape->mesh->extras;
             shown_shape.set = shape->set ? &*shape->set : nullptr;
             shown_shape.graph = shape->graph ? &*shape->graph : nullptr;
             shown_shape.cage = shape->cage ? &shape->cage->mesh : nullptr;

@@ -2,6 +2,7 @@
 #include "ostraka/annotation/curves.h"
 #include "meshes.h"
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/cut_extras.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/surface_search.h"
 #include "scratch.h"
@@ -273,4 +274,46 @@ TEST(FreeOutline, OnAnOpenMeshTheBorderCloses) {
         uncut_annotation(mesh, cut, back);
         EXPECT_NEAR(measure_region(mesh, back).area, area_of(mesh, set.annotations[i]), 1e-9);
     }
+}
+
+TEST(CutExtras, TextureAndColoursStayWhereTheyWere) {
+    AnnotatedMesh object;
+    object.mesh = build_mesh(octahedron_sphere(4));
+    const SurfaceSearch search(object.mesh);
+    object.annotations.annotations.push_back(region(object.mesh, {drawn(object.mesh, search, circle(0.6, 40))}));
+    MeshExtras extras;
+    // Functions of the place: linear in each face, and different in the two halves of the sphere, as on both sides of a seam.
+    const auto place_of = [](const Point& p, bool upper) {
+        return TexturePoint{static_cast<float>(p.x() + (upper ? 3 : 0)), static_cast<float>(p.y() - p.z())};
+    };
+    const auto is_upper = [&](Index face) { return centroid(object.mesh, Face(face)).z() > 0; };
+    for (const Face face : object.mesh.faces()) {
+        extras.face_materials.push_back(is_upper(face.idx()) ? 1 : 0);
+        extras.face_labels.push_back(static_cast<std::int32_t>(face.idx()));
+        for (const Vertex v : corners(object.mesh, face))
+            extras.corner_texture.push_back(place_of(object.mesh.point(v), is_upper(face.idx())));
+    }
+    for (const Vertex v : object.mesh.vertices()) {
+        const double height = 100 + 100 * object.mesh.point(v).z();
+        extras.vertex_colours.push_back({static_cast<std::uint8_t>(std::lround(height)), 10, 20, 255});
+    }
+    const CutMesh cut = cut_along_curves(object);
+    ASSERT_GT(cut.mesh.number_of_vertices(), object.mesh.number_of_vertices());
+    const MeshExtras of_cut = cut_extras(cut, object.mesh, extras);
+    ASSERT_EQ(of_cut.corner_texture.size(), 3 * cut.mesh.number_of_faces());
+    ASSERT_EQ(of_cut.vertex_colours.size(), cut.mesh.number_of_vertices());
+    std::size_t corner = 0;
+    for (const Face face : cut.mesh.faces()) {
+        const Index origin = cut.face_origin[face.idx()];
+        EXPECT_EQ(of_cut.face_materials[face.idx()], extras.face_materials[origin]);
+        EXPECT_EQ(of_cut.face_labels[face.idx()], static_cast<std::int32_t>(origin));
+        for (const Vertex v : corners(cut.mesh, face)) {
+            const TexturePoint expected = place_of(cut.mesh.point(v), is_upper(origin));
+            for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(of_cut.corner_texture[corner][k], expected[k], 1e-5);
+            ++corner;
+        }
+    }
+    for (const Vertex v : cut.mesh.vertices())
+        EXPECT_NEAR(of_cut.vertex_colours[v.idx()][0], 100 + 100 * cut.mesh.point(v).z(), 1.1);
+    for (std::size_t v = 0; v < extras.vertex_colours.size(); ++v) EXPECT_EQ(of_cut.vertex_colours[v], extras.vertex_colours[v]);
 }

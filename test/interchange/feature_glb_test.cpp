@@ -329,3 +329,65 @@ TEST(FeatureGlb, FreeOutlinesRoundTripExactly) {
         message(with(glb, "\"face\":" + digits_ + ",", "\"face\":" + std::string(digits_.size(), '9') + "999,"), mesh);
     EXPECT_NE(beyond.find("/annotations/"), std::string::npos) << beyond;
 }
+
+TEST(FeatureGlb, KeepsTextureAndOwnColours) {
+    const Mesh mesh = spheres(3);
+    const AnnotationSet set = wild_set(mesh);
+    MeshExtras extras;
+    Pixels pixels{2, 2, {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {9, 9, 9, 255}}};
+    extras.appearance.images = {std::make_shared<const Image>(encode(pixels, ImageFormat::png, "pot.png")),
+                                std::make_shared<const Image>(encode(pixels, ImageFormat::webp, "other.webp", 100))};
+    extras.appearance.materials.resize(2);
+    extras.appearance.materials[0].image = 0;
+    extras.appearance.materials[0].wrap_u = TextureWrap::clamp;
+    extras.appearance.materials[1].image = 1;
+    extras.appearance.materials[1].gltf_rest = R"({"extensions":{"KHR_materials_unlit":{}}})";
+    for (const Face face : mesh.faces()) {
+        extras.face_materials.push_back(face.idx() % 2);
+        for (const Vertex v : corners(mesh, face))
+            extras.corner_texture.push_back({static_cast<float>(mesh.point(v).x()), static_cast<float>(face.idx())});
+    }
+    std::vector<std::string> notes;
+    const std::string glb = feature_glb({mesh, set}, "m.ply", {}, notes, extras);
+    EXPECT_NE(std::find_if(notes.begin(), notes.end(),
+                           [](const std::string& note) { return note.find("texture") != std::string::npos; }),
+              notes.end());
+    const glb::Reader reader(glb, "glb");
+    const Json& document = reader.document();
+    const auto& primitives = document["meshes"][0]["primitives"];
+    ASSERT_GE(primitives.Size(), 2U);
+    for (rapidjson::SizeType i = 0; i < 2; ++i) {
+        const auto& attributes = primitives[i]["attributes"];
+        EXPECT_EQ(primitives[i]["material"].GetUint(), i + 1);
+        const auto places = reader.accessor(attributes["TEXCOORD_0"].GetUint(), 2, "");
+        const auto points = reader.accessor(attributes["POSITION"].GetUint(), 3, "");
+        const auto indices = reader.accessor(primitives[i]["indices"].GetUint(), 1, "");
+        // Triangle t of this primitive is face 2 t + i of the mesh.
+        for (std::size_t corner = 0; corner < indices->size(); ++corner) {
+            const auto vertex = static_cast<std::size_t>((*indices)[corner]);
+            EXPECT_EQ((*places)[2 * vertex], (*points)[3 * vertex]);
+            EXPECT_EQ((*places)[2 * vertex + 1], 1 - static_cast<float>(2 * (corner / 3) + i));
+        }
+    }
+    const auto image = [&](unsigned index) {
+        return std::string(reader.view(document["images"][index]["bufferView"].GetUint(), ""));
+    };
+    EXPECT_EQ(image(0), extras.appearance.images[0]->bytes);
+    EXPECT_EQ(image(1), extras.appearance.images[1]->bytes);
+    EXPECT_EQ(document["samplers"][0]["wrapS"].GetUint(), 33071U);
+    EXPECT_TRUE(document["materials"][2]["extensions"].HasMember("KHR_materials_unlit"));
+    // The annotations come back as they were, although the triangles are ordered by material.
+    EXPECT_EQ(as_file(read_feature_glb(glb, mesh, "file").set, mesh), as_file(set, mesh));
+
+    MeshExtras coloured;
+    coloured.vertex_colours.assign(mesh.number_of_vertices(), Colour{255, 128, 0, 255});
+    const std::string own = feature_glb({mesh, set}, "m.ply", {}, notes, coloured);
+    const glb::Reader own_reader(own, "glb");
+    const auto colours =
+        own_reader.accessor(own_reader.document()["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"].GetUint(), 4, "");
+    for (std::size_t i = 0; i < colours->size(); i += 4) {
+        EXPECT_GT((*colours)[i], (*colours)[i + 1]);
+        EXPECT_EQ((*colours)[i + 2], 0);
+    }
+    EXPECT_EQ(as_file(read_feature_glb(own, mesh, "file").set, mesh), as_file(set, mesh));
+}

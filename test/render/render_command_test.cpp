@@ -95,7 +95,7 @@ TEST_F(RenderCommand, InvalidInputExitsWithOne) {
     refused(run("--map-on face --map " + map.string()), 1, "12 faces");
     refused(run("--map " + (scratch / "missing.npy").string()), 1, "missing.npy");
     refused(run("--annotations " + (scratch / "missing.ant.json").string()), 1, "missing.ant.json");
-    refused(run("--colour-by labels"), 1, "no labels");
+    refused(run("--colour labels"), 1, "no labels");
     refused(run_command("render " + (scratch / "missing.off").string() + " " + png.string()), 1, "missing.off");
     refused(run_command("render " + cube.string() + " " + (scratch / "nowhere" / "a.png").string()), 1, "folder");
     const Path words = scratch.file("words.txt", "1\ntwo\n");
@@ -191,9 +191,80 @@ TEST_F(RenderCommand, LabelsOfTheFileAreShown) {
     ASSERT_EQ(run_command("render --no-legend --size 300x300 --view back " + file.string() + " " + png.string()).code, 0);
     EXPECT_EQ(picture().at(150, 130), pixel(category_colour(1)));
     ASSERT_EQ(
-        run_command("render --no-legend --colour-by none --size 300x300 --view back " + file.string() + " " + png.string()).code,
-        0);
+        run_command("render --no-legend --colour clay --size 300x300 --view back " + file.string() + " " + png.string()).code, 0);
     EXPECT_EQ(picture().at(150, 130), pixel(clay));
+}
+
+/// A cube with one colour for all vertices, as PLY.
+std::string coloured_ply() {
+    std::ostringstream ply;
+    const Scene scene = test::cube();
+    ply << "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+        << "property uchar green\nproperty uchar blue\nproperty float quality\nelement face 12\n"
+        << "property list uchar int vertex_indices\nend_header\n";
+    for (const auto& p : scene.mesh.points) ply << p[0] << ' ' << p[1] << ' ' << p[2] << " 10 200 30 " << p[2] << '\n';
+    for (const auto& t : scene.mesh.triangles) ply << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+    return ply.str();
+}
+
+TEST_F(RenderCommand, ColoursOfTheFileAreShownOrANoteSaysThatTheyAreNot) {
+    const Path file = scratch.file("coloured.ply", coloured_ply());
+    const auto draw = [&](const std::string& words) {
+        return run_command("render --no-legend --size 300x300 --view front " + file.string() + " " + words + " " + png.string());
+    };
+    auto result = draw("");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(picture().at(150, 130), pixel({10, 200, 30}));
+    result = draw("--colour clay");
+    EXPECT_NE(result.err.find("colours in the file are not shown"), std::string::npos) << result.err;
+    EXPECT_EQ(picture().at(150, 130), pixel(clay));
+    const Path annotations = scratch.file("coloured.ant.json", R"({"format": "ostraka-annotations", "version": 1, "annotations": [
+          {"id": 1, "tag": "face", "colour": [200, 30, 10], "type": "region", "faces": [0, 1]}]})");
+    result = draw("--annotations " + annotations.string());
+    EXPECT_NE(result.err.find("colours in the file are not shown"), std::string::npos) << result.err;
+    EXPECT_EQ(picture().at(150, 130), pixel({200, 30, 10}));
+    result = draw("--colour own --annotations " + annotations.string());
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(picture().at(150, 130), pixel({10, 200, 30}));  // the annotation is an outline
+    ASSERT_EQ(draw("--property quality").code, 0);
+    EXPECT_NE(picture().at(150, 60), picture().at(150, 200));  // values from -1 to 1 along z
+    EXPECT_EQ(draw("--property height").code, 1);
+    EXPECT_EQ(draw("--colour texture").code, 1);
+    EXPECT_EQ(draw("--colour values").code, 2);
+    EXPECT_EQ(draw("--colour annotations").code, 2);
+}
+
+TEST_F(RenderCommand, TexturesAreShownExactlyInFlatLight) {
+    Pixels pixels{2, 2, {{250, 10, 20, 255}, {30, 240, 50, 255}, {60, 70, 230, 255}, {80, 90, 100, 255}}};
+    write_file(scratch / "pot.png", encode(pixels, ImageFormat::png, "pot.png").bytes);
+    scratch.file("pot.mtl", "newmtl body\nKd 1 1 1\nmap_Kd pot.png\n");
+    const Path file = scratch.file("pot.obj",
+                                   "mtllib pot.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                   "usemtl body\nf 1/1 2/2 3/3 4/4\n");
+    const auto result = run_command("render --no-scale-bar --light flat --size 400x400 --view front --dpi 254 --json " +
+                                    file.string() + " " + png.string());
+    ASSERT_EQ(result.code, 0) << result.err;
+    // The square is 368 pixels wide; at a quarter and three quarters of it are the centres of the image's pixels.
+    const auto expect_near = [&](int column, int row, const Rgb& expected) {
+        const std::uint32_t seen = picture().at(column, row);
+        EXPECT_NEAR(seen >> 16U & 255U, expected.red, 3);
+        EXPECT_NEAR(seen >> 8U & 255U, expected.green, 3);
+        EXPECT_NEAR(seen & 255U, expected.blue, 3);
+    };
+    expect_near(108, 108, {250, 10, 20});
+    expect_near(292, 108, {30, 240, 50});
+    expect_near(292, 292, {80, 90, 100});
+    const Json report = parse_json(result.out, "report");
+    EXPECT_NEAR(report["result"]["dpi"].GetDouble(), 254, 1e-9);
+    EXPECT_NE(read_file(png).find("pHYs"), std::string::npos);
+    const auto clay_coloured = run_command("render --colour clay " + file.string() + " " + png.string());
+    EXPECT_NE(clay_coloured.err.find("texture in the file is not shown"), std::string::npos) << clay_coloured.err;
+    const auto scaled = run_command("render --scale 1:2 --unit m " + file.string() + " " + png.string());
+    EXPECT_EQ(scaled.code, 2);  // half a metre of paper at 300 dpi
+    EXPECT_NE(scaled.err.find("--size"), std::string::npos) << scaled.err;
+    EXPECT_EQ(run_command("render --scale 1:20 --unit m " + file.string() + " " + png.string()).code, 0);
+    EXPECT_EQ(run_command("render --scale 1:20 " + file.string() + " " + png.string()).code, 2);
 }
 
 }  // namespace

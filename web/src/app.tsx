@@ -1,5 +1,6 @@
 import { gradient } from "./colours";
 import { Index } from "./collection";
+import { ColouringChoice } from "./colouring";
 import { Conformance, Constraints } from "./constraints";
 import type { Language } from "./data";
 import { Details } from "./details";
@@ -135,14 +136,7 @@ function Toolbar() {
           <Check label={word("sideBySide")} checked={state.sideBySide.value} onChange={(value) => (state.sideBySide.value = value)} />
         </>
       )}
-      {about.maps.length > 0 && (
-        <Choice
-          label={word("map")}
-          value={String(state.map.value)}
-          options={[["-1", word("byAnnotation")], ...about.maps.map((m, i) => [String(i), m.name] as [string, string])]}
-          onChange={(value) => (state.map.value = +value)}
-        />
-      )}
+      <ColouringChoice />
       {partner >= 0 && (
         <Slider
           label={word("blend", about.name, page.objects[partner].name)}

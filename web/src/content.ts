@@ -2,8 +2,9 @@
 import * as THREE from "three";
 import { readEntry, type Blobs, type Content, type PageObject, type Shown } from "./data";
 import { DrawnObject, dotMaterial, flatMaterial, readShape, type Shape } from "./geometry";
-import { setScene, view } from "./picture";
+import { drawn, setScene, view } from "./picture";
 import * as state from "./state";
+import { decodeImages, lookOf } from "./texture";
 import { View } from "./view";
 
 /** Reads the part of the address after '#': entry of a collection, object, annotation, map, camera. */
@@ -20,7 +21,10 @@ export async function readAddress() {
   state.object.value = whole("object", state.page.objects.length, 0);
   const about = state.page.objects[state.object.value];
   state.chosen.value = whole("annotation", about?.annotations.length ?? 0, -1);
-  state.map.value = whole("map", about?.maps.length ?? 0, -1);
+  const values = about?.colouring === "values" && about.maps.length > 0 ? 0 : -1;
+  state.map.value = whole("map", about?.maps.length ?? 0, values);
+  const colours = given.get("colours");
+  if (colours && state.isColouring(colours)) state.colouring.value = colours;
   const camera = given.get("camera");
   if (camera && view) view.where = camera;
 }
@@ -31,6 +35,7 @@ export function address(): string {
   parts.set("object", String(state.object.value));
   if (state.chosen.value >= 0) parts.set("annotation", String(state.chosen.value));
   if (state.map.value >= 0) parts.set("map", String(state.map.value));
+  else if (state.colouring.value !== "auto") parts.set("colours", state.colouring.value);
   if (view) parts.set("camera", view.where);
   return "#" + parts.toString();
 }
@@ -41,13 +46,19 @@ export const knownShapes = () => [...known.keys()];
 
 /** Reads a shape: packed in the page, or exact from a server. */
 async function shapeOf(of: Shown, blobs: Blobs): Promise<Shape> {
-  if (of.geometry !== undefined) return readShape(blobs.get(of.geometry));
+  const images = decodeImages(of, blobs);
+  if (of.geometry !== undefined) {
+    const { positions, triangles, textured } = await readShape(blobs.get(of.geometry));
+    return { positions, triangles, look: lookOf(of, triangles, positions.length / 3, blobs, await images, textured) };
+  }
   const { key, positions, triangles } = of.shape!;
   if (positions !== undefined && triangles !== undefined) {
     const [p, t] = [blobs.get(positions), blobs.get(triangles)];
+    const corners = new Uint32Array(t.buffer, t.byteOffset, t.byteLength / 4);
     known.set(key, {
       positions: new Float32Array(p.buffer, p.byteOffset, p.byteLength / 4),
-      triangles: new Uint32Array(t.buffer, t.byteOffset, t.byteLength / 4),
+      triangles: corners,
+      look: lookOf(of, corners, p.byteLength / 12, blobs, await images),
     });
   }
   return known.get(key)!;
@@ -91,6 +102,8 @@ export async function showContent(content: Content, keepsCamera = false) {
     made = undefined; // without WebGL the tables are still shown
   }
   made?.setObjects(objects, keepsCamera);
+  const shown = new Set(objects.map((one) => one.shape.look));
+  for (const one of drawn) if (!shown.has(one.shape.look)) one.shape.look?.texture?.images.forEach((image) => image.dispose());
   setScene(made, objects);
   forget(content.data.objects);
   state.setContent(content);

@@ -97,10 +97,47 @@ export interface Constraint {
   residual?: { mean: number; largest: number };
 }
 
+/** A material: linear red, green, blue and opacity, multiplied by an image. */
+export interface SurfaceMaterial {
+  colour: [number, number, number, number];
+  /** Index in `Look.images`. */
+  image?: number;
+  wrap?: ["repeat" | "clamp" | "mirror", "repeat" | "clamp" | "mirror"];
+  nearest?: boolean;
+  /** Opacity below which nothing is drawn. */
+  cutoff?: number;
+  /** Shown without light and shade. */
+  unlit?: boolean;
+  /** Blob that lists the triangles; undefined: all. */
+  faces?: number;
+}
+
+/** The texture of a shape. Texture coordinates are in the packed geometry, or for exact shapes in blobs: textured vertices (index of the
+ * vertex; u and v), and the textured vertex of each corner. */
+export interface Look {
+  materials: SurfaceMaterial[];
+  images: { blob: number; type: string; width: number; height: number }[];
+  vertices?: number;
+  places?: number;
+  corners?: number;
+}
+
+/** Blob with red, green, blue of each vertex, or of each triangle. */
+export interface OwnColours {
+  vertices?: number;
+  faces?: number;
+}
+
+/** What colours the surface, where no map does. */
+export type Colouring = "texture" | "own" | "annotations" | "clay";
+
 /** A shape: packed in a blob, or exact (32-bit floats relative to the box, triangles); it may have been sent before. */
 export interface Shown {
   geometry?: number;
-  shape?: { key: string; positions?: number; triangles?: number };
+  shape?: { key: string; positions?: number; triangles?: number; colours?: OwnColours; texture?: Look };
+  /** Of packed shapes. */
+  colours?: OwnColours;
+  texture?: Look;
 }
 
 export interface PageObject extends Shown {
@@ -114,6 +151,8 @@ export interface PageObject extends Shown {
   size: [number, number, number];
   up: [number, number, number];
   annotations: Annotation[];
+  /** Colours shown first; undefined: annotations if there are any, otherwise texture or own colours. */
+  colouring?: Colouring | "values";
   maps: ValueMap[];
   cage?: Shown & { vertices: number; origin: [number, number, number] };
   /** Rows of the drawing of relationships: each annotation below the one that contains it. */

@@ -2,16 +2,19 @@
 import * as THREE from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { MeshBVH } from "three-mesh-bvh";
-import { readRuns, type Blobs, type PageObject, type Slice } from "./data";
+import { readRuns, type Blobs, type Colouring, type PageObject, type Slice } from "./data";
+import { kindsOf, rangesByMaterial, texturedMaterials, type Kinds, type ShapeLook, type ShapeTexture } from "./texture";
 
 /** Vertices and triangles in the order of the object's file. */
 export interface Shape {
   positions: Float32Array;
   triangles: Uint32Array;
+  look?: ShapeLook;
 }
 
-/** Reads GLB files written by the command: one mesh with one primitive, both streams compressed. */
-export async function readShape(bytes: Uint8Array): Promise<Shape> {
+/** Reads GLB files written by the command: one mesh with one primitive, all streams compressed. Vertices with texture coordinates are
+ * returned too. */
+export async function readShape(bytes: Uint8Array): Promise<Shape & { textured?: Pick<ShapeTexture, "vertices" | "places" | "corners"> }> {
   await MeshoptDecoder.ready;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const jsonSize = view.getUint32(12, true);
@@ -36,12 +39,30 @@ export async function readShape(bytes: Uint8Array): Promise<Shape> {
   const steps = new Uint16Array(points.made.buffer);
   const scale: number[] = file.nodes[0].scale ?? [1, 1, 1];
   const moved: number[] = file.nodes[0].translation ?? [0, 0, 0];
-  const positions = new Float32Array(3 * points.count);
-  for (let i = 0; i < points.count; ++i)
-    for (let k = 0; k < 3; ++k) positions[3 * i + k] = moved[k] + scale[k] * steps[(i * points.stride) / 2 + k];
-  const corners = unpacked(primitive.indices);
-  const triangles = corners.stride === 2 ? Uint32Array.from(new Uint16Array(corners.made.buffer)) : new Uint32Array(corners.made.buffer);
-  return { positions, triangles };
+  const packed = unpacked(primitive.indices);
+  const corners = packed.stride === 2 ? Uint32Array.from(new Uint16Array(packed.made.buffer)) : new Uint32Array(packed.made.buffer);
+  const origins = primitive.attributes._VERTEX;
+  const vertices = origins === undefined ? undefined : new Uint32Array(unpacked(origins).made.buffer);
+  const count = vertices ? vertices.reduce((most, v) => Math.max(most, v + 1), 0) : points.count;
+  const positions = new Float32Array(3 * count);
+  for (let i = 0; i < points.count; ++i) {
+    const at = 3 * (vertices ? vertices[i] : i);
+    for (let k = 0; k < 3; ++k) positions[at + k] = moved[k] + scale[k] * steps[(i * points.stride) / 2 + k];
+  }
+  if (!vertices) return { positions, triangles: corners };
+  const places = unpacked(primitive.attributes.TEXCOORD_0);
+  const inSteps = file.accessors[primitive.attributes.TEXCOORD_0].normalized === true;
+  return {
+    positions,
+    triangles: corners.map((i) => vertices[i]),
+    textured: {
+      vertices,
+      corners,
+      places: inSteps
+        ? Float32Array.from(new Uint16Array(places.made.buffer), (step) => step / 65535)
+        : new Float32Array(places.made.buffer),
+    },
+  };
 }
 
 function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Array {
@@ -105,31 +126,31 @@ function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: 
   return { of, members };
 }
 
-/** Duplicates vertices so that each one has one colour: one per vertex and set of regions that meets there. */
+/** Duplicates vertices so that each one has one colour: one per vertex and kind of triangle that meets there. */
 function splitVertices(
   vertices: number,
   triangles: Uint32Array,
-  sets: Uint32Array,
-): { source: Uint32Array; set: Uint32Array; index: Uint32Array } {
+  kinds: Uint32Array,
+): { source: Uint32Array; kind: Uint32Array; index: Uint32Array } {
   const first = new Int32Array(vertices).fill(-1);
   const source: number[] = [];
-  const set: number[] = [];
+  const kind: number[] = [];
   const next: number[] = [];
   const index = new Uint32Array(triangles.length);
   for (let i = 0; i < triangles.length; ++i) {
     const v = triangles[i];
-    const wanted = sets[(i / 3) | 0];
+    const wanted = kinds[(i / 3) | 0];
     let at = first[v];
-    while (at >= 0 && set[at] !== wanted) at = next[at];
+    while (at >= 0 && kind[at] !== wanted) at = next[at];
     if (at < 0) {
       at = source.push(v) - 1;
-      set.push(wanted);
+      kind.push(wanted);
       next.push(first[v]);
       first[v] = at;
     }
     index[i] = at;
   }
-  return { source: Uint32Array.from(source), set: Uint32Array.from(set), index };
+  return { source: Uint32Array.from(source), kind: Uint32Array.from(kind), index };
 }
 
 /** Uniforms shared by all materials. */
@@ -137,6 +158,8 @@ export const shared = {
   blend: { value: 0 },
   explode: { value: 0 },
   patterns: { value: 0 },
+  /** 1: colours without light and shade. */
+  flatLight: { value: 0 },
   clip: { value: new THREE.Vector4(0, 0, 0, 1) },
   /** While handles follow one affine map x -> A x + t: A - I, and t. */
   bend: { value: new THREE.Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0) },
@@ -160,32 +183,62 @@ const surface = new THREE.RawShaderMaterial({
     uniform float blend, explode;
     uniform mat3 bend;
     uniform vec3 shift;
-    in vec3 position, normal, otherPosition, otherNormal, apart, color;
+    in vec3 position, normal, otherPosition, otherNormal, apart;
+    in vec4 color;
+    #ifdef IMAGE
+    in vec2 uv;
+    out vec2 at;
+    #endif
     in vec4 drag; // where there is none it is 0, 0, 0, 1
     in float pattern;
-    out vec3 place, facing, tint;
+    out vec3 place, facing;
+    out vec4 tint;
     flat out float kind;
     void main() {
+      #ifdef IMAGE
+      at = vec2(uv.x, 1.0 - uv.y);
+      #endif
       vec3 moved = mix(position, otherPosition, blend) + explode * apart + bend * drag.xyz + (drag.w - 1.0) * shift;
-      vec4 at = modelMatrix * vec4(moved, 1.0);
-      place = at.xyz;
+      vec4 world = modelMatrix * vec4(moved, 1.0);
+      place = world.xyz;
       facing = mat3(viewMatrix) * mat3(modelMatrix) * mix(normal, otherNormal, blend);
       tint = color;
       kind = pattern;
-      gl_Position = projectionMatrix * viewMatrix * at;
+      gl_Position = projectionMatrix * viewMatrix * world;
     }`,
   fragmentShader: `
     precision highp float;
     ${clipping}
-    uniform float patterns;
-    in vec3 facing, tint;
+    uniform float patterns, flatLight;
+    in vec3 facing;
+    in vec4 tint; // with a texture: the colour that multiplies it, or the colour that covers it in part
     flat in float kind;
     out vec4 pixel;
+    #ifdef TEXTURED
+    uniform vec4 factor;
+    uniform float cutoff;
+    #ifdef IMAGE
+    uniform sampler2D image;
+    in vec2 at;
+    #endif
+    // sRGB, IEC 61966-2-1
+    vec3 coded(vec3 c) { return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)); }
+    vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+    #endif
     void main() {
       if (dot(vec4(place, 1.0), clip) < 0.0) discard;
       vec3 n = normalize(facing + 1e-12);
       if (!gl_FrontFacing) n = -n;
-      vec3 colour = tint * tint;
+      vec3 shown = tint.rgb;
+      #ifdef TEXTURED
+      vec4 texel = factor;
+      #ifdef IMAGE
+      texel *= texture(image, at);
+      #endif
+      if (texel.a < cutoff) discard;
+      shown = tint.a > 0.0 ? mix(coded(min(texel.rgb, 1.0)), tint.rgb, tint.a) : coded(min(texel.rgb * linear(tint.rgb), 1.0));
+      #endif
+      vec3 colour = shown * shown;
       if (patterns > 0.5 && kind > 0.5) {
         vec2 at = gl_FragCoord.xy;
         float form = mod(kind - 1.0, 6.0), period = 9.0 + 3.0 * floor((kind - 1.0) / 6.0);
@@ -196,7 +249,8 @@ const surface = new THREE.RawShaderMaterial({
         if (mark) colour *= 0.45;
       }
       float key = max(0.0, dot(n, vec3(0.263, 0.473, 0.841)));
-      pixel = vec4(sqrt(min(vec3(1.0), colour * (0.36 + 0.1 * n.y + 0.72 * key))), 1.0);
+      float light = mix(0.36 + 0.1 * n.y + 0.72 * key, 1.0, flatLight);
+      pixel = vec4(sqrt(min(vec3(1.0), colour * light)), 1.0);
     }`,
 });
 
@@ -264,6 +318,8 @@ export function dotMaterial(size: number): THREE.RawShaderMaterial {
 }
 
 const clay: [number, number, number] = [201, 184, 160];
+/** How far the colour of the selected region covers a texture or own colours. */
+const covering = 0.5;
 
 /** Contours of a plane as bands, so that they are wide enough from every direction. */
 function bandsOf(slice: Slice, points: Float32Array, begin: number, half: number): THREE.BufferGeometry {
@@ -297,7 +353,7 @@ const cut = flatMaterial([194, 24, 91], 0, true);
 
 export class DrawnObject {
   readonly group = new THREE.Group();
-  readonly mesh: THREE.Mesh;
+  readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.Material | THREE.Material[]>;
   readonly regions: (Uint32Array | undefined)[];
   /** Annotations of type line or point, by index. */
   readonly marks = new Map<number, THREE.Object3D>();
@@ -315,7 +371,11 @@ export class DrawnObject {
   private bvhMade: MeshBVH | undefined;
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
-  private readonly split: ReturnType<typeof splitVertices>;
+  private readonly kinds: Kinds;
+  /** For each drawn vertex: the vertex of the object, and the combination of region set, material and colour around it. */
+  private readonly split: { source: Uint32Array; kind: Uint32Array };
+  /** Materials by which the surface shows its texture; the first is for triangles without a material. */
+  private readonly textured: THREE.RawShaderMaterial[] | undefined;
   /** Vertex positions of the object that this one is blended into. */
   private other: Float32Array | undefined;
   private partner: DrawnObject | undefined;
@@ -329,11 +389,22 @@ export class DrawnObject {
     const { positions, triangles } = shape;
     this.regions = about.annotations.map((one) => (one.faces ? readRuns(blobs.get(one.faces.blob)) : undefined));
     this.sets = setsOf(triangles.length / 3, this.regions);
-    this.split = splitVertices(positions.length / 3, triangles, this.sets.of);
+    const texture = shape.look?.texture;
+    this.kinds = kindsOf(this.sets.of, shape.look);
+    const split = splitVertices(texture ? texture.vertices.length : positions.length / 3, texture?.corners ?? triangles, this.kinds.of);
+    this.split = { source: texture ? split.source.map((i) => texture.vertices[i]) : split.source, kind: split.kind };
     this.normals = normalsOf(positions, triangles);
     const geometry = new THREE.BufferGeometry();
     const count = this.split.source.length;
-    geometry.setIndex(new THREE.BufferAttribute(this.split.index, 1));
+    if (texture) {
+      const places = new Float32Array(2 * count);
+      split.source.forEach((from, i) => places.set(texture.places.subarray(2 * from, 2 * from + 2), 2 * i));
+      geometry.setAttribute("uv", new THREE.BufferAttribute(places, 2));
+      const { index, ranges } = rangesByMaterial(split.index, texture);
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      for (const one of ranges) geometry.addGroup(one.start, one.count, one.material);
+      this.textured = [surface, ...texturedMaterials(texture, surface)];
+    } else geometry.setIndex(new THREE.BufferAttribute(split.index, 1));
     geometry.setAttribute("position", new THREE.BufferAttribute(gathered(positions, this.split.source), 3));
     geometry.setAttribute("normal", new THREE.BufferAttribute(gathered(this.normals, this.split.source), 3));
     geometry.setAttribute("otherPosition", geometry.getAttribute("position"));
@@ -341,7 +412,7 @@ export class DrawnObject {
     this.current = positions.slice();
     this.apart = this.partMoves();
     if (this.apart) geometry.setAttribute("apart", new THREE.BufferAttribute(gathered(this.apart, this.split.source), 3));
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(3 * count), 3, true));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(4 * count), 4, true));
     geometry.setAttribute("pattern", new THREE.BufferAttribute(new Uint8Array(count), 1));
     this.mesh = new THREE.Mesh(geometry, surface);
     this.mesh.frustumCulled = false;
@@ -522,7 +593,7 @@ export class DrawnObject {
   private cloud: THREE.Points | undefined;
   /** Sets the style: surface, edges or vertices. */
   style(kind: "surface" | "edges" | "points") {
-    surface.wireframe = kind === "edges";
+    for (const one of [surface, ...(this.textured ?? [])]) one.wireframe = kind === "edges";
     this.mesh.visible = kind !== "points";
     if (kind === "points" && !this.cloud) {
       const places = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(this.current, 3));
@@ -533,20 +604,53 @@ export class DrawnObject {
     if (this.cloud) this.cloud.visible = kind === "points";
   }
 
-  /** Colours by one number per vertex, from 0 (clay colour) to 1 (red). */
-  paintValues(values: Float32Array) {
-    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
-    const colours = colour.array as Uint8Array;
-    this.split.source.forEach((v, i) => {
-      const share = Math.min(1, Math.max(0, values[v]));
-      [214, 40, 40].forEach((c, k) => (colours[3 * i + k] = clay[k] + share * (c - clay[k])));
-    });
-    colour.needsUpdate = true;
+  /** Colourings that the object has, in the order of preference; annotations without regions look like clay. */
+  get colourings(): Colouring[] {
+    const { look } = this.shape;
+    const list: Colouring[] = [];
+    if (look?.texture) list.push("texture");
+    if (look?.vertexColours ?? look?.faceColours) list.push("own");
+    if (this.about.annotations.length > 0) list.push("annotations");
+    return [...list, "clay"];
   }
 
-  /** Colours by the visible annotations, smaller ones over larger ones. `chosen`: the others are paler. */
-  paint(isShown: (annotation: number) => boolean, chosen = -1) {
-    const { about, sets, split } = this;
+  /** The colouring shown for a wanted one; "auto": annotations if there are any, otherwise texture or own colours. */
+  colouring(wanted: Colouring | "auto"): Colouring {
+    const { colourings } = this;
+    const first = wanted === "auto" && this.about.colouring !== "values" ? this.about.colouring : wanted;
+    if (first && first !== "auto" && colourings.includes(first)) return first;
+    return colourings.includes("annotations") ? "annotations" : colourings[0];
+  }
+
+  /** Writes the colour of each drawn vertex, and shows the texture or not. `colour` writes red, green, blue and, with a texture, how far
+   * they cover it, all 0 to 255, to `to` for the drawn vertex i. */
+  private recolour(withTexture: boolean, colour: (i: number, to: Uint8Array) => void, pattern?: (i: number) => number) {
+    const { geometry } = this.mesh;
+    const [colours, patterns] = ["color", "pattern"].map((name) => geometry.getAttribute(name) as THREE.BufferAttribute);
+    const to = new Uint8Array(4);
+    for (let i = 0; i < this.split.source.length; ++i) {
+      to[3] = 255;
+      colour(i, to);
+      (colours.array as Uint8Array).set(to, 4 * i);
+      (patterns.array as Uint8Array)[i] = pattern ? pattern(i) : 0;
+    }
+    colours.needsUpdate = true;
+    patterns.needsUpdate = true;
+    this.mesh.material = withTexture && this.textured ? this.textured : surface;
+  }
+
+  /** Colours by one number per vertex, from 0 (clay colour) to 1 (red). */
+  paintValues(values: Float32Array) {
+    this.recolour(false, (i, to) => {
+      const share = Math.min(1, Math.max(0, values[this.split.source[i]]));
+      [214, 40, 40].forEach((c, k) => (to[k] = clay[k] + share * (c - clay[k])));
+    });
+  }
+
+  /** Colours by the visible annotations, smaller ones over larger ones, or by texture or own colours, on which only the selected region is
+   * marked. `chosen`: the others are paler. */
+  paint(isShown: (annotation: number) => boolean, chosen = -1, colouring: Colouring = "annotations") {
+    const { about, sets, kinds, split } = this;
     // For each set the smallest visible region.
     const topOf = sets.members.map((regions) => {
       let best = -1;
@@ -555,32 +659,53 @@ export class DrawnObject {
     });
     for (let face = 0; face < this.top.length; ++face) this.top[face] = topOf[sets.of[face]];
     const selects = chosen >= 0 && this.regions[chosen] !== undefined;
-    const table = sets.members.map((regions, set) => {
-      const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 160] : [1, 0];
-      return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
-    });
-    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
-    const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
-    const colours = colour.array as Uint8Array;
-    const patterns = pattern.array as Uint8Array;
-    for (let i = 0; i < split.set.length; ++i) {
-      const entry = table[split.set[i]];
-      colours[3 * i] = entry[0];
-      colours[3 * i + 1] = entry[1];
-      colours[3 * i + 2] = entry[2];
-      patterns[i] = topOf[split.set[i]] < 0 ? 0 : (topOf[split.set[i]] % 12) + 1;
+    if (colouring === "annotations") {
+      const table = sets.members.map((regions, set) => {
+        const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 160] : [1, 0];
+        return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
+      });
+      this.recolour(
+        false,
+        (i, to) => to.set(table[kinds.set[split.kind[i]]]),
+        (i) => {
+          const top = topOf[kinds.set[split.kind[i]]];
+          return top < 0 ? 0 : (top % 12) + 1;
+        },
+      );
+    } else {
+      const marked = sets.members.map((regions) => selects && isShown(chosen) && regions.includes(chosen));
+      this.paintLook(colouring, marked, selects ? about.annotations[chosen].colour : clay);
     }
-    colour.needsUpdate = true;
-    pattern.needsUpdate = true;
     for (const [i, mark] of this.marks) mark.visible = isShown(i);
+  }
+
+  /** Colours by texture, own colours or clay, covered in part by `cover` on the marked sets of regions. */
+  private paintLook(colouring: Colouring, marked: boolean[], cover: [number, number, number]) {
+    const { kinds, split } = this;
+    const { vertexColours, faceColours, texture } = this.shape.look ?? {};
+    this.recolour(colouring === "texture", (i, to) => {
+      const kind = split.kind[i];
+      const isTextured = colouring === "texture" && texture !== undefined && kinds.material[kind] >= 0;
+      if (isTextured && marked[kinds.set[kind]]) {
+        to.set(cover);
+        to[3] = 255 * covering;
+        return;
+      }
+      if (isTextured) {
+        to.fill(255);
+        to[3] = 0; // multiplies
+      } else to.set(clay);
+      if (colouring !== "clay") {
+        if (faceColours) to.set(faceColours.subarray(3 * kinds.triangle[kind], 3 * kinds.triangle[kind] + 3));
+        else if (vertexColours) to.set(vertexColours.subarray(3 * split.source[i], 3 * split.source[i] + 3));
+      }
+      if (marked[kinds.set[kind]]) for (let k = 0; k < 3; ++k) to[k] += covering * (cover[k] - to[k]);
+    });
   }
 
   /** Colours by a map; grey without a value. */
   paintMap(map: number, colourOf: (share: number) => [number, number, number]) {
     const values = this.mapValues(map);
-    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
-    const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
-    const colours = colour.array as Uint8Array;
     const { source } = this.split;
     const { minimum, maximum, from, to, categories } = this.about.maps[map];
     const none = [128, 128, 128];
@@ -588,16 +713,10 @@ export class DrawnObject {
     const table = categories ? categories.map((c) => c.colour) : Array.from({ length: 256 }, (_, i) => colourOf(i / 255));
     const scale = categories ? 1 : (255 * (maximum - minimum)) / 65534 / (to - from || 1);
     const offset = categories ? 0 : (255 * (minimum - from)) / (to - from || 1);
-    for (let i = 0; i < source.length; ++i) {
+    this.recolour(false, (i, colour) => {
       const value = values[source[i]];
-      const entry = value === 65535 ? none : table[Math.min(table.length - 1, Math.max(0, Math.round(offset + scale * value)))];
-      colours[3 * i] = entry[0];
-      colours[3 * i + 1] = entry[1];
-      colours[3 * i + 2] = entry[2];
-    }
-    (pattern.array as Uint8Array).fill(0);
-    colour.needsUpdate = true;
-    pattern.needsUpdate = true;
+      colour.set(value === 65535 ? none : table[Math.min(table.length - 1, Math.max(0, Math.round(offset + scale * value)))]);
+    });
   }
 
   mapValues(map: number): Uint16Array {

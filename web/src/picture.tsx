@@ -3,9 +3,10 @@ import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as THREE from "three";
 import { colourOf } from "./colours";
-import type { DrawnObject } from "./geometry";
+import { shared, type DrawnObject } from "./geometry";
 import * as state from "./state";
 import { numberText, page, withUnit, word } from "./state";
+import { isUnlit } from "./texture";
 import type { View } from "./view";
 
 export let view: View | undefined;
@@ -179,6 +180,13 @@ function onKey(event: KeyboardEvent) {
   view.draw();
 }
 
+/** Whether the shown object is drawn under light and shade: a texture that asks for flat light is not, unless the reader wants it. */
+export function isShaded(): boolean {
+  const of = drawn[state.object.value];
+  const isTexture = state.map.value < 0 && of?.colouring(state.colouring.value) === "texture";
+  return state.shade.value ?? !(isTexture && isUnlit(of?.shape.look));
+}
+
 export function repaint() {
   if (!view) return;
   const chosen = state.chosen.value;
@@ -187,9 +195,10 @@ export function repaint() {
     if (!of) return; // another content is being loaded
     const map = state.map.value;
     if (map >= 0 && map < of.about.maps.length) of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
-    else of.paint((i) => state.isShown(o, i), o === state.object.value ? chosen : -1);
+    else of.paint((i) => state.isShown(o, i), o === state.object.value ? chosen : -1, of.colouring(state.colouring.value));
     if (of.cage) of.cage.visible = state.cage.value;
   }
+  shared.flatLight.value = isShaded() ? 0 : 1;
   const partner = state.blendPartner.value;
   for (const of of drawn) of.blendTo(of.index === state.object.value && partner >= 0 ? drawn[partner] : undefined);
   view.show(state.panes.value.map((o) => drawn[o]));

@@ -1,6 +1,6 @@
 // The state of the page as signals, from which all its parts are derived.
 import { computed, signal } from "@preact/signals";
-import type { Blobs, Content, Language, PageData, Table } from "./data";
+import type { Blobs, Colouring, Content, Language, PageData, Table } from "./data";
 import messages from "./messages.json";
 
 export type Word = keyof (typeof messages)["en"];
@@ -71,6 +71,11 @@ export const hovered = fresh<{ object: number; annotations: number[]; vertex: nu
 export const hidden = fresh<ReadonlySet<string>>(new Set());
 export const search = fresh("");
 export const map = fresh(-1);
+/** What colours the surfaces where no map does; kept when another content is shown. */
+export const colouring = signal<Colouring | "auto">("auto");
+export const isColouring = (text: string): text is Colouring => ["texture", "own", "annotations", "clay"].includes(text);
+/** Whether colours are shown under light and shade; undefined: unless a material of the object asks for flat light. */
+export const shade = signal<boolean | undefined>(undefined);
 export const blend = fresh(0);
 export const explode = fresh(0);
 /** Displayed level of the slices; -1: none. */

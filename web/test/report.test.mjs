@@ -6,6 +6,7 @@ import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import assert from "node:assert/strict";
+import { crc32, deflateSync } from "node:zlib";
 import { chromium } from "playwright-core";
 import { turnsByHand } from "./pointer.mjs";
 
@@ -59,6 +60,43 @@ async function open(file, options = {}) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   return { page, told, close: () => context.close() };
 }
+
+/** A PNG file of rows of [red, green, blue]. */
+function pngOf(rows) {
+  const chunk = (name, body) => {
+    const named = Buffer.concat([Buffer.from(name), body]);
+    const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
+    length.writeUInt32BE(body.length);
+    sum.writeUInt32BE(crc32(named));
+    return Buffer.concat([length, named, sum]);
+  };
+  const head = Buffer.alloc(13);
+  head.writeUInt32BE(rows[0].length, 0);
+  head.writeUInt32BE(rows.length, 4);
+  head.set([8, 2, 0, 0, 0], 8);
+  const lines = Buffer.concat(rows.map((row) => Buffer.from([0, ...row.flat()])));
+  const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
+  return Buffer.concat([signature, chunk("IHDR", head), chunk("IDAT", deflateSync(lines)), chunk("IEND", Buffer.alloc(0))]);
+}
+
+/** Colours at points of the first object, given by weights of its vertices 0, 1 and 3. */
+const seenAt = (page, places) =>
+  page.evaluate((list) => {
+    const { view, objects } = globalThis.ostraka;
+    view.paint();
+    const gl = view.renderer.getContext();
+    const ratio = gl.drawingBufferWidth / view.canvas.clientWidth;
+    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return list.map(([u, v]) => {
+      const point = objects[0].vertex(0).multiplyScalar(1 - u - v);
+      point.addScaledVector(objects[0].vertex(1), u).addScaledVector(objects[0].vertex(3), v);
+      const at = view.place(objects[0], point);
+      const row = gl.drawingBufferHeight - 1 - Math.floor(at.y * ratio);
+      const begin = 4 * (row * gl.drawingBufferWidth + Math.floor(at.x * ratio));
+      return Array.from(pixels.subarray(begin, begin + 3));
+    });
+  }, places);
 
 /** A number of places where an object is, with what the command's own data says is there. */
 const probe = (page, wanted) =>
@@ -178,6 +216,55 @@ try {
     const { page, close } = await open(at("pot.html"), { hash: "#map=0" });
     assert.equal(await page.locator(".bar .histogram span").count(), 40);
     await close();
+  });
+
+  await test("textures and own colours are shown as in the file, and switched", async () => {
+    const colours = [
+      [250, 10, 20],
+      [30, 240, 50],
+      [60, 70, 230],
+      [80, 90, 100],
+    ];
+    // 8 x 8 pixels in four squares of one colour.
+    const image = Array.from({ length: 8 }, (_, y) => Array.from({ length: 8 }, (_, x) => colours[2 * (y >> 2) + (x >> 2)]));
+    writeFileSync(at("pot.png"), pngOf(image));
+    writeFileSync(at("square.mtl"), "newmtl body\nKd 1 1 1\nmap_Kd pot.png\n");
+    writeFileSync(
+      at("square.obj"),
+      "mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl body\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+    );
+    ostraka("report", at("square.obj"), at("square.html"));
+    const { page, told, close } = await open(at("square.html"));
+    const shade = page.getByLabel("Shade");
+    await shade.uncheck();
+    await page.evaluate(() => globalThis.ostraka.view.look(0, 0));
+    await page.waitForTimeout(800);
+    const places = [
+      [0.25, 0.75],
+      [0.75, 0.75],
+      [0.25, 0.25],
+      [0.75, 0.25],
+    ];
+    const near = (seen, wanted) => seen.forEach((x, k) => assert.ok(Math.abs(x - wanted[k]) <= 2, `${seen} for ${wanted}`));
+    (await seenAt(page, places)).forEach((seen, i) => near(seen, colours[i]));
+    await page.locator("select[data-colours]").selectOption("clay");
+    (await seenAt(page, places)).forEach((seen) => near(seen, [201, 184, 160]));
+    assert.deepEqual(told, []);
+    await close();
+
+    writeFileSync(at("own.obj"), "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 0 1 0 0 1\nv 0 0 1 1 1 1\nf 1 2 3\nf 1 3 4\n");
+    ostraka("report", at("own.obj"), at("own.html"));
+    const own = await open(at("own.html"));
+    await own.page.getByLabel("Shade").uncheck();
+    await own.page.evaluate(() => globalThis.ostraka.view.look(0, 0));
+    await own.page.waitForTimeout(800);
+    const [first, second] = await seenAt(own.page, [
+      [0.02, 0.01],
+      [0.97, 0.01],
+    ]);
+    assert.ok(first[0] > 230 && first[1] < 30 && second[1] > 230 && second[0] < 30, `${first} and ${second}`);
+    assert.deepEqual(own.told, []);
+    await own.close();
   });
 
   await test("the slider moves vertices to where they belong", async () => {

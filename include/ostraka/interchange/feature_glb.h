@@ -4,6 +4,7 @@
 #include "ostraka/annotation/annotated_mesh.h"
 #include "ostraka/files/provenance.h"
 #include "ostraka/interchange/landmarks.h"
+#include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
 
@@ -15,10 +16,12 @@ namespace ostraka {
 /// 16-bit integers, or floats for more than 65535 annotations. A vertex attribute _VERTEX holds the index of the vertex in the
 /// mesh (up to 2^24). If annotations are free, the mesh is cut along their curves, and the extras of the glTF mesh contain all
 /// annotations on the original mesh, as in an annotation file (`original`, with its checksum); the extras contain all annotations
-/// also if an annotation has additional information. `notes` reports rounded values. Throws Error (failure) for a mesh without
-/// triangles, coordinates beyond single precision, or a file beyond four gigabytes.
+/// also if an annotation has additional information. If `extras` has a texture or colours, the surface has them instead of the
+/// colours of annotations, one primitive per material, with the images unchanged. `notes` reports rounded values and colours of
+/// annotations that are not shown. Throws Error (failure) for a mesh without triangles, coordinates beyond single precision, or a
+/// file beyond four gigabytes.
 std::string feature_glb(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance,
-                        std::vector<std::string>& notes);
+                        std::vector<std::string>& notes, const MeshExtras& extras = {});
 
 /// Reads the annotations of a GLB file with mesh features onto `mesh`. If the file contains the original annotations of this mesh
 /// (`original`, by checksum) and its table has the same ids and tags, the original annotations are restored exactly. If the file

@@ -1,6 +1,8 @@
 // A self-contained HTML page that shows objects in 3D with their annotations and measures, with tables and drawings.
 #pragma once
 
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/io/textured_vertices.h"
 #include "ostraka/relation/check.h"
 
 #include <array>
@@ -91,6 +93,10 @@ struct PageObject {
     std::vector<std::string> conflicts = {};       ///< messages on conflicting constraints
     /// Indices of the regions that can be moved apart in the viewer, since they share no vertex.
     std::vector<std::size_t> parts = {};
+    const MeshExtras* extras = nullptr;  ///< colours and texture of the mesh; null: none
+    /// Colours that the page shows first: texture, own (of vertices or faces), annotations, values (the first map) or clay; auto:
+    /// annotations if there are any, otherwise the first of texture and own colours that there is.
+    std::string colouring = "auto";
     std::string unit = {};                 ///< unit of the mesh; empty: unit of the annotations
     std::array<double, 3> up = {0, 0, 1};  ///< upward direction, used if the annotations state none
     /// Size of the original object, if it has more vertices than the shown mesh.
@@ -130,6 +136,10 @@ struct PageEntry {
     std::vector<std::string> tags;  ///< tags of the object's annotations
 };
 
+/// Largest side in pixels, and number of bytes of all images of an object on a page; larger images are reduced.
+inline constexpr int page_image_side = 4096;
+inline constexpr std::size_t page_image_bytes = 2'000'000;
+
 class Page {
 public:
     explicit Page(std::string title);
@@ -139,8 +149,9 @@ public:
 
     /// Adds an object and returns its index in the page. Objects with the same triangles as an earlier object can be morphed
     /// into each other in the viewer. Positions are quantised to 1/131,070 of the largest side of the box, values of maps to
-    /// 1/131,068 of their range; the order of vertices and triangles is kept. Throws Error (input) for a mesh without triangles
-    /// or a map of a different length.
+    /// 1/131,068 of their range, texture coordinates to 1/131,070 of theirs; the order of vertices and triangles is kept. Images
+    /// are reduced to page_image_bytes in all, and a note of the page reports it. Throws Error (input) for a mesh without
+    /// triangles, a map, colours or texture coordinates of a different length, or a damaged image.
     std::size_t add(const PageObject& object);
     void add(PageTable table);  ///< Adds a table to the page.
     /// Adds a drawing; `svg` is the text of an SVG file.
@@ -163,6 +174,10 @@ public:
     [[nodiscard]] Content content(const std::string& provenance_text) const;
 
 private:
+    /// Adds own colours, materials and images to the data of an object; `exact`: the texture coordinates too, which are otherwise
+    /// in the geometry.
+    void add_look(JsonValue& entry, const MeshExtras& extras, const std::optional<io::TexturedVertices>& textured, bool exact,
+                  const std::string& name);
     std::size_t add_bytes(std::string_view bytes);                             ///< returns the offset of the bytes in `bytes_`
     [[nodiscard]] std::string data(const std::string& provenance_text) const;  ///< JSON text of the page's data
 

@@ -46,9 +46,10 @@ std::string stable_svg(const std::string& svg);
 /// Parses a colour: "#rrggbb", "white", "black" or "grey". Throws Error (usage) for any other text.
 Rgb parse_colour(const std::string& text);
 
-/// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
-void write_png(const Path& file, const Picture& picture);
-/// Writes a PNG file with 16 bits per channel atomically. Throws Error (failure) if memory runs out.
-void write_png(const Path& file, const DeepPicture& picture);
+/// Writes a PNG file atomically. `pixels_per_metre`: resolution on paper, written as a pHYs chunk (PNG, third edition, 11.3.4.3);
+/// 0: unstated. Throws Error (failure) if memory runs out.
+void write_png(const Path& file, const Picture& picture, double pixels_per_metre = 0);
+/// Writes a PNG file with 16 bits per channel atomically, otherwise likewise.
+void write_png(const Path& file, const DeepPicture& picture, double pixels_per_metre = 0);
 
 }  // namespace ostraka

@@ -23,17 +23,21 @@ struct RenderOptions {
     /// Scale of several objects: all at the same scale, or each as large as possible.
     enum class Fit { all, each } fit = Fit::all;
     enum class Shading { smooth, flat } shading = Shading::smooth;  ///< whether normals are interpolated across edges
+    /// Light: shaded by a lamp near the viewer's head, or flat: the colours exactly as in the image or file.
+    enum class Light { shaded, flat } light = Light::shaded;
     double crease = 40;         ///< smooth shading: edges whose face normals differ by more than this angle (degrees) look sharp
     int ambient_occlusion = 0;  ///< number of ambient occlusion rays per pixel; 0: none
     int samples = 8;            ///< number of rays per pixel where colours change; 1: no additional rays
     bool edges = false;         ///< draw the edges of the mesh over the surface
     /// Drawing style; lines: visible contours, creases and borders; wire: edges.
     enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
-    bool contours = false;  ///< draw contours, creases and borders over the surface
-    bool labels = false;    ///< write names beside the object, with leader lines, instead of a legend
-    bool axes = false;      ///< draw the directions of the mesh's axes
-    int supersample = 0;    ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
-    bool deep = false;      ///< write a PNG with 16 bits per channel
+    bool contours = false;    ///< draw contours, creases and borders over the surface
+    bool labels = false;      ///< write names beside the object, with leader lines, instead of a legend
+    bool axes = false;        ///< draw the directions of the mesh's axes
+    int supersample = 0;      ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
+    bool deep = false;        ///< write a PNG with 16 bits per channel
+    double dpi = 0;           ///< pixels per inch of paper; 0: 300 with `print_scale`, else 96 in SVG and PDF and unstated in PNG
+    std::string print_scale;  ///< scale on paper such as "1:2" (half the size), see parse_print_scale; empty: as large as fits
     enum class Theme { light, dark } theme = Theme::light;  ///< colours of text and background
     std::string background = "auto";   ///< colour of the background, as `parse_colour` accepts; auto: colour of the theme
     bool transparent = false;          ///< leave the background transparent
@@ -43,6 +47,10 @@ struct RenderOptions {
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
+
+/// The factor from lengths of the object to lengths on paper: "1:2" is 0.5, "3:1" is 3; 0 for an empty text. Throws Error (usage)
+/// for a text that is not two positive numbers separated by a colon.
+double parse_print_scale(const std::string& text);
 
 /// Throws Error (usage) for options that `render` would refuse. Call this function before reading the meshes.
 void check_render_options(const RenderOptions& options);
@@ -70,17 +78,19 @@ struct Pane {
 
 /// A rendered picture or document.
 struct Rendering {
-    int width = 0, height = 0;  ///< pixels
-    Picture picture;            ///< the picture, if the output format is pixels
-    DeepPicture deep;           ///< the picture with 16 bits per channel, if requested
-    std::string document;       ///< contents of the file, if the output format is SVG or PDF
-    std::vector<Pane> panes;    ///< panes of the picture, one per scene and view
-    double build_seconds = 0;   ///< seconds spent building the search trees
-    double draw_seconds = 0;    ///< seconds spent on the rest of the rendering
+    int width = 0, height = 0;    ///< pixels
+    Picture picture;              ///< the picture, if the output format is pixels
+    DeepPicture deep;             ///< the picture with 16 bits per channel, if requested
+    std::string document;         ///< contents of the file, if the output format is SVG or PDF
+    double pixels_per_metre = 0;  ///< resolution on paper, for write_png; 0: unstated
+    std::vector<Pane> panes;      ///< panes of the picture, one per scene and view
+    double build_seconds = 0;     ///< seconds spent building the search trees
+    double draw_seconds = 0;      ///< seconds spent on the rest of the rendering
 };
 
 /// Draws the scenes side by side. Rays are traced through a bounding volume hierarchy (Embree); the first hit is shaded by a
-/// light near the viewer's head and a soft sky, with more rays where neighbouring pixels differ. Lines and markers are drawn
+/// light near the viewer's head and a soft sky, with more rays where neighbouring pixels differ. Textures are averaged over the
+/// area of a pixel on the surface. Lines and markers are drawn
 /// where the ray to the viewer is unobstructed, with a tolerance of 0.2 % of the largest side of the bounding box. The picture is
 /// bit-identical for any number of threads. Time: O((n + pixels) log n). In SVG and PDF the surface is an embedded image;
 /// everything else is vector graphics. Throws Error (usage) for invalid options; Error (input) for an index out of range, a

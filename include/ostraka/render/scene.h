@@ -1,10 +1,12 @@
 // Contents of a picture of one object.
 #pragma once
 
+#include "ostraka/image/appearance.h"
 #include "ostraka/mesh/mesh.h"
 #include "ostraka/render/picture.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,8 +55,9 @@ struct LegendEntry {
     LegendMark mark = LegendMark::area;  ///< symbol beside the description
 };
 
-/// An object and what is drawn on it. The triangles may be any triangle soup. At most one of the colour lists is used: the first
-/// that is not empty, in the order of declaration; without any, the surface has the colour of clay.
+/// An object and what is drawn on it. The triangles may be any triangle soup. At most one of the lists of values and colours is
+/// used: the first that is not empty, in the order of declaration; without any, the surface has the colour of clay. A texture is
+/// used unless there are values; colours multiply it.
 struct Scene {
     TriangleSoup mesh;                  ///< triangles of the object
     std::vector<double> vertex_values;  ///< one value per point, interpolated and coloured by RenderOptions::scale; or empty
@@ -63,6 +66,11 @@ struct Scene {
     std::vector<Rgb> vertex_colours;    ///< one colour per point, interpolated; or empty
     /// Colours of triangles with several colours, ascending by triangle; they replace the other colours of these triangles.
     std::vector<ScenePatch> patches;
+    /// Reads the colours of the materials; null: no texture. It may be shared by several scenes and pictures.
+    std::shared_ptr<const TextureSampler> texture;
+    std::vector<TexturePoint> corner_texture;  ///< texture coordinates, three per triangle; empty: images are not shown
+    /// Index of each triangle's material, or no_index: a triangle without texture; empty: the first material on all triangles.
+    std::vector<Index> face_materials;
     std::vector<SceneLine> lines;
     std::vector<SceneMarker> markers;
     std::vector<SceneLabel> labels;
@@ -70,6 +78,7 @@ struct Scene {
     std::vector<std::array<double, 3>> around;  ///< additional points that must be inside the picture
     std::string title;                          ///< text under the object
     std::string unit;                           ///< unit of the coordinates, written at the scale bar
+    double unit_metres = 0;                     ///< length of the unit in metres, for pictures at a scale; 0: unknown
 };
 
 /// Default colour of a surface: clay.

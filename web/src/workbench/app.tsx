@@ -1,6 +1,7 @@
 import { effect, signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Language } from "../data";
+import { ColouringChoice } from "../colouring";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
 import { sixViews } from "../view";
@@ -225,13 +226,12 @@ effect(() => {
     const last = !model.shown.value.some((other, k) => k > i && other.object === about.object); // prefers the deformed state, if there is one
     return last && names.has(model.objects.value[about.object]?.name);
   });
-  for (const one of list) one.paint(() => true);
+  for (const one of list) one.paint(() => true, -1, one.colouring(page.colouring.value));
   for (const one of drawn) one.style(style);
   view.showWith(of, list);
 });
 
 function ViewBar() {
-  const about = page.page.objects[page.object.value];
   return (
     <div class="toolbar" role="toolbar" aria-label={page.word("view")}>
       <span class="group">
@@ -273,19 +273,7 @@ function ViewBar() {
           <option value="points">{text("cloud")}</option>
         </select>
       </label>
-      {about && about.maps.length > 0 && (
-        <label>
-          {page.word("map")}{" "}
-          <select value={String(page.map.value)} onChange={(event) => (page.map.value = +event.currentTarget.value)}>
-            <option value="-1">{page.word("byAnnotation")}</option>
-            {about.maps.map((one, i) => (
-              <option key={one.name} value={String(i)}>
-                {one.name}
-              </option>
-            ))}
-          </select>
-        </label>
-      )}
+      <ColouringChoice />
       {(
         [
           ["cage", page.cage, page.word("cage")],

@@ -1,0 +1,182 @@
+// Textures and own colours of objects: what the command wrote, decoded, and the materials that show them.
+import * as THREE from "three";
+import { readRuns, type Blobs, type Look, type Shown, type SurfaceMaterial } from "./data";
+
+/** Own colours and texture of a shape. */
+export interface ShapeLook {
+  /** Red, green, blue of each vertex, or of each triangle. */
+  vertexColours?: Uint8Array;
+  faceColours?: Uint8Array;
+  texture?: ShapeTexture;
+}
+
+export interface ShapeTexture {
+  /** Vertices with texture coordinates: the vertex of each, and u and v, with v from the bottom of the image. */
+  vertices: Uint32Array;
+  places: Float32Array;
+  /** For each corner of each triangle, its textured vertex. */
+  corners: Uint32Array;
+  materials: SurfaceMaterial[];
+  /** Index in `materials` of each triangle; -1: none. */
+  of: Int16Array;
+  images: THREE.Texture[];
+}
+
+const wraps = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
+
+/** Decodes an image; colours and opacity stay as they are in the file. */
+async function decodeImage(bytes: Uint8Array, type: string): Promise<THREE.Texture> {
+  const options: ImageBitmapOptions = { premultiplyAlpha: "none", colorSpaceConversion: "none", imageOrientation: "none" };
+  const bitmap = await createImageBitmap(new Blob([bytes as BlobPart], { type }), options);
+  const texture = new THREE.Texture(bitmap as unknown as HTMLImageElement);
+  texture.flipY = false;
+  texture.colorSpace = THREE.SRGBColorSpace;
+  texture.anisotropy = 8;
+  return texture;
+}
+
+/** The image of each material with its own wrapping; images are shared where the wrapping is the same. */
+function texturesOf(materials: SurfaceMaterial[], images: THREE.Texture[]): THREE.Texture[] {
+  return materials.map((material) => {
+    const image = material.image === undefined ? undefined : images[material.image];
+    if (!image) return new THREE.Texture();
+    const texture = image.clone();
+    [texture.wrapS, texture.wrapT] = (material.wrap ?? ["repeat", "repeat"]).map((one) => wraps[one]) as [THREE.Wrapping, THREE.Wrapping];
+    if (material.nearest) texture.magFilter = THREE.NearestFilter;
+    texture.needsUpdate = true;
+    return texture;
+  });
+}
+
+/** Index of the material of each triangle. */
+function materialsOfTriangles(look: Look, triangles: number, blobs: Blobs): Int16Array {
+  const of = new Int16Array(triangles).fill(-1);
+  look.materials.forEach((material, i) => {
+    if (material.faces === undefined) of.fill(i);
+    else for (const face of readRuns(blobs.get(material.faces))) of[face] = i;
+  });
+  return of;
+}
+
+/** Starts to decode the images of a shape, while its geometry is decoded. */
+export function decodeImages(about: Shown, blobs: Blobs): Promise<THREE.Texture[]> {
+  const images = (about.shape?.texture ?? about.texture)?.images ?? [];
+  return Promise.all(images.map((one) => decodeImage(blobs.get(one.blob), one.type)));
+}
+
+const words = (bytes: Uint8Array) => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
+
+/** The look of a shape. `packed`: textured vertices in its geometry, if they are there. */
+export function lookOf(
+  about: Shown,
+  triangles: Uint32Array,
+  vertices: number,
+  blobs: Blobs,
+  images: THREE.Texture[],
+  packed?: Pick<ShapeTexture, "vertices" | "places" | "corners">,
+): ShapeLook {
+  const { colours, texture } = about.shape ?? about;
+  const made: ShapeLook = {};
+  if (colours?.vertices !== undefined) made.vertexColours = blobs.get(colours.vertices);
+  if (colours?.faces !== undefined) made.faceColours = blobs.get(colours.faces);
+  if (!texture) return made;
+  let textured = packed;
+  if (texture.vertices !== undefined && texture.places !== undefined && texture.corners !== undefined) {
+    const places = blobs.get(texture.places);
+    textured = {
+      vertices: words(blobs.get(texture.vertices)),
+      places: new Float32Array(places.buffer, places.byteOffset, places.byteLength / 4),
+      corners: words(blobs.get(texture.corners)),
+    };
+  }
+  // Materials of plain colours need no texture coordinates.
+  textured ??= {
+    vertices: Uint32Array.from({ length: vertices }, (_, i) => i),
+    places: new Float32Array(2 * vertices),
+    corners: triangles,
+  };
+  made.texture = {
+    ...textured,
+    materials: texture.materials,
+    of: materialsOfTriangles(texture, triangles.length / 3, blobs),
+    images: texturesOf(texture.materials, images),
+  };
+  return made;
+}
+
+/** Whether a material asks to be shown without light and shade. */
+export const isUnlit = (look: ShapeLook | undefined) => look?.texture?.materials.some((one) => one.unlit) ?? false;
+
+/** Variants of the surface's material, one per material of the texture. `vertexShader` and `fragmentShader` show a texture if TEXTURED is
+ * defined, with an image if IMAGE is. */
+export function texturedMaterials(texture: ShapeTexture, surface: THREE.RawShaderMaterial): THREE.RawShaderMaterial[] {
+  return texture.materials.map((material, i) => {
+    const hasImage = material.image !== undefined;
+    return new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      side: THREE.DoubleSide,
+      defines: hasImage ? { TEXTURED: 1, IMAGE: 1 } : { TEXTURED: 1 },
+      uniforms: {
+        ...surface.uniforms,
+        image: { value: hasImage ? texture.images[i] : null },
+        factor: { value: new THREE.Vector4(...material.colour) },
+        cutoff: { value: material.cutoff ?? -1 },
+      },
+      vertexShader: surface.vertexShader,
+      fragmentShader: surface.fragmentShader,
+    });
+  });
+}
+
+/** Number of every combination of region set, material and own colour of triangles: vertices are shared within a combination. */
+export interface Kinds {
+  of: Uint32Array;
+  set: number[];
+  material: number[];
+  /** A triangle with this combination, whose own colour it has. */
+  triangle: number[];
+}
+
+export function kindsOf(sets: Uint32Array, look: ShapeLook | undefined): Kinds {
+  const of = new Uint32Array(sets.length);
+  const made: Kinds = { of, set: [], material: [], triangle: [] };
+  const numbers = new Map<number, number>();
+  const materials = (look?.texture?.materials.length ?? 0) + 1;
+  const colours = look?.faceColours;
+  for (let t = 0; t < sets.length; ++t) {
+    const material = look?.texture?.of[t] ?? -1;
+    const colour = colours ? (colours[3 * t] << 16) | (colours[3 * t + 1] << 8) | colours[3 * t + 2] : 0;
+    const key = (sets[t] * materials + material + 1) * 0x1000000 + colour;
+    let kind = numbers.get(key);
+    if (kind === undefined) {
+      kind = made.set.push(sets[t]) - 1;
+      made.material.push(material);
+      made.triangle.push(t);
+      numbers.set(key, kind);
+    }
+    of[t] = kind;
+  }
+  return made;
+}
+
+/** Orders the corners by material, so that each material draws one range of them. */
+export function rangesByMaterial(
+  corners: Uint32Array,
+  texture: ShapeTexture,
+): { index: Uint32Array; ranges: { start: number; count: number; material: number }[] } {
+  const count = texture.materials.length + 1;
+  const begin = new Uint32Array(count + 1);
+  for (const material of texture.of) begin[material + 2] += 3;
+  for (let i = 0; i < count; ++i) begin[i + 1] += begin[i];
+  const index = new Uint32Array(corners.length);
+  const next = begin.slice();
+  for (let t = 0; t < texture.of.length; ++t) {
+    const at = next[texture.of[t] + 1];
+    for (let k = 0; k < 3; ++k) index[at + k] = corners[3 * t + k];
+    next[texture.of[t] + 1] += 3;
+  }
+  const ranges = [];
+  for (let i = 0; i < count; ++i)
+    if (begin[i + 1] > begin[i]) ranges.push({ start: begin[i], count: begin[i + 1] - begin[i], material: i });
+  return { index, ranges };
+}
