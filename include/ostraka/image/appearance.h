@@ -62,6 +62,8 @@ public:
     [[nodiscard]] std::array<float, 4> colour(Index material, TexturePoint at, float footprint = 0) const;
     /// Size of the material's image in pixels; {0, 0} without an image.
     [[nodiscard]] std::array<int, 2> size(Index material) const;
+    /// The materials, as in the appearance.
+    [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
 
 private:
     struct Level {
