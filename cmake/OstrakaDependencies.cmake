@@ -14,6 +14,7 @@ pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
 # Found by path: the compile definitions of their packages are needed in one file only.
 find_library(CERES_LIBRARY NAMES ceres REQUIRED)
 find_library(GLOG_LIBRARY NAMES glog REQUIRED)
+find_library(DRACO_LIBRARY NAMES draco REQUIRED)
 find_library(EMBREE_LIBRARY NAMES embree3 REQUIRED)
 find_library(CHOLMOD_LIBRARY NAMES cholmod REQUIRED)
 find_path(RAPIDJSON_INCLUDE rapidjson/document.h REQUIRED)

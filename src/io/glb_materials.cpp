@@ -50,7 +50,8 @@ GlbMaterials::GlbMaterials(const Appearance& appearance, std::vector<Index> used
         take_images(rest);
     }
     if (drops_mtl) notes_.emplace_back("GLB cannot store what MTL materials say beyond colour, opacity and image");
-    const auto written = static_cast<std::size_t>(std::count_if(used_.begin(), used_.end(), [](Index m) { return m != no_index; }));
+    const auto written =
+        static_cast<std::size_t>(std::count_if(used_.begin(), used_.end(), [](Index m) { return m != no_index; }));
     if (written < appearance_.materials.size())
         notes_.push_back(fmt::format("{} of {} materials are not written: no face has them",
                                      appearance_.materials.size() - written, appearance_.materials.size()));
@@ -158,8 +159,7 @@ int GlbMaterials::texture(Index image, const Material& material, JsonAllocator& 
     const auto place = place_of_image_.find(image);
     if (place == place_of_image_.end() || place->second < 0) return -1;
     const int filter = sampler(material, allocator);
-    const auto [entry, is_new] =
-        texture_of_.try_emplace({place->second, filter}, static_cast<int>(textures_.Size()));
+    const auto [entry, is_new] = texture_of_.try_emplace({place->second, filter}, static_cast<int>(textures_.Size()));
     if (!is_new) return entry->second;
     JsonValue result(rapidjson::kObjectType);
     if (filter >= 0) add_members(result, allocator, "sampler", filter);
