@@ -97,8 +97,8 @@ std::vector<std::uint32_t> GltfPrimitive::triangles() const {
     }
     for (std::size_t i = 0; i < list.size(); ++i)
         if (list[i] >= count)
-            reader_.fail(pointer_ + "/indices", fmt::format("index {} (number {}) is out of range: there are {} vertices", list[i],
-                                                            i, count));
+            reader_.fail(pointer_ + "/indices",
+                         fmt::format("index {} (number {}) is out of range: there are {} vertices", list[i], i, count));
     if (mode_ != glb::triangles_mode) {
         reader_.charge(12.0 * static_cast<double>(list.size()), pointer_);
         return unrolled(list, mode_ == glb::fan_mode);
