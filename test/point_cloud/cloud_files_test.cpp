@@ -114,7 +114,7 @@ TEST(CloudFiles, LasOfEveryPointFormat) {
         ASSERT_EQ(cloud.intensities.size(), 3U);
         EXPECT_EQ(cloud.intensities[2], 700);
         EXPECT_EQ(cloud.colours.size(), las_colours[format] > 0 ? 3U : 0U);
-        if (!cloud.colours.empty()) EXPECT_EQ(cloud.colours[0], (Colour{0x80, 0, 0, 255}));
+        for (const Colour& colour : cloud.colours) EXPECT_EQ(colour, (Colour{0x80, 0, 0, 255}));
     }
     EXPECT_EQ(cloud_of(scratch.file("b.las", las_file(2, 200))).colours[0][0], 200) << "8 bits in 16";
     const PointCloud bare = cloud_of(scratch.file("c.las", las_file(2, 0, 0)));
