@@ -14,6 +14,9 @@ namespace ostraka {
 
 namespace {
 
+/// A small image that the viewer shows in its first picture, until the large one is decoded.
+constexpr int preview_side = 512;
+constexpr std::size_t preview_bytes = 60'000;
 constexpr std::size_t min_image_bytes = 20'000;  ///< for the smallest images of an object with many
 
 void add_run_number(std::string& bytes, std::size_t value) {
@@ -53,9 +56,14 @@ public:
                 notes.push_back(fmt::format("{}: the image {} of {} bytes is compressed to {}", printable(name, 200),
                                             printable(image.name, 200), image.bytes.size(), shown.bytes.size()));
             numbers_[i] = list_.Size();
-            list_.PushBack(json_object(allocator, "blob", keep(shown.bytes), "type", media_type(shown.format), "width",
-                                       shown.width, "height", shown.height),
-                           allocator);
+            JsonValue entry = json_object(allocator, "blob", keep(shown.bytes), "type", media_type(shown.format), "width",
+                                          shown.width, "height", shown.height);
+            if (std::max(shown.width, shown.height) > 2 * preview_side) {
+                const Image preview = within_budget(shown, preview_side, preview_bytes, name);
+                add_members(entry, allocator, "preview",
+                            json_object(allocator, "blob", keep(preview.bytes), "type", media_type(preview.format)));
+            }
+            list_.PushBack(entry, allocator);
         }
     }
     [[nodiscard]] std::size_t number(Index image) const { return numbers_.at(image); }

@@ -4,7 +4,7 @@ import { readEntry, type Blobs, type Content, type PageObject, type Shown } from
 import { DrawnObject, dotMaterial, flatMaterial, readShape, type Shape } from "./geometry";
 import { drawn, setScene, view } from "./picture";
 import * as state from "./state";
-import { decodeImages, lookOf } from "./texture";
+import { decodeImages, lookOf, refine } from "./texture";
 import { View } from "./view";
 
 /** Reads the part of the address after '#': entry of a collection, object, annotation, map, camera. */
@@ -108,6 +108,11 @@ export async function showContent(content: Content, keepsCamera = false) {
   forget(content.data.objects);
   state.setContent(content);
   document.title = content.data.title;
+  // After the first picture.
+  const refineLooks = async () => {
+    for (const one of objects) if (await refine(one.shape.look)) view?.draw();
+  };
+  requestAnimationFrame(() => setTimeout(() => void refineLooks(), 50));
 }
 
 export async function openEntry(entry: number) {

@@ -112,11 +112,20 @@ export interface SurfaceMaterial {
   faces?: number;
 }
 
+/** An image file; `preview`: a small one for the first picture. */
+export interface PageImage {
+  blob: number;
+  type: string;
+  width: number;
+  height: number;
+  preview?: { blob: number; type: string };
+}
+
 /** The texture of a shape. Texture coordinates are in the packed geometry, or for exact shapes in blobs: textured vertices (index of the
  * vertex; u and v), and the textured vertex of each corner. */
 export interface Look {
   materials: SurfaceMaterial[];
-  images: { blob: number; type: string; width: number; height: number }[];
+  images: PageImage[];
   vertices?: number;
   places?: number;
   corners?: number;

@@ -20,32 +20,41 @@ export interface ShapeTexture {
   /** Index in `materials` of each triangle; -1: none. */
   of: Int16Array;
   images: THREE.Texture[];
+  /** Shows the images of full size instead of small ones. */
+  refine?: () => Promise<void>;
 }
 
 const wraps = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 
 /** Decodes an image; colours and opacity stay as they are in the file. */
-async function decodeImage(bytes: Uint8Array, type: string): Promise<THREE.Texture> {
+function decodeImage(bytes: Uint8Array, type: string): Promise<ImageBitmap> {
   const options: ImageBitmapOptions = { premultiplyAlpha: "none", colorSpaceConversion: "none", imageOrientation: "none" };
-  const bitmap = await createImageBitmap(new Blob([bytes as BlobPart], { type }), options);
-  const texture = new THREE.Texture(bitmap as unknown as HTMLImageElement);
-  texture.flipY = false;
-  texture.colorSpace = THREE.SRGBColorSpace;
-  texture.anisotropy = 8;
-  return texture;
+  return createImageBitmap(new Blob([bytes as BlobPart], { type }), options);
 }
 
-/** The image of each material with its own wrapping; images are shared where the wrapping is the same. */
-function texturesOf(materials: SurfaceMaterial[], images: THREE.Texture[]): THREE.Texture[] {
+/** A texture for each material, with its wrapping. */
+function texturesOf(materials: SurfaceMaterial[], images: ImageBitmap[]): THREE.Texture[] {
   return materials.map((material) => {
-    const image = material.image === undefined ? undefined : images[material.image];
-    if (!image) return new THREE.Texture();
-    const texture = image.clone();
+    const texture = new THREE.Texture();
+    if (material.image === undefined) return texture;
+    texture.source = new THREE.Source(images[material.image]);
+    texture.flipY = false;
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.anisotropy = 8;
     [texture.wrapS, texture.wrapT] = (material.wrap ?? ["repeat", "repeat"]).map((one) => wraps[one]) as [THREE.Wrapping, THREE.Wrapping];
     if (material.nearest) texture.magFilter = THREE.NearestFilter;
     texture.needsUpdate = true;
     return texture;
   });
+}
+
+/** Replaces small images, which were shown first, by those of full size. Returns false if there is nothing to replace. */
+export async function refine(look: ShapeLook | undefined): Promise<boolean> {
+  const work = look?.texture?.refine;
+  if (!work) return false;
+  look.texture!.refine = undefined;
+  await work();
+  return true;
 }
 
 /** Index of the material of each triangle. */
@@ -58,10 +67,10 @@ function materialsOfTriangles(look: Look, triangles: number, blobs: Blobs): Int1
   return of;
 }
 
-/** Starts to decode the images of a shape, while its geometry is decoded. */
-export function decodeImages(about: Shown, blobs: Blobs): Promise<THREE.Texture[]> {
+/** Starts to decode the images of a shape, while its geometry is decoded: small ones where there are. */
+export function decodeImages(about: Shown, blobs: Blobs): Promise<ImageBitmap[]> {
   const images = (about.shape?.texture ?? about.texture)?.images ?? [];
-  return Promise.all(images.map((one) => decodeImage(blobs.get(one.blob), one.type)));
+  return Promise.all(images.map(({ preview, blob, type }) => decodeImage(blobs.get(preview?.blob ?? blob), preview?.type ?? type)));
 }
 
 const words = (bytes: Uint8Array) => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
@@ -72,7 +81,7 @@ export function lookOf(
   triangles: Uint32Array,
   vertices: number,
   blobs: Blobs,
-  images: THREE.Texture[],
+  images: ImageBitmap[],
   packed?: Pick<ShapeTexture, "vertices" | "places" | "corners">,
 ): ShapeLook {
   const { colours, texture } = about.shape ?? about;
@@ -101,6 +110,20 @@ export function lookOf(
     of: materialsOfTriangles(texture, triangles.length / 3, blobs),
     images: texturesOf(texture.materials, images),
   };
+  const { materials, images: textures } = made.texture;
+  if (texture.images.some((one) => one.preview))
+    made.texture.refine = async () => {
+      for (const [number, image] of texture.images.entries()) {
+        if (!image.preview) continue;
+        const source = new THREE.Source(await decodeImage(blobs.get(image.blob), image.type));
+        materials.forEach((material, i) => {
+          if (material.image !== number) return;
+          textures[i].dispose();
+          textures[i].source = source;
+          textures[i].needsUpdate = true;
+        });
+      }
+    };
   return made;
 }
 
