@@ -85,8 +85,8 @@ void place_chart(const Chart& chart, const texture::PackedRectangle& rectangle, 
         for (std::size_t k = 0; k < 3; ++k) {
             const Vector2d corner = origin + chart.corners[3 * i + k];
             // Rows run from the top, v from the bottom; the projection must not be mirrored.
-            layout.corner_texture[3 * static_cast<std::size_t>(face) + k] = {
-                static_cast<float>(corner.x() / layout.width), static_cast<float>(corner.y() / layout.height)};
+            layout.corner_texture[3 * static_cast<std::size_t>(face) + k] = {static_cast<float>(corner.x() / layout.width),
+                                                                             static_cast<float>(corner.y() / layout.height)};
         }
     }
 }

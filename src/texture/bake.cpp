@@ -32,8 +32,14 @@ class Baker {
 public:
     Baker(const Mesh& target, const TextureLayout& layout, const BakeOptions& options, int samples, const SourceLookup& lookup,
           const SourceValues& values)
-        : layout_(layout), options_(options), samples_(samples), lookup_(lookup), values_(values), surface_(target),
-          bands_(target, layout, samples), texels_(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height)),
+        : layout_(layout),
+          options_(options),
+          samples_(samples),
+          lookup_(lookup),
+          values_(values),
+          surface_(target),
+          bands_(target, layout, samples),
+          texels_(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height)),
           images_(layout.images) {
         for (BakedImage& image : images_) {
             image.state.assign(texels_, State::outside);
@@ -119,8 +125,8 @@ private:
     }
 
     void sample(const TargetPlace& place, std::uint64_t seed, SampleMean& mean, PlaceCounts& counts) const {
-        const SourcePlace found = lookup_.find(surface_.point(place.face, place.barycentric),
-                                               surface_.normal(place.face, place.barycentric));
+        const SourcePlace found =
+            lookup_.find(surface_.point(place.face, place.barycentric), surface_.normal(place.face, place.barycentric));
         counts.add(found);
         if (found.found != SourcePlace::Found::nowhere) mean.add(values_.at(found, seed));
     }
@@ -149,11 +155,13 @@ void BakeOptions::list_options(OptionList& list) {
     list("of", quantity, "what is baked: colours, ambient occlusion, mean curvature, height of the source above the target",
          Choices{"colour", "occlusion", "curvature", "relief"});
     list("distance", distance, "largest distance of the source from the target", Range{0, 1}, "share of the box diagonal");
-    list("samples", samples, "rays per row and column of a texel; 0: as the source's texels require, 1 to 4", Range{0, max_samples});
+    list("samples", samples, "rays per row and column of a texel; 0: as the source's texels require, 1 to 4",
+         Range{0, max_samples});
     list("missing", missing, "what texels without source show: colours of their neighbourhood, or grey", Choices{"fill", "grey"});
     list("fill", gutter, "width around charts that shows their nearest texel", Range{0, 64}, "texels");
     list("occlusion-rays", occlusion_rays, "occlusion: number of rays per sample", Range{1, 4096});
-    list("occlusion-distance", occlusion_distance, "occlusion: length of the rays", Range{0.0001, 2}, "share of the box diagonal");
+    list("occlusion-distance", occlusion_distance, "occlusion: length of the rays", Range{0.0001, 2},
+         "share of the box diagonal");
     list("curvature-scale", curvature_scale, "curvature: radius of the neighbourhood; 0: the faces around a vertex", Range{0, 1},
          "share of the box diagonal");
     list("range", range, "curvature and relief: value shown by white; 0: the value that 1 % of the samples exceed",

@@ -38,7 +38,8 @@ FaceShares sampled_face(const Mesh& target, const TargetSurface& surface, Face f
     FaceShares shares{{SampleMean(values.is_colour()), SampleMean(values.is_colour()), SampleMean(values.is_colour())}, {}};
     const double area = face_area(target, face);
     const double side = std::sqrt(2 * area);
-    const int rows = std::clamp(step > 0 ? static_cast<int>(std::ceil(std::min(side / step, 1e6))) : min_rows, min_rows, max_rows);
+    const int rows =
+        std::clamp(step > 0 ? static_cast<int>(std::ceil(std::min(side / step, 1e6))) : min_rows, min_rows, max_rows);
     std::array<Point, 3> points;
     const auto vertices = corners(target, face);
     for (std::size_t k = 0; k < 3; ++k) points[k] = target.point(vertices[k]);
@@ -109,8 +110,8 @@ void set_texture(MeshExtras& extras, const TextureLayout& layout, const std::vec
     extras.appearance = {};
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::string name = images.size() == 1 ? options.name : fmt::format("{}-{}", options.name, i + 1);
-        extras.appearance.images.push_back(std::make_shared<Image>(
-            encode(images[i], options.format, name + extension_of(options.format), options.quality)));
+        extras.appearance.images.push_back(
+            std::make_shared<Image>(encode(images[i], options.format, name + extension_of(options.format), options.quality)));
         Material material;
         material.name = name;
         material.image = static_cast<Index>(i);

@@ -15,8 +15,8 @@ namespace ostraka::texture {
 
 namespace {
 
-constexpr double wide_cone = 0.5;   ///< cosine of the angle to the mean normal above which a better axis is searched
-constexpr double steep = 0.17;      ///< cosine of the angle between a normal and the axis below which a face is cut off
+constexpr double wide_cone = 0.5;  ///< cosine of the angle to the mean normal above which a better axis is searched
+constexpr double steep = 0.17;     ///< cosine of the angle between a normal and the axis below which a face is cut off
 constexpr int axis_steps = 64;
 
 /// A direction close to the axis of the smallest cone around the normals: the mean normal if all normals are near it, else the
@@ -64,8 +64,11 @@ void fit_rectangle(Chart& chart) {
 class OverlapFreePart {
 public:
     OverlapFreePart(const Mesh& mesh, const Chart& chart)
-        : mesh_(mesh), chart_(chart), width_(static_cast<std::int64_t>(chart.width) + 2),
-          taken_(static_cast<std::size_t>(width_ * (static_cast<std::int64_t>(chart.height) + 2))), added_(chart.faces.size()) {
+        : mesh_(mesh),
+          chart_(chart),
+          width_(static_cast<std::int64_t>(chart.width) + 2),
+          taken_(static_cast<std::size_t>(width_ * (static_cast<std::int64_t>(chart.height) + 2))),
+          added_(chart.faces.size()) {
         for (std::size_t i = 0; i < chart.faces.size(); ++i) place_[chart.faces[i]] = i;
     }
 

@@ -9,10 +9,10 @@ namespace ostraka::texture {
 
 /// A part of a surface, projected along its axis.
 struct Chart {
-    std::vector<Index> faces;        ///< ascending
-    std::vector<Vector2d> corners;   ///< three per face; the least coordinates are 0
-    double width = 0, height = 0;    ///< size of the rectangle around the corners, width >= height
-    double largest_stretch = 1;      ///< largest length on the surface per length in the plane
+    std::vector<Index> faces;            ///< ascending
+    std::vector<Vector2d> corners;       ///< three per face; the least coordinates are 0
+    double width = 0, height = 0;        ///< size of the rectangle around the corners, width >= height
+    double largest_stretch = 1;          ///< largest length on the surface per length in the plane
     std::vector<bool> lies_too_steep{};  ///< for each face, whether it is too steep to be seen along the axis; empty: none is
 };
 

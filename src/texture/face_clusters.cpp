@@ -2,12 +2,14 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/progress.h"
-#include "ostraka/mesh/limits.h"
 #include "ostraka/mesh/disjoint_sets.h"
+#include "ostraka/mesh/limits.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
+#include <tuple>
 
 namespace ostraka::texture {
 
@@ -16,32 +18,22 @@ namespace {
 /// Share of its area that a cluster is taken to deviate from a plane anyway: clusters of flat surfaces grow evenly.
 constexpr double even_growth = 1e-3;
 
-/// A cone that contains directions; negative half_angle: no direction.
-struct NormalCone {
-    Vector axis = CGAL::NULL_VECTOR;
-    double half_angle = -1;
-};
+constexpr int cone_steps = 8;  ///< of the search for the axis of a cone
 
-/// The smallest cone around two cones, if its half angle is below pi / 2; else a cone with a larger half angle.
-NormalCone joined_cone(const NormalCone& a, const NormalCone& b) {
-    if (a.half_angle < 0) return b;
-    if (b.half_angle < 0) return a;
-    const double sine = std::sqrt(CGAL::cross_product(a.axis, b.axis).squared_length());
-    const double between = std::atan2(sine, a.axis * b.axis);
-    if (between + b.half_angle <= a.half_angle) return a;
-    if (between + a.half_angle <= b.half_angle) return b;
-    NormalCone result;
-    result.half_angle = (a.half_angle + b.half_angle + between) / 2;
-    const double turn = result.half_angle - a.half_angle;
-    if (!(sine > 0)) return {a.axis, result.half_angle};
-    result.axis = unit_vector(a.axis * (std::sin(between - turn) / sine) + b.axis * (std::sin(turn) / sine));
-    return result;
+/// The 26 directions to the corners, edges and sides of a cube.
+std::vector<Vector> search_directions() {
+    std::vector<Vector> directions;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z)
+                if (x != 0 || y != 0 || z != 0) directions.emplace_back(x, y, z);
+    return directions;
 }
 
 struct Cluster {
     Vector area_vector = CGAL::NULL_VECTOR;
     double area = 0;
-    NormalCone cone;
+    std::vector<Index> extreme{};                        ///< faces whose normals are the farthest in one of 26 directions
     unsigned stamp = 0;                                  ///< changes with each merge
     std::vector<std::pair<Index, double>> neighbours{};  ///< adjacent cluster (or a cluster merged into it), common length
 };
@@ -58,31 +50,37 @@ struct Merge {
 class Clustering {
 public:
     Clustering(const Mesh& mesh, const ClusterLimits& limits)
-        : limits_(limits), clusters_(mesh.number_of_faces()), sets_(mesh.number_of_faces()) {
+        : limits_(limits),
+          directions_(search_directions()),
+          normals_(mesh.number_of_faces()),
+          clusters_(mesh.number_of_faces()),
+          sets_(mesh.number_of_faces()) {
         for (const Face face : mesh.faces()) {
             Cluster& cluster = clusters_[face];
             cluster.area_vector = area_vector(mesh, face);
             cluster.area = std::sqrt(cluster.area_vector.squared_length());
-            const Vector normal = unit_vector(cluster.area_vector);
-            if (normal != CGAL::NULL_VECTOR && smallest_height(mesh, face) > limits.negligible_width) cluster.cone = {normal, 0};
+            normals_[face] = unit_vector(cluster.area_vector);
+            if (normals_[face] != CGAL::NULL_VECTOR && smallest_height(mesh, face) > limits.negligible_width)
+                cluster.extreme.push_back(face);
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
                 const Halfedge other = mesh.opposite(h);
                 if (mesh.is_border(other)) continue;
-                const double length =
-                    std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
+                const double length = std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
                 cluster.neighbours.emplace_back(mesh.face(other), length);
             }
         }
         for (Index i = 0; i < clusters_.size(); ++i) tidy(i);
     }
 
-    /// Merges clusters within the cone, in the order of costs; with `small` only where one of the two is small.
+    /// Merges clusters whose normals lie in a cone with this half angle (radians), in the order of costs; with `small` only where
+    /// one of the two is small.
     void merge(double cone, bool small) {
         std::priority_queue<Merge> queue;
+        const double cosine = std::cos(cone);
         const auto consider = [&](Index a, Index b, double length) {
             const Cluster &first = clusters_[a], &second = clusters_[b];
             if (small && std::min(first.area, second.area) > limits_.small_area) return;
-            if (joined_cone(first.cone, second.cone).half_angle > cone) return;
+            if (!fits_into_cone(first, second, cosine)) return;
             queue.push({cost(first, second, length), a, b, first.stamp, second.stamp});
         };
         for (Index i = 0; i < clusters_.size(); ++i) {
@@ -129,6 +127,35 @@ private:
         return length > 0 ? growth / length : std::numeric_limits<double>::max();
     }
 
+    /// True if a cone around the extreme normals of both clusters is found: around their mean normal, or around the centre of a
+    /// small ball that contains them (Badoiu and Clarkson 2003).
+    [[nodiscard]] bool fits_into_cone(const Cluster& a, const Cluster& b, double cosine) const {
+        Vector axis = unit_vector(a.area_vector + b.area_vector);
+        if (axis == CGAL::NULL_VECTOR) return a.extreme.empty() && b.extreme.empty();
+        for (int step = 1; step <= cone_steps; ++step) {
+            const Vector* farthest = nullptr;
+            double least = 2;
+            for (const Cluster* cluster : {&a, &b})
+                for (const Index face : cluster->extreme)
+                    if (normals_[face] * axis < least) least = normals_[face] * axis, farthest = &normals_[face];
+            if (least >= cosine * std::sqrt(axis.squared_length())) return true;
+            axis = axis + (*farthest - axis) / (step + 1.0);
+        }
+        return false;
+    }
+
+    /// Keeps of the faces those whose normals are the farthest in a direction.
+    void keep_extreme(std::vector<Index>& faces) const {
+        if (faces.size() <= directions_.size()) return;
+        std::vector<Index> kept;
+        for (const Vector& direction : directions_)
+            kept.push_back(*std::max_element(
+                faces.begin(), faces.end(), [&](Index a, Index b) { return normals_[a] * direction < normals_[b] * direction; }));
+        std::sort(kept.begin(), kept.end());
+        kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+        faces = std::move(kept);
+    }
+
     /// Names each neighbour once, by its present index.
     void tidy(Index i) {
         auto& neighbours = clusters_[i].neighbours;
@@ -149,7 +176,9 @@ private:
         Cluster &cluster = clusters_[kept], &other = clusters_[gone];
         cluster.area_vector = cluster.area_vector + other.area_vector;
         cluster.area += other.area;
-        cluster.cone = joined_cone(cluster.cone, other.cone);
+        cluster.extreme.insert(cluster.extreme.end(), other.extreme.begin(), other.extreme.end());
+        other.extreme = {};
+        keep_extreme(cluster.extreme);
         ++cluster.stamp, ++other.stamp;
         if (cluster.neighbours.size() < other.neighbours.size()) cluster.neighbours.swap(other.neighbours);
         cluster.neighbours.insert(cluster.neighbours.end(), other.neighbours.begin(), other.neighbours.end());
@@ -159,6 +188,7 @@ private:
     }
 
     ClusterLimits limits_;
+    std::vector<Vector> directions_, normals_;  ///< unit normals of the faces
     std::vector<Cluster> clusters_;
     DisjointSets sets_;
 };

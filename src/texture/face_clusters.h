@@ -18,8 +18,8 @@ struct ClusterLimits {
 /// Height of a triangle above its longest side; 0 for a degenerate triangle.
 double smallest_height(const Mesh& mesh, Face face);
 
-/// Clusters of faces connected across edges: pairs of clusters are merged in the order of their costs as long as the limits permit
-/// (Garland, Willmott and Heckbert 2001). The faces of a cluster ascend; clusters are ordered by their first faces.
+/// Clusters of faces connected across edges: pairs of clusters are merged in the order of their costs as long as the limits
+/// permit (Garland, Willmott and Heckbert 2001). The faces of a cluster ascend; clusters are ordered by their first faces.
 std::vector<std::vector<Index>> face_clusters(const Mesh& mesh, const ClusterLimits& limits);
 
 }  // namespace ostraka::texture

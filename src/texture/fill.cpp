@@ -40,7 +40,8 @@ private:
     };
 
     [[nodiscard]] std::size_t index(const TexelPlace& place) const {
-        return static_cast<std::size_t>(place.row) * static_cast<std::size_t>(pixels_.width) + static_cast<std::size_t>(place.column);
+        return static_cast<std::size_t>(place.row) * static_cast<std::size_t>(pixels_.width) +
+               static_cast<std::size_t>(place.column);
     }
     template <class Action>
     void each_neighbour(const TexelPlace& place, Action&& action) const {
@@ -97,13 +98,15 @@ void pull(const Pixels& fine, const std::vector<bool>& covered, Pixels& coarse, 
             unsigned number = 0;
             for (int y = 2 * row; y < std::min(2 * row + 2, fine.height); ++y)
                 for (int x = 2 * column; x < std::min(2 * column + 2, fine.width); ++x) {
-                    if (!covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(x)])
+                    if (!covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) +
+                                 static_cast<std::size_t>(x)])
                         continue;
                     ++number;
                     for (std::size_t k = 0; k < 4; ++k) sum[k] += fine.at(x, y)[k];
                 }
             if (number == 0) continue;
-            const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(coarse.width) + static_cast<std::size_t>(column);
+            const auto i =
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(coarse.width) + static_cast<std::size_t>(column);
             coarse_covered[i] = true;
             for (std::size_t k = 0; k < 4; ++k) coarse.rgba[i][k] = static_cast<std::uint8_t>((sum[k] + number / 2) / number);
         }

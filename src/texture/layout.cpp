@@ -12,7 +12,8 @@ namespace {
 /// Area of a face in texture coordinates.
 double texture_area(const std::vector<TexturePoint>& corner_texture, std::size_t face) {
     const auto corner = [&](std::size_t k) {
-        return Vector2d(static_cast<double>(corner_texture[3 * face + k][0]), static_cast<double>(corner_texture[3 * face + k][1]));
+        return Vector2d(static_cast<double>(corner_texture[3 * face + k][0]),
+                        static_cast<double>(corner_texture[3 * face + k][1]));
     };
     const Vector2d first = corner(1) - corner(0), second = corner(2) - corner(0);
     return std::abs(first.x() * second.y() - first.y() * second.x()) / 2;

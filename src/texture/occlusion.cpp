@@ -38,8 +38,7 @@ Occlusion::Occlusion(const Mesh& mesh, int rays, double distance)
     : device_(nullptr, &rtcReleaseDevice), scene_(nullptr, &rtcReleaseScene) {
     // Hammersley's points on the disc: projected onto the hemisphere their density is proportional to the cosine (Malley).
     for (int i = 0; i < rays; ++i)
-        directions_.push_back(
-            {std::sqrt((i + 0.5) / rays), 2 * pi * reversed_fraction(static_cast<std::uint32_t>(i))});
+        directions_.push_back({std::sqrt((i + 0.5) / rays), 2 * pi * reversed_fraction(static_cast<std::uint32_t>(i))});
     const CGAL::Bbox_3 box = bounding_box(mesh);
     middle_ = {box.xmin() / 2 + box.xmax() / 2, box.ymin() / 2 + box.ymax() / 2, box.zmin() / 2 + box.zmax() / 2};
     const double diagonal = box_diagonal(mesh);

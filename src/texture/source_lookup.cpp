@@ -24,7 +24,8 @@ bool SourceLookup::along_normal(const Point& point, const Vector& normal, double
 SourcePlace SourceLookup::find(const Point& point, const Vector& normal) const {
     SourcePlace place;
     if (normal != CGAL::NULL_VECTOR) {
-        if (along_normal(point, normal, distance_ * short_ray, place) || along_normal(point, normal, distance_, place)) return place;
+        if (along_normal(point, normal, distance_ * short_ray, place) || along_normal(point, normal, distance_, place))
+            return place;
         if (const auto hit = search_.closest_compatible(point, normal, 0, distance_)) {
             place.hit = *hit;
             place.found = SourcePlace::Found::by_nearest;

@@ -90,11 +90,14 @@ Sample SourceValues::colour(const SurfaceHit& hit) const {
 
 Sample SourceValues::at(const SourcePlace& place, std::uint64_t seed) const {
     switch (quantity_) {
-    case BakedQuantity::colour: return colour(place.hit);
-    case BakedQuantity::relief: return {static_cast<float>(place.height)};
-    case BakedQuantity::occlusion:
-        return {occlusion_->open_share(place.hit.point, area_vector(source_.mesh, Face(place.hit.face)), seed)};
-    case BakedQuantity::curvature: break;
+        case BakedQuantity::colour:
+            return colour(place.hit);
+        case BakedQuantity::relief:
+            return {static_cast<float>(place.height)};
+        case BakedQuantity::occlusion:
+            return {occlusion_->open_share(place.hit.point, area_vector(source_.mesh, Face(place.hit.face)), seed)};
+        case BakedQuantity::curvature:
+            break;
     }
     const auto vertices = corners(source_.mesh, Face(place.hit.face));
     double sum = 0;

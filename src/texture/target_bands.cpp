@@ -76,8 +76,7 @@ void TargetBands::find_borders() {
         if (mesh_.is_border(h)) continue;
         const Halfedge other = mesh_.opposite(h);
         const Index end = corner_of[h], start = corner_of[mesh_.prev(h)];
-        const bool joined = !mesh_.is_border(other) &&
-                            layout_.image_of(mesh_.face(h)) == layout_.image_of(mesh_.face(other)) &&
+        const bool joined = !mesh_.is_border(other) && layout_.image_of(mesh_.face(h)) == layout_.image_of(mesh_.face(other)) &&
                             texture[start] == texture[corner_of[other]] && texture[end] == texture[corner_of[mesh_.prev(other)]];
         if (!joined) borders_[mesh_.face(h)] |= static_cast<std::uint8_t>(1U << (start % 3));
     }

@@ -34,8 +34,8 @@ public:
     [[nodiscard]] const std::vector<Band>& bands() const { return bands_; }
     /// For each part of each texel of a band, row by row, the face on which its centre lies, or no_index.
     [[nodiscard]] std::vector<Index> faces_of_parts(const Band& band) const;
-    /// For each texel of a band no part of which lies on a face, the face whose border is nearest, up to 1.5 texels from the texel's
-    /// centre, or no_index; `parts`: result of faces_of_parts.
+    /// For each texel of a band no part of which lies on a face, the face whose border is nearest, up to 1.5 texels from the
+    /// texel's centre, or no_index; `parts`: result of faces_of_parts.
     [[nodiscard]] std::vector<Index> faces_of_fringe(const Band& band, const std::vector<Index>& parts) const;
     /// Place in a face of a point of the image, in texels from its upper left corner: the nearest point of the face.
     [[nodiscard]] TargetPlace place(Index face, double x, double y) const;

@@ -73,7 +73,9 @@ void expect_apart(const Atlas& atlas, int gutter) {
         for (int y = -2 * gutter; y <= 2 * gutter; ++y)
             for (int x = -2 * gutter; x <= 2 * gutter; ++x) {
                 const auto other = chart_of_texel.find({place[0], place[1] + x, place[2] + y});
-                if (other != chart_of_texel.end()) { EXPECT_EQ(other->second, chart); }
+                if (other != chart_of_texel.end()) {
+                    EXPECT_EQ(other->second, chart);
+                }
             }
 }
 
@@ -140,7 +142,8 @@ TEST(Atlas, ASpiralRampIsDividedWhereItOverlapsItself) {
     TriangleSoup soup;
     const Index columns = 120, rows = 4;
     for (Index i = 0; i <= columns; ++i)
-        for (Index j = 0; j <= rows; ++j) soup.points.push_back(ramp(i / static_cast<double>(columns), j / static_cast<double>(rows)));
+        for (Index j = 0; j <= rows; ++j)
+            soup.points.push_back(ramp(i / static_cast<double>(columns), j / static_cast<double>(rows)));
     for (Index i = 0; i < columns; ++i)
         for (Index j = 0; j < rows; ++j) {
             const Index a = i * (rows + 1) + j, b = a + rows + 1;

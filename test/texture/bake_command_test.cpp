@@ -35,7 +35,8 @@ MeshFile plain(const TriangleSoup& soup) {
 
 TEST(BakeCommand, AnImageForAnotherMesh) {
     Json report;
-    const MeshFile result = output_of("mesh bake", {{"target", plain(box(5))}, {"source", textured_box(6, 64, waves)}}, {}, &report);
+    const MeshFile result =
+        output_of("mesh bake", {{"target", plain(box(5))}, {"source", textured_box(6, 64, waves)}}, {}, &report);
     EXPECT_LT(mean_error(result.mesh, result.extras, waves), 3);
     const auto& values = report["result"];
     EXPECT_NEAR(values["texel"].GetDouble(), 1.0 / 64, 1e-3);
@@ -75,6 +76,7 @@ TEST(BakeCommand, RefusesWhatMakesNoSense) {
     EXPECT_THROW(output_of("mesh bake", {{"target", source}, {"source", target}}, {}), Error);  // no colours to bake
     EXPECT_THROW(output_of("mesh bake", {{"target", target}, {"source", source}}, {{"layout", "own"}}), Error);
     EXPECT_THROW(output_of("mesh bake", {{"target", target}, {"source", source}}, {{"layout", "own"}, {"texel", "1"}}), Error);
-    EXPECT_THROW(output_of("mesh bake", {{"target", target}, {"source", source}}, {{"to", "vertices"}, {"layout", "own"}}), Error);
+    EXPECT_THROW(output_of("mesh bake", {{"target", target}, {"source", source}}, {{"to", "vertices"}, {"layout", "own"}}),
+                 Error);
     EXPECT_NO_THROW(output_of("mesh bake", {{"target", source}, {"source", target}}, {{"of", "relief"}}));
 }

@@ -106,7 +106,8 @@ TEST(Bake, ColoursOfFacesAndMaterialsWithoutImages) {
     source.extras.appearance.materials = {red};
     source.extras.face_materials.assign(source.mesh.number_of_faces(), 0);
     for (const Face f : source.mesh.faces())
-        source.extras.face_colours.push_back(centroid(source.mesh, f).z() > 0.4 ? Colour{255, 255, 255, 255} : Colour{0, 0, 0, 255});
+        source.extras.face_colours.push_back(centroid(source.mesh, f).z() > 0.4 ? Colour{255, 255, 255, 255}
+                                                                                : Colour{0, 0, 0, 255});
     const BakedMesh result = baked(source.mesh, source, 0.05);
     const TextureSampler sampler(result.extras.appearance, "box");
     for (const Face f : source.mesh.faces()) {
@@ -200,7 +201,8 @@ TEST(Bake, ThinWallsShowTheirOwnSide) {
     MeshFile source;
     source.mesh = build_mesh(soup);
     for (const Face f : source.mesh.faces())
-        source.extras.face_colours.push_back(area_vector(source.mesh, f).z() > 0 ? Colour{255, 0, 0, 255} : Colour{0, 0, 255, 255});
+        source.extras.face_colours.push_back(area_vector(source.mesh, f).z() > 0 ? Colour{255, 0, 0, 255}
+                                                                                 : Colour{0, 0, 255, 255});
     TriangleSoup coarse = box(5);
     for (auto& p : coarse.points) p[2] *= 0.011;
     const Mesh target = build_mesh(coarse);
@@ -219,8 +221,8 @@ TEST(Bake, ThinWallsShowTheirOwnSide) {
 
 TEST(Bake, IntoTextureCoordinatesThatAMeshHas) {
     const MeshFile source = textured_box(6, 64, waves), target = textured_box(4, 48, [](const Point&) {
-        return std::array<double, 3>{0, 0, 0};
-    });
+                                                            return std::array<double, 3>{0, 0, 0};
+                                                        });
     const TextureLayout layout = layout_of(target, "box");
     const BakeResult result = bake(target.mesh, layout, source, {}, "box");
     MeshExtras extras;

@@ -57,8 +57,7 @@ inline MeshFile textured_box(int n, int tile, const ColourFunction& colour, doub
             const auto& p = soup.points[v];
             const double column = side * (tile + 2 * margin) + margin + (p[(axis + 1) % 3] - low[(axis + 1) % 3]) * tile;
             const double row = margin + (p[(axis + 2) % 3] - low[(axis + 2) % 3]) * tile;
-            file.extras.corner_texture.push_back(
-                {static_cast<float>(column / width), static_cast<float>(1 - row / height)});
+            file.extras.corner_texture.push_back({static_cast<float>(column / width), static_cast<float>(1 - row / height)});
         }
     }
     file.extras.face_materials.assign(plain.number_of_faces(), 0);

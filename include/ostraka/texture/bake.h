@@ -25,8 +25,8 @@ struct BakeOptions {
     /// Rays per row and column of a texel; 0: as many as there are texels of the source along a texel, 1 to 4.
     int samples = 0;
     enum class Missing { fill, grey } missing = Missing::fill;  ///< what texels without source show: their neighbourhood, grey
-    int gutter = 4;             ///< width in texels around charts that shows the nearest texel of a chart
-    int occlusion_rays = 64;    ///< number of rays per sample
+    int gutter = 4;                    ///< width in texels around charts that shows the nearest texel of a chart
+    int occlusion_rays = 64;           ///< number of rays per sample
     double occlusion_distance = 0.25;  ///< length of these rays, as a fraction of the source's box diagonal
     double curvature_scale = 0;        ///< scale of CurvatureOptions
     /// Value shown by white (and its negative by black) for curvature and relief; 0: the absolute value that 99 % of the samples
@@ -38,10 +38,10 @@ struct BakeOptions {
 
 /// How many samples found the source, and how far away it was.
 struct BakeCounts {
-    std::size_t by_ray = 0;      ///< found along the normal of the target
-    std::size_t by_nearest = 0;  ///< found as the nearest point of the source
-    std::size_t without = 0;     ///< not found
-    double mean_distance = 0;    ///< mean distance of the source where it was found, in the mesh's unit
+    std::size_t by_ray = 0;       ///< found along the normal of the target
+    std::size_t by_nearest = 0;   ///< found as the nearest point of the source
+    std::size_t without = 0;      ///< not found
+    double mean_distance = 0;     ///< mean distance of the source where it was found, in the mesh's unit
     double largest_distance = 0;  ///< largest distance of the source where it was found
 
     /// Number of samples.
@@ -77,15 +77,15 @@ struct BakedVertices {
     double low = 0, high = 1;     ///< values shown by black and by white; not for colours
 };
 
-/// Bakes a colour for each vertex: the mean over the vertex's Voronoi share of each of its faces, sampled as densely as the texels
-/// of the source (at most 1024 samples per face). Otherwise as `bake`.
+/// Bakes a colour for each vertex: the mean over the vertex's Voronoi share of each of its faces, sampled as densely as the
+/// texels of the source (at most 1024 samples per face). Otherwise as `bake`.
 BakedVertices bake_vertices(const Mesh& target, const BakeSource& source, const BakeOptions& options, const std::string& where);
 
 /// How baked images are stored.
 struct BakedImageOptions {
     ImageFormat format = ImageFormat::png;
-    int quality = 92;     ///< of JPEG and WebP, 1 to 100
-    std::string name;     ///< name of the images without extension
+    int quality = 92;  ///< of JPEG and WebP, 1 to 100
+    std::string name;  ///< name of the images without extension
 };
 
 /// Makes images the texture of a mesh: texture coordinates, one material per image and the encoded images replace those of

@@ -15,8 +15,7 @@ struct MeshBake final : Operation {
         p.output("output", Kind::mesh, output.with_ascii_option(),
                  "target with its new texture (.obj, .ply, .glb) or vertex colours (.ply, .obj, .off, .glb)");
         p.options("to", to, "what receives the colours: an image, or the vertices", Choices{"image", "vertices"});
-        p.options("layout", layout, "texture coordinates of the image: a new atlas, or the target's own",
-                  Choices{"new", "own"});
+        p.options("layout", layout, "texture coordinates of the image: a new atlas, or the target's own", Choices{"new", "own"});
         baking.list_texel(p.options);
         baking.bake.list_options(p.options);
         p.options.group("Image");

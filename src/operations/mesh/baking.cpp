@@ -47,8 +47,9 @@ void Baking::to_image(const Mesh& target, MeshExtras& extras, const MeshFile& so
         options.texel = texel > 0 ? texel : texel_size(source);
         made = make_atlas(target, options);
         if (made.texel > options.texel)
-            report.note(fmt::format("the surface does not fit into {} images of {} texels: the texel size is {:.4g} instead of {:.4g}",
-                                    max_atlas_images, options.max_size, made.texel, options.texel));
+            report.note(
+                fmt::format("the surface does not fit into {} images of {} texels: the texel size is {:.4g} instead of {:.4g}",
+                            max_atlas_images, options.max_size, made.texel, options.texel));
         layout = &made.layout;
         report("charts", made.charts)("used", made.used)("largest_stretch", made.largest_stretch);
     }

@@ -22,8 +22,8 @@ struct Baking {
     /// Declares all values of the report that `to_image` and `to_vertices` fill.
     static void declare_report(ReportLayout& layout);
 
-    /// Bakes images of the target: into its own texture coordinates if `layout` is given, else into a new atlas. `source_file`: for
-    /// messages; `output_file`: the images get its name.
+    /// Bakes images of the target: into its own texture coordinates if `layout` is given, else into a new atlas. `source_file`:
+    /// for messages; `output_file`: the images get its name.
     void to_image(const Mesh& target, MeshExtras& extras, const MeshFile& source, const std::string& source_file,
                   const std::string& output_file, const TextureLayout* layout, Report& report) const;
     /// Bakes colours of the target's vertices, which replace its texture and its other colours.

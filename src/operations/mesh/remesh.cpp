@@ -16,10 +16,11 @@ struct MeshRemesh final : MeshResize {
         describe_meshes(p);
         options.list_options(p.options);
         p.options.find("vertices")->required();
-        p.options("texture", texture,
-                  "colours of the new mesh, baked from the input if the input has an image or colours: a new image, colours of the "
-                  "vertices, or none",
-                  Choices{"image", "vertices", "none"});
+        p.options(
+            "texture", texture,
+            "colours of the new mesh, baked from the input if the input has an image or colours: a new image, colours of the "
+            "vertices, or none",
+            Choices{"image", "vertices", "none"});
         baking.list_texel(p.options);
         Baking::declare_report(p.report);
         p.report.values(boolean("reached"), number("target_edge_length", "", "length"), integer("vertices_before_adjustment"),
