@@ -5,6 +5,7 @@
 #include <webp/decode.h>
 #include <webp/encode.h>
 
+#include <cmath>
 #include <memory>
 
 namespace ostraka::images {
@@ -50,6 +51,10 @@ Pixels decode_webp(std::string_view bytes, const Header& header, const Place& pl
     // Lossless images are decoded as a whole (4 bytes a pixel); of lossy ones the alpha channel.
     constexpr int lossy = 1;
     const double decoder_bytes = config.input.format == lossy ? 1 : 4;
+    // The modes of each macroblock of 16 x 16 pixels take more than a bit (RFC 6386, section 11: their probabilities are fixed).
+    const double macroblocks = std::ceil(header.width / 16.0) * std::ceil(header.height / 16.0);
+    if (config.input.format == lossy && macroblocks > 8 * static_cast<double>(bytes.size()))
+        refuse_damaged(place, fmt::format("the file is too small for {} x {} pixels", header.width, header.height));
     require_proportion(header, bytes.size(), decoder_bytes * header.width * header.height, place);
     Pixels pixels = blank_pixels(header.width, header.height);
     config.output.colorspace = MODE_RGBA;

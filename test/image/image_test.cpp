@@ -122,6 +122,10 @@ TEST(Image, LargeImagesAreRefusedBeforeTheyAreDecoded) {
     EXPECT_TRUE(contains(refusal(jpeg_with_size(jpeg, 16000, 16000), true), "too little data"));
     const std::string with_rest = png_with_size(png, 16000, 16000) + std::string(1000000, '\0');
     EXPECT_TRUE(contains(refusal(with_rest, true), "need 1024 MB of memory; a file of 2 MB may use 285 MB"));
+    std::string webp = encode(test::gradient(8, 8), ImageFormat::webp, {}).bytes;
+    const std::size_t key_frame = webp.find("\x9d\x01\x2a");  // width and height follow, 14 bits each, the lower byte first
+    webp.replace(key_frame + 3, 4, "\x80\x3e\x80\x3e");
+    EXPECT_TRUE(contains(refusal(webp, true), "too small for 16000 x 16000"));
     test::GifSample gif;
     gif.screen_width = gif.screen_height = 16000;
     gif.indices.assign(64, 3);
