@@ -138,7 +138,7 @@ struct PageEntry {
 
 /// Largest side in pixels, and number of bytes of all images of an object on a page; larger images are reduced.
 inline constexpr int page_image_side = 4096;
-inline constexpr std::size_t page_image_bytes = 2'400'000;
+inline constexpr std::size_t page_image_bytes = 2'000'000;
 
 class Page {
 public:
