@@ -211,8 +211,10 @@ MeshMotion MotionSteps::motion(const TriangleSoup& soup, const std::string& obje
                    "give annotations in this unit; --inverse moves in the other direction");
     if (to_unit_) add_unit(result, object_name, set);
     if (!axes_.empty()) result.motion = Motion{matrix_of_axes(axes_)}.after(result.motion);
-    add_turn(result, soup);
-    if (centre_) add_centre(result, soup, set);
+    in_file(object_name, [&] {
+        add_turn(result, soup);
+        if (centre_) add_centre(result, soup, set);
+    });
     if (!translate_.empty()) result.motion.translation += three_numbers(translate_, "--translate");
     return result;
 }
