@@ -1,10 +1,10 @@
 #include "io/formats.h"
-#include "ostraka/io/glb_materials.h"
 #include "io/text_writer.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/io/glb.h"
+#include "ostraka/io/glb_materials.h"
 
 #include <fmt/core.h>
 

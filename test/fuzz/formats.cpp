@@ -1,8 +1,8 @@
 // Meshes, clouds and exchange formats as subjects.
 #include "subjects.h"
 
-#include "ostraka/image/image.h"
 #include "../point_cloud/e57_writer.h"
+#include "ostraka/image/image.h"
 
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"

@@ -83,8 +83,4 @@ bool keeps_texture(const Slot& output) {
     return kind.empty() || kind == ".ply" || kind == ".obj" || kind == ".glb";
 }
 
-bool has_colours(const MeshExtras& extras) {
-    return !extras.appearance.empty() || !extras.vertex_colours.empty() || !extras.face_colours.empty();
-}
-
 }  // namespace ostraka

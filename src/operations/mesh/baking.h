@@ -33,7 +33,5 @@ struct Baking {
 
 /// True if a file of this name keeps texture coordinates and images; objects in memory keep all.
 bool keeps_texture(const Slot& output);
-/// True if the mesh has an image, materials, or colours of vertices or faces.
-bool has_colours(const MeshExtras& extras);
 
 }  // namespace ostraka
