@@ -3,6 +3,7 @@
 
 #include "operations/operations.h"
 
+#include "ostraka/measure/surface_colour.h"
 #include "ostraka/texture/bake.h"
 
 namespace ostraka {
