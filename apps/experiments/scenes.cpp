@@ -1,7 +1,9 @@
 #include "scenes.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/measure.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/remesh/simplify.h"
@@ -127,6 +129,12 @@ const Annotation& tagged(const AnnotationSet& set, const std::string& tag) {
     fail_input(tag, "no annotation has this tag", "see the recipe of the experiment");
 }
 
+Subject AnnotatedOptions::read() const {
+    Mesh shape = read_mesh(mesh).mesh;
+    AnnotationSet set = read_annotations(annotations, shape);
+    return {{std::move(shape), std::move(set)}};
+}
+
 Annotation landmark(int id, const std::string& tag, Index vertex) {
     Annotation point;
     point.id = id;
@@ -134,6 +142,31 @@ Annotation landmark(int id, const std::string& tag, Index vertex) {
     point.type = AnnotationType::point;
     point.points = {vertex};
     return point;
+}
+
+Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight) {
+    Relationship r;
+    r.id = id;
+    r.type = type;
+    r.annotations = std::move(members);
+    r.is_constraint = true;
+    r.weight = weight;
+    r.constraint = parameters;
+    return r;
+}
+
+double add_height(const Mesh& mesh, Annotation& part, const std::string& name) {
+    Attribute height;
+    height.id = 50;
+    height.name = name;
+    height.type = AttributeType::measure;
+    height.measure.tool = "bounding";
+    height.measure.direction = {0, 0, 1};
+    height.measure.unit = "mm";
+    for (const Index pin : extremes(mesh, part, *height.measure.direction)) height.measure.points.push_back(pin);
+    height.measure.value = evaluate(mesh, part, height.measure);
+    part.attributes.push_back(height);
+    return *height.measure.value;
 }
 
 Vector3d surface_centre(const Mesh& mesh) {
@@ -147,21 +180,18 @@ Vector3d surface_centre(const Mesh& mesh) {
     return sum / area;
 }
 
-Motion random_motion(Random& random, double far) {
-    Motion motion;
-    Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
-    q.normalize();
-    motion.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
-    motion.translation = far * normal_vector(random);
-    return motion;
-}
-
 double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.rotation).angle(); }
 
 double off_of(const Mesh& mesh, const Motion& motion) {
     double squares = 0;
     for (const Vertex v : mesh.vertices()) squares += (motion(eigen(mesh.point(v))) - eigen(mesh.point(v))).squaredNorm();
     return std::sqrt(squares / static_cast<double>(mesh.number_of_vertices()));
+}
+
+std::vector<Point> mesh_points(const Eigen::Matrix3Xd& columns) {
+    std::vector<Point> points;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) points.push_back(point_of(columns.col(i)));
+    return points;
 }
 
 std::vector<double> displacements(const std::vector<Point>& from, const std::vector<Point>& to) {
