@@ -152,6 +152,12 @@ std::vector<const SurfaceSearch*> others_than(std::size_t k, const std::vector<S
     return others;
 }
 
+double diagonal_of(const std::vector<Fragment>& fragments) {
+    CGAL::Bbox_3 bounds;
+    for (const Fragment& fragment : fragments) bounds += bounding_box(fragment.mesh);
+    return Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
+}
+
 FragmentLayout read_layout(const std::string& folder, FacetChoice facets) {
     std::vector<Path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -167,14 +173,11 @@ FragmentLayout read_layout(const std::string& folder, FacetChoice facets) {
     FragmentLayout layout;
     layout.name = Path(folder).filename().string();
     layout.copied = layout.name.starts_with("bb_");
-    CGAL::Bbox_3 bounds;
     for (const Path& file : files) {
         layout.fragments.push_back(read_fragment(file, reading).fragment);
-        bounds += bounding_box(layout.fragments.back().mesh);
         layout.edge = std::max(layout.edge, mean_edge_length(layout.fragments.back().mesh));
     }
-    layout.diagonal =
-        Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
+    layout.diagonal = diagonal_of(layout.fragments);
     return layout;
 }
 

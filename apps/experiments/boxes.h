@@ -45,6 +45,8 @@ void for_each_box(const BoxOptions& options, const std::function<FacetChoice(std
 /// Moves a fragment by a uniformly random rotation and a shift of about `far`; returns the motion.
 Motion move_at_random(Fragment& fragment, Random& random, double far);
 std::vector<const Fragment*> pointers_to(const std::vector<Fragment>& fragments);
+/// Length of the diagonal of the bounding box of all fragments together.
+double diagonal_of(const std::vector<Fragment>& fragments);
 
 /// Fragments of a folder in assembled layout, in the order of their names.
 struct FragmentLayout {

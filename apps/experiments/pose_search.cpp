@@ -1,6 +1,7 @@
 // How often pose search finds the position of a broken piece, and how often its verdict is correct.
 #include "harness.h"
 #include "scenes.h"
+#include "shatter.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/fracture/fragment.h"

@@ -201,11 +201,7 @@ JudgedJoints judge_joints(const std::vector<FractureJoint>& joints, const std::v
 void sherd_rotations(const ScannedOptions& options) {
     std::vector<Fragment> given = scanned_sherds(options.data);
     if (given.empty()) return;
-    CGAL::Bbox_3 bounds;
-    for (const Fragment& sherd : given)
-        for (const Point& p : sherd.mesh.points()) bounds += p.bbox();
-    const double diagonal =
-        Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
+    const double diagonal = diagonal_of(given);
     const RevolutionTemplate turned = template_of_revolution(pointers_to(given));
     const Vector3d axis = eigen(turned.axis.direction), on_axis = eigen(turned.axis.point);
     for (Fragment& sherd : given) sherd.facets = find_facets(sherd.mesh).of_face;

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/remesh/refine.h"
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <queue>
 
 namespace ostraka::experiments {
 
@@ -64,22 +64,7 @@ std::pair<std::string, std::string> split_pair(const std::string& pair) {
 }
 
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share) {
-    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
-    distance[seed] = 0;
-    queue.emplace(0.0, seed);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[v]) continue;
-        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) {
-            const Vertex w = mesh.target(h);
-            const double next = d + std::sqrt(CGAL::squared_distance(mesh.point(Vertex(v)), mesh.point(w)));
-            if (next >= distance[w]) continue;
-            distance[w] = next;
-            queue.emplace(next, w);
-        }
-    }
+    const std::vector<double> distance = edge_distances(mesh, {{seed, 0.0}});
     std::vector<std::pair<double, Index>> order;
     for (const Face f : mesh.faces()) {
         double sum = 0;
@@ -167,17 +152,6 @@ double add_height(const Mesh& mesh, Annotation& part, const std::string& name) {
     height.measure.value = evaluate(mesh, part, height.measure);
     part.attributes.push_back(height);
     return *height.measure.value;
-}
-
-Vector3d surface_centre(const Mesh& mesh) {
-    Vector3d sum = Vector3d::Zero();
-    double area = 0;
-    for (const Face f : mesh.faces()) {
-        const double weight = face_area(mesh, f);
-        sum += weight * eigen(centroid(mesh, f));
-        area += weight;
-    }
-    return sum / area;
 }
 
 double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.rotation).angle(); }

@@ -78,8 +78,6 @@ Annotation landmark(int id, const std::string& tag, Index vertex);
 Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight);
 /// Adds a measure of the part's height, along z, in mm; returns its value.
 double add_height(const Mesh& mesh, Annotation& part, const std::string& name);
-/// Centre of gravity of the surface.
-Eigen::Vector3d surface_centre(const Mesh& mesh);
 /// Calls take(barycentric weights) for the centroids of the n^2 equal triangles that divide a triangle.
 template <class Take>
 void for_each_part(int n, const Take& take) {

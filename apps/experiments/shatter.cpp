@@ -135,17 +135,6 @@ Mesh in_order(const Mesh& mesh) {
     return build_mesh(sorted);
 }
 
-Vector3d middle_of(const Mesh& mesh) {
-    Vector3d sum = Vector3d::Zero();
-    double area = 0;
-    for (const Face f : mesh.faces()) {
-        const double a = face_area(mesh, f);
-        sum += a * eigen(centroid(mesh, f));
-        area += a;
-    }
-    return sum / area;
-}
-
 /// Intersection of two bodies; false if it cannot be computed: a rough sheet, or the result of earlier cuts, may
 /// self-intersect.
 bool intersected(Mesh body, Mesh half, Mesh& result) {
@@ -236,6 +225,17 @@ Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
 
 }  // namespace
 
+Vector3d surface_centre(const Mesh& mesh) {
+    Vector3d sum = Vector3d::Zero();
+    double area = 0;
+    for (const Face f : mesh.faces()) {
+        const double a = face_area(mesh, f);
+        sum += a * eigen(centroid(mesh, f));
+        area += a;
+    }
+    return sum / area;
+}
+
 Mesh make_pot(const PotOptions& options) {
     check_options(options, "pot");
     if (options.wall > 0.5 * options.radius) fail_usage("the wall is thicker than half of the radius", "make it thinner");
@@ -305,7 +305,7 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
                              [](const Mesh& x, const Mesh& y) { return surface_area(x) < surface_area(y); }) -
             pieces.begin());
         const Mesh piece = pieces[largest];
-        const Vector3d middle = middle_of(piece);
+        const Vector3d middle = surface_centre(piece);
         Vector3d across(random.normal(), random.normal(), random.normal());
         double extent = 0;
         for (const Point& p : piece.points()) extent = std::max(extent, (eigen(p) - middle).norm());

@@ -7,13 +7,13 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/mesh/flood.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/synthetic/synthetic_object.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <map>
 
@@ -351,22 +351,19 @@ Painted paint(const Mesh& mesh, const AnnotationSet& set) {
             if (painted.labels[f] == none) painted.labels[f] = region.id;
             else painted.twice += face_area(mesh, Face(f)) / area;
         }
-    std::deque<Face> queue;
+    std::vector<Face> covered;
+    std::vector<bool> labelled(mesh.number_of_faces(), false);
     for (const Face f : mesh.faces()) {
         if (painted.labels[f] == none) painted.bare += face_area(mesh, f) / area;
-        else queue.push_back(f);
+        else covered.push_back(f), labelled[f] = true;
     }
-    while (!queue.empty()) {
-        const Face f = queue.front();
-        queue.pop_front();
-        for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh)) {
-            if (mesh.is_border(mesh.opposite(h))) continue;
-            const Face g = mesh.face(mesh.opposite(h));
-            if (painted.labels[g] != none) continue;
+    flood(std::move(covered), labelled, [&](Face f, auto&& reach) {
+        for (const Face g : mesh.faces_around_face(mesh.halfedge(f))) {
+            if (g == Mesh::null_face() || labelled[g]) continue;
             painted.labels[g] = painted.labels[f];
-            queue.push_back(g);
+            reach(g);
         }
-    }
+    });
     return painted;
 }
 
