@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 
 namespace ostraka::experiments {
 
@@ -17,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-Mesh parse_int(const std::string& source) {
+Mesh whole_of(const std::string& source) {
     const std::size_t colon = source.find(':');
     const std::string kind = source.substr(0, colon), rest = colon == std::string::npos ? "" : source.substr(colon + 1);
     if (kind == "pot") {
@@ -67,7 +66,7 @@ Box scanned_box(const std::string& folder, FacetChoice facets) {
 Box broken_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
     Box box;
     box.name = source;
-    const Mesh whole = parse_int(source);
+    const Mesh whole = whole_of(source);
     ShatterOptions breaking;
     breaking.pieces = pieces;
     breaking.seed = seed;
@@ -79,15 +78,15 @@ Box broken_box(const std::string& source, int pieces, std::uint64_t seed, FacetC
     // Mating faces have separate vertices and edges, and in one box of four the scans are simplified. With seeds 300 to 399
     // the pieces stay as cut, like published simulated fractures.
     const bool as_cut = seed / 100 == 3;
-    const double own_edge = 0.01 * std::pow(2, random.uniform()) * piece;
+    const double piece_edge = 0.01 * std::pow(2, random.uniform()) * piece;
     const std::uint64_t few = seed % 4 == 3 && !as_cut ? 500 + random.below(1000) : 0;
     if (as_cut) breaking.noise = breaking.erosion = 0;
-    else breaking.edge = own_edge;
+    else breaking.edge = piece_edge;
     box.level = fmt::format(", noise {:.1f} %, wear {:.2f} %", 100 * breaking.noise / piece, 100 * breaking.erosion / piece);
     if (as_cut) box.level += ", as cut";
     if (few > 0) box.level += fmt::format(", {} vertices", few);
     box.diagonal = box_diagonal(whole);
-    box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise + (few > 0 ? 0.8 : 0.3) * own_edge) * box.diagonal;
+    box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise + (few > 0 ? 0.8 : 0.3) * piece_edge) * box.diagonal;
     for (Sherd& sherd : shatter(whole, breaking)) {
         if (few > 0) sherd = ostraka::simplified(sherd, few);
         Fragment& fragment = box.fragments.emplace_back();
@@ -130,11 +129,33 @@ void find_contacts(Box& box) {
 
 }  // namespace
 
+Motion move_at_random(Fragment& fragment, Random& random, double far) {
+    Motion motion;
+    Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
+    q.normalize();
+    motion.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+    motion.translation = far * normal_vector(random);
+    fragment.mesh = moved(fragment.mesh, motion);
+    return motion;
+}
+
+std::vector<const Fragment*> pointers_to(const std::vector<Fragment>& fragments) {
+    std::vector<const Fragment*> pointers;
+    for (const Fragment& fragment : fragments) pointers.push_back(&fragment);
+    return pointers;
+}
+
 std::vector<const SurfaceSearch*> others_than(std::size_t k, const std::vector<SurfaceSearch>& searches) {
     std::vector<const SurfaceSearch*> others;
     for (std::size_t q = 0; q < searches.size(); ++q)
         if (q != k) others.push_back(&searches[q]);
     return others;
+}
+
+double diagonal_of(const std::vector<Fragment>& fragments) {
+    CGAL::Bbox_3 bounds;
+    for (const Fragment& fragment : fragments) bounds += bounding_box(fragment.mesh);
+    return Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
 }
 
 FragmentLayout read_layout(const std::string& folder, FacetChoice facets) {
@@ -152,21 +173,12 @@ FragmentLayout read_layout(const std::string& folder, FacetChoice facets) {
     FragmentLayout layout;
     layout.name = Path(folder).filename().string();
     layout.copied = layout.name.starts_with("bb_");
-    CGAL::Bbox_3 bounds;
     for (const Path& file : files) {
         layout.fragments.push_back(read_fragment(file, reading).fragment);
-        bounds += bounding_box(layout.fragments.back().mesh);
         layout.edge = std::max(layout.edge, mean_edge_length(layout.fragments.back().mesh));
     }
-    layout.diagonal =
-        Vector3d(bounds.xmax() - bounds.xmin(), bounds.ymax() - bounds.ymin(), bounds.zmax() - bounds.zmin()).norm();
+    layout.diagonal = diagonal_of(layout.fragments);
     return layout;
-}
-
-Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
-    Box box = std::filesystem::is_directory(source) ? scanned_box(source, facets) : broken_box(source, pieces, seed, facets);
-    find_contacts(box);
-    return box;
 }
 
 void for_each_box(const BoxOptions& options, const std::function<FacetChoice(std::uint64_t)>& facets,
@@ -176,9 +188,11 @@ void for_each_box(const BoxOptions& options, const std::function<FacetChoice(std
         ++seed;
         std::optional<Box> box;
         try {
-            box = read_box(source, options.pieces, seed, facets(seed));
+            box = std::filesystem::is_directory(source) ? scanned_box(source, facets(seed))
+                                                        : broken_box(source, options.pieces, seed, facets(seed));
+            find_contacts(*box);
         } catch (const Error& error) {
-            std::cerr << source << " is left out: " << error.what() << '\n';
+            fmt::print(stderr, "{} is left out: {}\n", source, error.what());
             continue;
         }
         take(std::move(*box), seed);

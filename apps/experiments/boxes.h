@@ -21,11 +21,6 @@ struct Box {
 
 enum class FacetChoice { known, found };
 
-/// `source`: "pot:SHAPE", "plate:SHAPE", "stone:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear
-/// derived from `seed` (three levels each, wear up to 3 % of a piece's size); or a folder of fragments in assembled layout.
-/// Throws Error if the object cannot be broken.
-Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets);
-
 struct BoxOptions {
     std::vector<std::string> boxes;
     std::string output;
@@ -41,10 +36,17 @@ struct BoxOptions {
     }
 };
 
-/// Calls take(box) for each source with the seeds after `options.seed`; facets(seed) chooses those of a box. Sources that
-/// cannot be broken are reported and left out.
+/// Calls take(box) for each source with the seeds after `options.seed`; facets(seed) chooses those of a box. Noise and wear
+/// derive from the seed (three levels each, wear up to 3 % of a piece's size). Sources that cannot be broken are reported and
+/// left out.
 void for_each_box(const BoxOptions& options, const std::function<FacetChoice(std::uint64_t)>& facets,
                   const std::function<void(Box&&, std::uint64_t)>& take);
+
+/// Moves a fragment by a uniformly random rotation and a shift of about `far`; returns the motion.
+Motion move_at_random(Fragment& fragment, Random& random, double far);
+std::vector<const Fragment*> pointers_to(const std::vector<Fragment>& fragments);
+/// Length of the diagonal of the bounding box of all fragments together.
+double diagonal_of(const std::vector<Fragment>& fragments);
 
 /// Fragments of a folder in assembled layout, in the order of their names.
 struct FragmentLayout {

@@ -74,17 +74,17 @@ void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& 
         table.row("{} | {} | {}", name, guided, fit.problem);
         return;
     }
-    std::vector<double> off, rigid;
     const double diagonal = box_diagonal(to.mesh);
     const Landmarks start = landmarks_of_mesh(from), goal = landmarks_of_mesh(to.mesh);
     ProcrustesOptions scaled;
     scaled.scaling = true;
-    const Landmarks aligned = procrustes(start, goal, scaled).apply(start);
-    for (const Vertex v : to.mesh.vertices()) {
-        off.push_back((eigen(fit.points[v]) - eigen(to.mesh.point(v))).norm() / diagonal);
-        rigid.push_back((aligned.row(static_cast<Eigen::Index>(v.idx())) - goal.row(static_cast<Eigen::Index>(v.idx()))).norm() /
-                        diagonal);
-    }
+    const auto off_goal = [&](const Landmarks& shape) {
+        std::vector<double> off;
+        for (Eigen::Index v = 0; v < goal.rows(); ++v) off.push_back((shape.row(v) - goal.row(v)).norm() / diagonal);
+        return off;
+    };
+    const std::vector<double> off = off_goal(landmarks_of(fit.points)),
+                              rigid = off_goal(procrustes(start, goal, scaled).apply(start));
     const auto row = [](std::vector<double> list) {
         std::sort(list.begin(), list.end());
         return fmt::format("{:.3f} | {:.3f} | {:.3f}", 100 * mean_of(list), 100 * list[list.size() / 2],

@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "scenes.h"
 
+#include "ostraka/annotation/label_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/submesh.h"
@@ -150,14 +151,6 @@ Members make_members(const std::string& name, const CounterpartOptions& options,
     throw Error(ErrorKind::failure, name, "no sound member was drawn", "take a smaller --strength");
 }
 
-/// Face labels by the nearest of the given centres.
-std::vector<int> cells(const Mesh& mesh, const std::vector<Point>& centres) {
-    const PointTree tree(centres);
-    std::vector<int> labels;
-    for (const Face face : mesh.faces()) labels.push_back(static_cast<int>(tree.nearest(centroid(mesh, face)).index));
-    return labels;
-}
-
 /// Reads meshes in correspondence: the template is the first, simplified; the other is the second.
 Members read_members(const std::string& pair, const CounterpartOptions& options) {
     const auto [first_file, second_file] = split_pair(pair);
@@ -172,7 +165,9 @@ Members read_members(const std::string& pair, const CounterpartOptions& options)
                     {}};
     std::vector<Point> centres;
     for (const Index v : spread_out(first, all_vertices(first), 10)) centres.push_back(first.point(Vertex(v)));
-    const std::vector<int> labels = cells(first, centres);
+    const PointTree tree(centres);
+    std::vector<int> labels;  // cells around the centres
+    for (const Face f : first.faces()) labels.push_back(static_cast<int>(tree.nearest(centroid(first, f)).index));
     const SurfaceSearch on_first(first), on_second(second);
     for (const Vertex v : members.shape.vertices()) {
         const SurfaceHit hit = on_first.closest(members.shape.point(v));
@@ -192,60 +187,41 @@ struct Case {
     double annotated = 1;  ///< share of the annotations used
 };
 
-const std::vector<Case>& cases() {
-    static const std::vector<Case> list{
-        {"same mesh", true},
-        {"same mesh, 60 %", true, 0.6, 0.001},
-        {"whole", false},
-        {"whole, noise", false, 1, 0.003},
-        {"whole, holes", false, 1, 0.001, 0.02},
-        {"whole, 1.3 times", false, 1, 0.001, 0, 1.3},
-        {"60 %", false, 0.6, 0.001},
-        {"30 %", false, 0.3, 0.001},
-        {"whole, half annotated", false, 1, 0.001, 0, 1, 0.5},
-        {"60 %, half annotated", false, 0.6, 0.001, 0, 1, 0.5},
-        {"whole, bare", false, 1, 0.001, 0, 1, 0},
-        {"60 %, bare", false, 0.6, 0.001, 0, 1, 0},
-    };
-    return list;
-}
+const std::vector<Case> cases{{"same mesh", true},
+                              {"same mesh, 60 %", true, 0.6, 0.001},
+                              {"whole", false},
+                              {"whole, noise", false, 1, 0.003},
+                              {"whole, holes", false, 1, 0.001, 0.02},
+                              {"whole, 1.3 times", false, 1, 0.001, 0, 1.3},
+                              {"60 %", false, 0.6, 0.001},
+                              {"30 %", false, 0.3, 0.001},
+                              {"whole, half annotated", false, 1, 0.001, 0, 1, 0.5},
+                              {"60 %, half annotated", false, 0.6, 0.001, 0, 1, 0.5},
+                              {"whole, bare", false, 1, 0.001, 0, 1, 0},
+                              {"60 %, bare", false, 0.6, 0.001, 0, 1, 0}};
 
 /// Regions by label and landmarks, with only the first share of them.
-AnnotationSet annotate(const std::vector<int>& labels, const std::vector<Index>& landmarks, double share) {
+AnnotationSet annotate(const Mesh& mesh, const std::vector<int>& labels, const std::vector<Index>& landmarks, double share) {
     AnnotationSet set;
-    const int parts = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
     const auto skipped = [&](std::size_t i) { return share <= 0 || (share < 1 && i % 2 == 1); };
-    for (int part = 0; part < parts; ++part) {
-        if (skipped(static_cast<std::size_t>(part))) continue;
-        Annotation region;
-        region.id = part;
-        region.tag = "part " + std::to_string(part);
-        region.type = AnnotationType::region;
-        for (Index f = 0; f < labels.size(); ++f)
-            if (labels[f] == part) region.faces.push_back(f);
-        if (!region.faces.empty()) set.annotations.push_back(std::move(region));
-    }
-    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    AnnotationSet all = regions_from_labels(mesh, labels);
+    for (Annotation& region : all.annotations)
+        if (!skipped(static_cast<std::size_t>(region.id))) set.annotations.push_back(std::move(region));
+    for (std::size_t i = 0; i < landmarks.size(); ++i)
         if (landmarks[i] != no_index && !skipped(i))
             set.annotations.push_back(landmark(1000 + static_cast<int>(i), "landmark " + std::to_string(i), landmarks[i]));
-    }
     return set;
 }
 
 /// Vertices between parts.
 std::vector<Index> joints(const Mesh& mesh, const std::vector<int>& labels) {
-    std::vector<Index> found;
-    for (const Vertex v : mesh.vertices()) {
-        int label = -1;
-        bool more = false;
-        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
-            if (face == Mesh::null_face()) continue;
-            more = more || (label >= 0 && labels[face] != label);
-            label = labels[face];
-        }
-        if (more) found.push_back(v);
+    std::vector<bool> between(mesh.number_of_vertices(), false);
+    for (const Edge e : mesh.edges()) {
+        const Halfedge h = mesh.halfedge(e), g = mesh.opposite(h);
+        if (mesh.is_border(h) || mesh.is_border(g) || labels[mesh.face(h)] == labels[mesh.face(g)]) continue;
+        between[mesh.source(h)] = between[mesh.target(h)] = true;
     }
-    return found;
+    return flagged(between);
 }
 
 struct Scene {
@@ -255,26 +231,26 @@ struct Scene {
     std::vector<bool> seen;  ///< per template vertex
 };
 
-Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
+Scene make_scene(const Members& members, const Case& test, std::uint64_t seed) {
     FragmentOptions breaking;
-    breaking.share = what.share;
-    breaking.noise = what.noise;
+    breaking.share = test.share;
+    breaking.noise = test.noise;
     breaking.seed = seed;
     Random random(seed, 99);
     const Point at = members.other.point(Vertex(static_cast<Index>(random.below(members.other.number_of_vertices()))));
     const SyntheticFragment piece = generate_fragment(members.other, at, breaking);
     std::vector<bool> keep(piece.mesh.number_of_faces(), true);
-    for (int hole = 0; what.holes > 0 && hole < 5; ++hole) {
+    for (int hole = 0; test.holes > 0 && hole < 5; ++hole) {
         const auto middle = static_cast<Index>(random.below(piece.mesh.number_of_vertices()));
-        for (const Index f : disc(piece.mesh, Vertex(middle), what.holes)) keep[f] = false;
+        for (const Index f : disc(piece.mesh, Vertex(middle), test.holes)) keep[f] = false;
     }
     SubMesh left = keep_faces(piece.mesh, keep, true);
     Scene scene;
     scene.to_piece = piece.pose.inverse();
-    if (what.scale != 1) {
-        left.mesh = scaled_by(left.mesh, what.scale);
+    if (test.scale != 1) {
+        left.mesh = scaled_by(left.mesh, test.scale);
         Motion larger;
-        larger.scale = what.scale;
+        larger.scale = test.scale;
         scene.to_piece = larger.after(scene.to_piece);
     }
     std::vector<Index> marks = spread_out(members.shape, joints(members.shape, members.labels), 8);
@@ -283,15 +259,15 @@ Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
     const PointTree tree(ostraka::points_of(left.mesh));
     const double edge = mean_edge_length(left.mesh);
     const auto there = [&](Index v) {
-        return tree.nearest(point_of(scene.to_piece(eigen(members.truth[v]))), edge + 3 * what.noise * box_diagonal(left.mesh));
+        return tree.nearest(point_of(scene.to_piece(eigen(members.truth[v]))), edge + 3 * test.noise * box_diagonal(left.mesh));
     };
     std::vector<Index> their_marks;
     for (const Index v : marks) their_marks.push_back(there(v).index);
     std::vector<int> labels;
     for (const Index f : left.faces) labels.push_back(members.other_labels[piece.faces[f]]);
-    scene.set = annotate(members.labels, marks, what.annotated);
-    scene.fragment.name = what.name;
-    scene.fragment.annotations = annotate(labels, their_marks, what.annotated);
+    scene.set = annotate(members.shape, members.labels, marks, test.annotated);
+    scene.fragment.name = test.name;
+    scene.fragment.annotations = annotate(left.mesh, labels, their_marks, test.annotated);
     scene.fragment.mesh = std::move(left.mesh);
     for (const Vertex v : members.shape.vertices()) scene.seen.push_back(there(v).index != no_index);
     return scene;
@@ -320,25 +296,17 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
     if (!row.placed) return row;
     row.seconds = watch.seconds().processor;
     const Motion frame = result.placement.fragments[0].pose.after(scene.to_piece);
-    double seen = 0;
     std::vector<Vector3d> truth;
-    for (const Point& p : members.truth) truth.push_back(frame(eigen(p)));
     Eigen::AlignedBox3d box;
-    for (const Vector3d& p : truth) box.extend(p);
+    for (const Point& p : members.truth) box.extend(truth.emplace_back(frame(eigen(p))));
     const double diagonal = box.diagonal().norm();
-    for (std::size_t v = 0; v < truth.size(); ++v) {
-        const double off = (eigen(result.points[v]) - truth[v]).norm() / diagonal;
-        row.rigid +=
-            (result.placement.scale * eigen(members.shape.point(Vertex(static_cast<Index>(v)))) - truth[v]).norm() / diagonal;
-        row.all += off;
-        (scene.seen[v] ? row.seen : row.missing) += off;
-        seen += scene.seen[v] ? 1 : 0;
+    std::vector<double> all, seen, missing, rigid;
+    for (const Vertex v : members.shape.vertices()) {
+        all.push_back((eigen(result.points[v]) - truth[v]).norm() / diagonal);
+        (scene.seen[v] ? seen : missing).push_back(all.back());
+        rigid.push_back((result.placement.scale * eigen(members.shape.point(v)) - truth[v]).norm() / diagonal);
     }
-    const auto count = static_cast<double>(truth.size());
-    row.all /= count;
-    row.rigid /= count;
-    row.seen /= std::max(1.0, seen);
-    row.missing /= std::max(1.0, count - seen);
+    row.all = mean_of(all), row.seen = mean_of(seen), row.missing = mean_of(missing), row.rigid = mean_of(rigid);
     const Mesh fitted = with_points(members.shape, result.points);
     row.folds = count_folds(fitted);
     row.crossings = self_intersections(to_soup(fitted)).pairs.size();
@@ -346,22 +314,22 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
 }
 
 /// Adds a row to the table, and one for each way to the file.
-void judge(const Members& members, const Case& what, const CounterpartOptions& options, Table& table, Rows& csv) {
-    const Scene scene = make_scene(members, what, options.seed);
-    std::string cells = members.name + " | " + what.name;
+void judge(const Members& members, const Case& test, const CounterpartOptions& options, Table& table, Rows& csv) {
+    const Scene scene = make_scene(members, test, options.seed);
+    std::string cells = members.name + " | " + test.name;
     for (const std::string& way : options.ways) {
         const Result row = run(members, scene, way);
         cells += row.placed ? fmt::format(" | {:.3f} ({:.3f}; {:.2f} s; {}, {})", 100 * row.all, 100 * row.seen, row.seconds,
                                           row.folds, row.crossings)
                             : " | not placed";
-        csv(members.name, what.name, way, row.placed, row.all, row.seen, row.missing, row.rigid, row.folds, row.crossings,
+        csv(members.name, test.name, way, row.placed, row.all, row.seen, row.missing, row.rigid, row.folds, row.crossings,
             row.seconds);
     }
     table.add(cells);
 }
 
-bool wanted(const Case& what, std::size_t number, const std::vector<std::string>& list) {
-    const auto names = [&](const std::string& one) { return one == what.name || one == std::to_string(number); };
+bool wanted(const Case& test, std::size_t number, const std::vector<std::string>& list) {
+    const auto names = [&](const std::string& word) { return word == test.name || word == std::to_string(number); };
     return list.empty() || std::any_of(list.begin(), list.end(), names);
 }
 
@@ -376,12 +344,12 @@ void counterparts(const CounterpartOptions& options) {
     for (const std::string& name : names) {
         const bool pair = name.find('=') != std::string::npos;
         std::map<bool, Members> members;  // by whether they have the same mesh
-        for (std::size_t c = 0; c < cases().size(); ++c) {
-            const Case& what = cases()[c];
-            if (!wanted(what, c + 1, options.cases) || (pair && what.same_mesh)) continue;
-            if (!members.contains(what.same_mesh))
-                members.emplace(what.same_mesh, pair ? read_members(name, options) : make_members(name, options, what.same_mesh));
-            judge(members.at(what.same_mesh), what, options, table, csv);
+        for (std::size_t c = 0; c < cases.size(); ++c) {
+            const Case& test = cases[c];
+            if (!wanted(test, c + 1, options.cases) || (pair && test.same_mesh)) continue;
+            if (!members.contains(test.same_mesh))
+                members.emplace(test.same_mesh, pair ? read_members(name, options) : make_members(name, options, test.same_mesh));
+            judge(members.at(test.same_mesh), test, options, table, csv);
         }
     }
     csv.write(Path(options.output) / "counterparts.csv");

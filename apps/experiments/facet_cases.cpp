@@ -2,23 +2,130 @@
 
 #include "boxes.h"
 #include "scenes.h"
-#include "shatter.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/io/repair.h"
 #include "ostraka/point_cloud/point_cloud.h"
+#include "ostraka/remesh/remesh.h"
+#include "ostraka/synthetic/heads.h"
+#include "ostraka/synthetic/make_mesh.h"
+
+#include <CGAL/Polygon_mesh_processing/clip.h>
+#include <CGAL/boost/graph/helpers.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace ostraka::experiments {
 
 using Eigen::Vector3d;
 
 namespace {
+
+/// Rounds all edges, as by long use or by the filter of a scan.
+Mesh rounded(const Mesh& mesh, int steps) {
+    Mesh result = mesh;
+    std::vector<Point> next(mesh.number_of_vertices());
+    for (int step = 0; step < steps; ++step) {
+        for (const Vertex v : result.vertices()) {
+            Vector3d mean = Vector3d::Zero();
+            double count = 0;
+            for (const Halfedge h : result.halfedges_around_target(result.halfedge(v)))
+                mean += eigen(result.point(result.source(h))), ++count;
+            next[v] = point_of(0.5 * eigen(result.point(v)) + 0.5 * mean / count);
+        }
+        result = with_points(result, next);
+    }
+    return result;
+}
+
+Mesh stretched(const Mesh& mesh, const Vector3d& factors) {
+    return warped(mesh, [&](const Vector3d& p) { return p.cwiseProduct(factors); });
+}
+
+/// Varies the surface: carved or worn at large scale, grainy at small scale, or unchanged.
+Mesh skinned(const Mesh& mesh, Random& random, double most) {
+    Mesh result = mesh;
+    const double coarse = random.uniform(0.1, 1) * most, fine = 0.15 * random.uniform(0.1, 1) * most;
+    const double far = random.uniform(0.25, 0.7), near = random.uniform(0.04, 0.12);
+    if (random.uniform() < 0.4) result = with_relief(result, coarse, far, random.bits() >> 12);
+    if (random.uniform() < 0.4) result = with_relief(result, fine, near, random.bits() >> 12);
+    return result;
+}
+
+/// Adds a flat base, as on standing objects; remeshed, since the base has few faces.
+Mesh based(const Mesh& mesh, Random& random) {
+    namespace PMP = CGAL::Polygon_mesh_processing;
+    const Vector3d up = normal_vector(random).normalized();
+    double low = 1e300, high = -1e300;
+    for (const Point& p : mesh.points()) low = std::min(low, up.dot(eigen(p))), high = std::max(high, up.dot(eigen(p)));
+    const Vector3d at = (low + random.uniform(0.03, 0.3) * (high - low)) * up;
+    Mesh result = mesh;
+    PMP::clip(result, Kernel::Plane_3(point_of(at), vector_of(-up)), CGAL::parameters::clip_volume(true));
+    PMP::keep_largest_connected_components(result, 1);
+    result.collect_garbage();
+    RemeshOptions how;
+    how.vertices = mesh.number_of_vertices();
+    how.feature_angle = 50;
+    return remesh(result, how).mesh;
+}
+
+Mesh object_of_file(const std::string& file, std::uint64_t seed, bool bare) {
+    Random random(seed, 180);
+    RepairOptions mending;
+    mending.keep_largest = true;
+    mending.fill_holes_size = 1;
+    Mesh mesh = repair(triangulate(read_polygons(file)).soup, {}, mending).mesh;
+    if (!CGAL::is_closed(mesh)) fail_input(file, "is open", "leave it out");
+    mesh = simplified(std::move(mesh), static_cast<std::uint64_t>(std::lround(3000 * std::pow(8, random.uniform()))));
+    if (random.uniform() < 0.5)
+        mesh = stretched(mesh, {random.uniform(0.6, 1.2), random.uniform(0.6, 1.2), random.uniform(0.6, 1.2)});
+    if (random.uniform() < 0.3) mesh = rounded(mesh, 1 + static_cast<int>(random.below(10)));
+    if (random.uniform() < 0.3) mesh = based(mesh, random);
+    return bare ? mesh : skinned(mesh, random, 0.005);
+}
+
+/// `bare`: the surface is not altered.
+Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed, bool bare) {
+    if (kind == "mesh") return object_of_file(name, seed, bare);
+    Random random(seed, 177);
+    if (kind == "pot" || kind == "thin") {
+        PotOptions options;
+        options.shape = seed;
+        options.height = random.uniform(8, 25);
+        options.radius = random.uniform(4, 10);
+        options.wall = kind == "thin" ? random.uniform(0.1, 0.35) : random.uniform(0.3, 1.2);
+        options.edge = random.uniform(0.25, 0.45);
+        const Mesh pot = make_pot(options);
+        return bare ? pot : skinned(pot, random, 0.1 * options.wall / options.height);
+    }
+    MakeOptions options;
+    options.vertices = 4000 + random.below(16000);
+    options.seed = 1 + random.below(1000);
+    if (kind == "made") {
+        Mesh mesh = made_mesh(name, options.vertices, options.seed);
+        if (random.uniform() < 0.5) mesh = rounded(mesh, 1 + static_cast<int>(random.below(12)));
+        return bare ? mesh : skinned(mesh, random, 0.002);
+    }
+    if (kind != "stone") fail_usage("'" + kind + "' is no source of fragments", "write pot, thin, stone, made or mesh");
+    const std::array<const char*, 8> bodies{"box", "cylinder", "sphere", "capsule", "statuette", "box", "head", "head"};
+    const std::string body = bodies[random.below(bodies.size())];
+    ArchetypeOptions head;
+    head.long_hair = random.uniform() < 0.5;
+    head.seed = seed;
+    const Mesh mesh = body == "head" ? make_mesh(*head_object(head_archetype(head)), options).mesh
+                                     : made_mesh(body, options.vertices, options.seed);
+    const Vector3d factors(random.uniform(0.4, 1), random.uniform(0.5, 1.2), random.uniform(0.6, 1.5));
+    const int steps = static_cast<int>(random.uniform() < 0.6 ? 1 + random.below(25) : 0);
+    return skinned(rounded(stretched(mesh, factors), steps), random, 0.01);
+}
 
 /// Replaces the mesh by a reconstruction from a simulated scan: points of about even spacing with small errors.
 void as_cloud(FacetCase& sherd, Random& random) {
@@ -30,8 +137,7 @@ void as_cloud(FacetCase& sherd, Random& random) {
     double sum = 0;
     for (const Face f : sherd.mesh.faces()) areas.push_back(sum += face_area(sherd.mesh, f));
     // One point per cell, as in thinned scans.
-    std::vector<std::array<long, 3>> cells;
-    std::vector<std::pair<std::array<long, 3>, std::size_t>> order;
+    std::map<std::array<long, 3>, std::size_t> first;
     std::vector<Point> points;
     std::vector<Vector> normals;
     for (std::size_t k = 0; k < static_cast<std::size_t>(8 * wanted); ++k) {
@@ -41,31 +147,22 @@ void as_cloud(FacetCase& sherd, Random& random) {
         if (u + v > 1) u = 1 - u, v = 1 - v;
         const Vector normal = skin.normal(f.idx());
         const Point p = point_at(sherd.mesh, f.idx(), {1 - u - v, u, v}) + random.normal() * off * normal;
-        order.emplace_back(std::array{std::lround(p.x() / spacing), std::lround(p.y() / spacing), std::lround(p.z() / spacing)},
-                           points.size());
+        first.emplace(std::array{std::lround(p.x() / spacing), std::lround(p.y() / spacing), std::lround(p.z() / spacing)},
+                      points.size());
         points.push_back(p);
         const Vector3d tilted = eigen(normal) + 0.08 * normal_vector(random);
         normals.push_back(vector_of(tilted.normalized()));
     }
-    std::stable_sort(order.begin(), order.end());
-    for (std::size_t k = 0; k < order.size(); ++k)
-        if (k == 0 || order[k].first != order[k - 1].first) {
-            cloud.points.push_back(points[order[k].second]);
-            cloud.normals.push_back(normals[order[k].second]);
-        }
-    const Mesh surface = reconstruct_surface(cloud).mesh;
-    std::vector<bool> broken;
-    for (const Face f : surface.faces()) broken.push_back(sherd.broken[skin.closest(centroid(surface, f)).face]);
-    sherd.mesh = surface;
-    sherd.broken = std::move(broken);
+    for (const auto& [cell, k] : first) cloud.points.push_back(points[k]), cloud.normals.push_back(normals[k]);
+    Mesh surface = reconstruct_surface(cloud).mesh;
+    sherd.broken = broken_of_nearest(surface, sherd);
+    sherd.mesh = std::move(surface);
 }
 
 /// Simplifies the scan, like small scans in archives.
 void as_simplified(FacetCase& sherd, Random& random) {
-    const auto vertices = static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform())));
-    Sherd small = ostraka::simplified({std::move(sherd.mesh), std::move(sherd.broken)}, vertices);
-    sherd.mesh = std::move(small.mesh);
-    sherd.broken = std::move(small.broken);
+    static_cast<Sherd&>(sherd) =
+        ostraka::simplified(sherd, static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform()))));
 }
 
 /// Chooses the kind of fracture: rough, grainy, smooth and curved like flint or glass, or faceted like coarse simulations.
@@ -99,12 +196,8 @@ struct Source {
 };
 
 Source read_source(const std::string& source) {
-    std::vector<std::string> words;
-    for (std::size_t from = 0; from <= source.size();) {
-        const std::size_t to = std::min(source.find(':', from), source.size());
-        words.push_back(source.substr(from, to - from));
-        from = to + 1;
-    }
+    const std::vector<std::string_view> split = split_words(source, ":");
+    std::vector<std::string> words(split.begin(), split.end());
     Source result;
     result.whole = words.back() == "whole";
     if (result.whole) words.pop_back();
@@ -136,16 +229,15 @@ std::vector<FacetCase> made_cases(const std::string& source) {
     if (whole) breaking.pieces = 1;
     std::vector<FacetCase> cases;
     for (Sherd& sherd : shatter(object, breaking))
-        cases.push_back(
-            {source, whole ? "whole" : std::to_string(cases.size()), std::move(sherd.mesh), std::move(sherd.broken), false, {}});
-    for (FacetCase& one : cases) {
-        if (filtered > 0) one.mesh = rounded(one.mesh, filtered);
+        cases.push_back({std::move(sherd), source, whole ? "whole" : std::to_string(cases.size()), false, {}});
+    for (FacetCase& sherd : cases) {
+        if (filtered > 0) sherd.mesh = rounded(sherd.mesh, filtered);
         const double sampling = random.uniform();
-        if (sampling > 0.65) as_simplified(one, random);
+        if (sampling > 0.65) as_simplified(sherd, random);
         if (sampling < 0.25) {
-            one.name += " cloud";
+            sherd.name += " cloud";
             try {
-                as_cloud(one, random);
+                as_cloud(sherd, random);
             } catch (const Error&) {
                 // The points are too sparse for the piece: keep its mesh.
             }
@@ -160,8 +252,8 @@ std::vector<FacetCase> scanned_cases(const std::string& folder) {
     std::vector<FacetCase> cases;
     std::vector<SurfaceSearch> searches;
     for (Fragment& fragment : layout.fragments)
-        cases.push_back({layout.name, fragment.name, std::move(fragment.mesh), {}, true, {}});
-    for (const FacetCase& one : cases) searches.emplace_back(one.mesh);
+        cases.push_back({{std::move(fragment.mesh), {}}, layout.name, fragment.name, true, {}});
+    for (const FacetCase& fragment : cases) searches.emplace_back(fragment.mesh);
     // Simulated pieces coincide, scanned ones have gaps, and those of the scanned vessel large ones.
     const bool vessel = layout.name.find("vessel") != std::string::npos;
     const double diagonal = layout.diagonal;

@@ -1,7 +1,7 @@
 // Fragments with known fracture faces: objects broken by simulation, and scanned fragments in assembled layout.
 #pragma once
 
-#include "ostraka/mesh/mesh.h"
+#include "shatter.h"
 
 #include <cstdint>
 #include <string>
@@ -9,10 +9,8 @@
 
 namespace ostraka::experiments {
 
-struct FacetCase {
+struct FacetCase : Sherd {
     std::string object, name;
-    Mesh mesh;
-    std::vector<bool> broken;  ///< per face
     bool scanned = false;
     std::vector<bool> known;  ///< per face: whether `broken` is certain; empty: all
 };
@@ -30,10 +28,5 @@ struct FacetCase {
 std::vector<FacetCase> facet_cases(const std::string& source);
 /// A name shared by all sources of one object, however it is broken or scanned: they are left out together.
 std::string object_of_source(const std::string& source);
-
-/// `bare`: the surface is not altered.
-Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed, bool bare);
-/// Rounds all edges, as by long use or by the filter of a scan.
-Mesh rounded(const Mesh& mesh, int steps);
 
 }  // namespace ostraka::experiments

@@ -3,9 +3,7 @@
 #include "scenes.h"
 
 #include "ostraka/collection/statuette_annotations.h"
-#include "ostraka/figures/table.h"
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/reconstruct.h"
 #include "ostraka/reconstruction/template_cage.h"
 #include "ostraka/shape_classes/shape_class.h"
@@ -14,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <optional>
 
 namespace ostraka::experiments {
@@ -51,51 +48,33 @@ struct VerdictOptions {
 
 /// A statuette with landmarks all over, and the canon: constant ratios of the heights of parts.
 struct Canon {
-    Statuette statuette;
-    AnnotationSet set;
+    Subject statuette;
     RelationGraph graph;
 };
-
-double add_height(const Mesh& mesh, Annotation& part) {
-    Attribute height;
-    height.id = static_cast<int>(part.attributes.size());
-    height.name = "height";
-    height.type = AttributeType::measure;
-    height.measure.tool = "bounding";
-    height.measure.direction = {0, 0, 1};
-    height.measure.unit = "mm";
-    for (const Index pin : extremes(mesh, part, *height.measure.direction)) height.measure.points.push_back(pin);
-    height.measure.value = evaluate(mesh, part, height.measure);
-    part.attributes.push_back(height);
-    return *height.measure.value;
-}
 
 Canon make_canon(std::uint64_t vertices) {
     StatuetteParameters parameters;
     parameters.wall = 0;
     parameters.vertices = vertices;
-    Canon canon{generate_statuette(parameters), {}, {}};
-    canon.set = annotate_statuette(canon.statuette);
-    const Mesh& mesh = canon.statuette.mesh;
+    Statuette made = generate_statuette(parameters);
+    AnnotationSet set = annotate_statuette(made);
+    Canon canon{{{std::move(made.mesh), std::move(set)}}, {}};
+    auto& [mesh, annotations] = canon.statuette;
     constexpr Index landmarks = 60;
     for (Index i = 0; i < landmarks; ++i)
-        canon.set.annotations.push_back(
-            landmark(free_id(canon.set), "place " + std::to_string(i),
+        annotations.annotations.push_back(
+            landmark(free_id(annotations), "place " + std::to_string(i),
                      static_cast<Index>(static_cast<std::uint64_t>(i) * 7919U % mesh.number_of_vertices())));
     std::map<std::string, double> heights;
     const std::vector<std::string> parts{"head", "body", "hat"};
-    for (const std::string& part : parts) heights[part] = add_height(mesh, *canon.set.find(tagged(canon.set, part).id));
+    for (const std::string& part : parts) heights[part] = add_height(mesh, *annotations.find(canon.statuette.id(part)), "height");
     for (const auto& [part, reference] : {std::pair("body", "head"), std::pair("hat", "head")}) {
-        Relationship one;
-        one.id = free_id(canon.graph);
-        one.type = "proportion";
-        one.annotations = {tagged(canon.set, part).id, tagged(canon.set, reference).id};
-        one.is_constraint = true;
         const double ratio = heights[part] / heights[reference];
-        one.weight = 100;
-        one.constraint = fmt::format(R"({{"measure1": "height", "measure2": "height", "minValue": {:.9g}, "maxValue": {:.9g}}})",
-                                     0.99 * ratio, 1.01 * ratio);
-        canon.graph.relationships.push_back(std::move(one));
+        canon.graph.relationships.push_back(
+            constraint(free_id(canon.graph), "proportion", {canon.statuette.id(part), canon.statuette.id(reference)},
+                       fmt::format(R"({{"measure1": "height", "measure2": "height", "minValue": {:.9g}, "maxValue": {:.9g}}})",
+                                   0.99 * ratio, 1.01 * ratio),
+                       100));
     }
     return canon;
 }
@@ -105,14 +84,11 @@ struct Case {
     double share, noise, erosion;
 };
 
-struct Row {
-    bool placed = false;
-    double angle = 0, shift = 0;                  ///< error of the pose, in degrees and as a share of the diagonal
-    double observed = 0, missing = 0, rigid = 0;  ///< root mean square errors, as shares of the diagonal
-    double before = 0, after = 0;                 ///< largest constraint violation, in per cent
-    std::size_t crossings = 0;
-    double seconds = 0;
-};
+/// The result of a fit: error of the pose, in degrees and as a share of the diagonal; root mean square errors of the observed
+/// part, of the missing one, and of that with the template moved rigidly, as shares of the diagonal; largest constraint
+/// violation, in per cent.
+enum Quantity { angle, shift, observed, missing, rigid, before, after, crossings, seconds, quantities };
+using Row = Eigen::Array<double, quantities, 1>;
 
 /// Learns the class from twenty members: taller and shorter, wider and narrower, leaning forward or back.
 ShapePrior learn_canon(const Canon& canon) {
@@ -123,14 +99,11 @@ ShapePrior learn_canon(const Canon& canon) {
     constexpr int count = 20;
     for (int i = 0; i < count; ++i) {
         const double tall = 1 + 0.1 * random.normal(), wide = 1 + 0.05 * random.normal(), lean = 0.08 * random.normal();
-        Landmarks shape(static_cast<Eigen::Index>(mesh.number_of_vertices()), 3);
-        for (const Vertex v : mesh.vertices()) {
-            const Vector3d p = eigen(mesh.point(v));
+        const Mesh member = warped(mesh, [&](const Vector3d& p) {
             const double t = p.z() / high;
-            shape.row(static_cast<Eigen::Index>(v)) =
-                Eigen::RowVector3d(wide * p.x() + lean * high * t * t, wide * p.y(), tall * p.z());
-        }
-        members.push_back(std::move(shape));
+            return Vector3d(wide * p.x() + lean * high * t * t, wide * p.y(), tall * p.z());
+        });
+        members.push_back(landmarks_of(points_of(member)));
     }
     return prior_of(learn_modes(members, members.front()));
 }
@@ -143,7 +116,7 @@ struct Broken {
 
 Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& name, const std::string& at,
                      const FragmentOptions& options) {
-    const std::vector<Index>& faces = tagged(canon.set, at).faces;
+    const std::vector<Index>& faces = canon.statuette.part(at).faces;
     Vector3d centre = Vector3d::Zero();
     for (const Index f : faces) centre += eigen(centroid(whole, Face(f))) / static_cast<double>(faces.size());
     Broken broken{generate_fragment(whole, point_of(centre), options), {}};
@@ -151,72 +124,69 @@ Broken make_fragment(const Canon& canon, const Mesh& whole, const std::string& n
     broken.fragment.mesh = broken.piece.mesh;
     std::map<Index, Index> of_piece;
     for (Index i = 0; i < broken.piece.vertices.size(); ++i) of_piece.emplace(broken.piece.vertices[i], i);
-    for (const Annotation& one : canon.set.annotations)
-        if (one.type == AnnotationType::point && of_piece.contains(one.points.front()))
-            broken.fragment.annotations.annotations.push_back(landmark(one.id, one.tag, of_piece.at(one.points.front())));
+    for (const Annotation& mark : canon.statuette.annotations.annotations)
+        if (mark.type == AnnotationType::point && of_piece.contains(mark.points.front()))
+            broken.fragment.annotations.annotations.push_back(landmark(mark.id, mark.tag, of_piece.at(mark.points.front())));
     return broken;
 }
 
-Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, const ReconstructOptions& how, const Case& what,
-        std::uint64_t seed) {
+/// Nothing if the fragment is not placed.
+std::optional<Row> run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, const ReconstructOptions& how,
+                       const Case& test, std::uint64_t seed) {
     const Mesh& mesh = canon.statuette.mesh;
     const double high = bounding_box(mesh).zmax(), strength = 1 + 0.25 * (static_cast<double>(seed % 4) - 1.5);
     const Mesh whole = warped(mesh, [&](Vector3d p) {
         const double t = p.z() / high;
-        if (what.deformation == "stretch") p.z() *= 1 + 0.15 * strength;
-        if (what.deformation == "squash") p.z() *= 1 - 0.12 * strength;
-        if (what.deformation == "bend") p.x() += 0.12 * strength * high * t * t;
+        if (test.deformation == "stretch") p.z() *= 1 + 0.15 * strength;
+        if (test.deformation == "squash") p.z() *= 1 - 0.12 * strength;
+        if (test.deformation == "bend") p.x() += 0.12 * strength * high * t * t;
         return p;
     });
     const double diagonal = box_diagonal(whole);
     FragmentOptions options;
-    options.share = what.share;
-    options.noise = what.noise;
-    options.erosion = what.erosion;
+    options.share = test.share;
+    options.noise = test.noise;
+    options.erosion = test.erosion;
     options.seed = seed;
-    const Broken broken = make_fragment(canon, whole, "fragment", what.at, options);
-    const SyntheticFragment& piece = broken.piece;
+    const Broken broken = make_fragment(canon, whole, "fragment", test.at, options);
     std::vector<bool> seen(mesh.number_of_vertices(), false);
-    for (const Index v : piece.vertices) seen[v] = true;
+    for (const Index v : broken.piece.vertices) seen[v] = true;
     const Stopwatch watch;
-    const Reconstruction result = reconstruct({mesh, canon.set}, canon.graph, {&broken.fragment}, how, {}, prior, cage);
-    Row row;
-    row.seconds = watch.seconds().wall;
-    row.placed = result.placement.any();
-    if (!row.placed) return row;
-    row.crossings = result.crossings;
+    const Reconstruction result = reconstruct(canon.statuette, canon.graph, {&broken.fragment}, how, {}, prior, cage);
+    Row row = Row::Zero();
+    row[seconds] = watch.seconds().wall;
+    if (!result.placement.any()) return {};
+    row[crossings] = static_cast<double>(result.crossings);
     // The truth in the frame of the placed fragment.
-    const Motion frame = result.placement.fragments[0].pose.after(piece.pose.inverse());
+    const Motion frame = result.placement.fragments[0].pose.after(broken.piece.pose.inverse());
     std::vector<Vector3d> truth, aligned;
+    Vector3d mean = Vector3d::Zero();
     for (const Vertex v : mesh.vertices()) {
         truth.push_back(frame(eigen(whole.point(v))));
         aligned.push_back(result.placement.scale * eigen(mesh.point(v)));
+        mean += truth.back() / static_cast<double>(mesh.number_of_vertices());
     }
     // Best rigid fit of the whole.
     const Motion best = fit_motion(truth, aligned);
-    row.angle = degrees_of(best);
-    Vector3d mean = Vector3d::Zero();
-    for (const Vector3d& p : truth) mean += p / static_cast<double>(truth.size());
-    row.shift = (best(mean) - mean).norm() / diagonal;
+    row[angle] = degrees_of(best);
+    row[shift] = (best(mean) - mean).norm() / diagonal;
     const SurfaceSearch completed(result.object.mesh);
-    double observed = 0, missing = 0, rigid = 0, count_seen = 0, count_missing = 0;
     for (const Vertex v : mesh.vertices()) {
         if (seen[v]) {
             const double d = completed.closest(point_of(truth[v])).distance;
-            observed += d * d;
-            ++count_seen;
+            row[observed] += d * d;
         } else {
-            missing += (eigen(result.points[v]) - truth[v]).squaredNorm();
-            rigid += (aligned[v] - truth[v]).squaredNorm();
-            ++count_missing;
+            row[missing] += (eigen(result.points[v]) - truth[v]).squaredNorm();
+            row[rigid] += (aligned[v] - truth[v]).squaredNorm();
         }
     }
-    row.observed = std::sqrt(observed / count_seen) / diagonal;
-    row.missing = std::sqrt(missing / count_missing) / diagonal;
-    row.rigid = std::sqrt(rigid / count_missing) / diagonal;
-    for (const ConstraintReport& one : result.constraints) {
-        if (!one.before_values.empty()) row.before = std::max(row.before, one.before_values.front());
-        if (!one.deviations.empty()) row.after = std::max(row.after, one.deviations.front().value.value_or(0));
+    const auto count_seen = static_cast<double>(std::count(seen.begin(), seen.end(), true)),
+               count_missing = static_cast<double>(seen.size()) - count_seen;
+    row[observed] = std::sqrt(row[observed] / count_seen) / diagonal;
+    for (const Quantity q : {missing, rigid}) row[q] = std::sqrt(row[q] / count_missing) / diagonal;
+    for (const ConstraintReport& report : result.constraints) {
+        if (!report.before_values.empty()) row[before] = std::max(row[before], report.before_values.front());
+        if (!report.deviations.empty()) row[after] = std::max(row[after], report.deviations.front().value.value_or(0));
     }
     return row;
 }
@@ -229,7 +199,7 @@ enum class Planted { nothing, size, proportion };
 Mesh make_member(const Canon& canon, Random& random, double size, bool other_canon) {
     const Mesh& mesh = canon.statuette.mesh;
     double brim = 0;
-    for (const Index f : tagged(canon.set, "head").faces)
+    for (const Index f : canon.statuette.part("head").faces)
         for (const Vertex v : corners(mesh, Face(f))) brim = std::max(brim, mesh.point(v).z());
     const double high = bounding_box(mesh).zmax(), wide = 1 + 0.04 * random.normal(), tall = 1 + 0.03 * random.normal(),
                  bend = 0.02 * random.normal();
@@ -247,7 +217,8 @@ void verdicts(const VerdictOptions& options) {
     Random random(options.seed);
     std::vector<bool> truth;       // whether both are of one object
     std::vector<double> evidence;  // negative strain
-    int right = 0, rejected = 0, called = 0, hit = 0, planted_named = 0, correctly_rejected = 0;
+    ConfusionScores scores;        // positive: compatible
+    Hits named;                    // planted mismatches named, of those rejected
     TextTable table({"pair", "planted", "verdict", "strain", "named first"});
     for (int pair = 0; pair < options.pairs; ++pair) {
         const Planted planted = pair % 2 == 0 ? Planted::nothing : pair % 4 == 1 ? Planted::size : Planted::proportion;
@@ -255,53 +226,43 @@ void verdicts(const VerdictOptions& options) {
         // Incompatible sizes differ by at least 15 per cent.
         const double factor = std::exp((random.uniform() < 0.5 ? -1 : 1) * (0.14 + 0.2 * random.uniform()));
         const Mesh first = make_member(canon, random, size, planted == Planted::proportion);
-        Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
-        const auto seed = static_cast<std::uint64_t>(pair) + 1;
-        FragmentOptions options_top;
-        options_top.share = 0.3;
-        options_top.noise = 0.001;
-        options_top.seed = seed;
-        FragmentOptions options_bottom = options_top;
-        options_bottom.seed = seed + 100000;
-        const Broken top = make_fragment(canon, first, "top", "head", options_top),
-                     bottom = make_fragment(canon, second, "bottom", "base", options_bottom);
-        const Reconstruction result =
-            reconstruct({canon.statuette.mesh, canon.set}, canon.graph, {&top.fragment, &bottom.fragment});
+        const Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
+        FragmentOptions top_options;
+        top_options.share = 0.3;
+        top_options.noise = 0.001;
+        top_options.seed = static_cast<std::uint64_t>(pair) + 1;
+        FragmentOptions bottom_options = top_options;
+        bottom_options.seed += 100000;
+        const Broken top = make_fragment(canon, first, "top", "head", top_options),
+                     bottom = make_fragment(canon, second, "bottom", "base", bottom_options);
+        const Reconstruction result = reconstruct(canon.statuette, canon.graph, {&top.fragment, &bottom.fragment});
         const bool compatible = result.verdict == Compatibility::compatible;
         truth.push_back(planted == Planted::nothing);
         evidence.push_back(-result.strain);
+        scores.add(compatible, truth.back());
         // Causes precede consequences: sizes before constraints, and of these the one with the largest violation.
         const Objection* worst = nullptr;
-        for (const Objection& one : result.objections)
-            if (worst == nullptr || one.kind < worst->kind || (one.kind == worst->kind && one.strain > worst->strain))
-                worst = &one;
-        called += compatible ? 1 : 0;
-        hit += compatible && planted == Planted::nothing ? 1 : 0;
-        right += compatible == (planted == Planted::nothing) ? 1 : 0;
-        rejected += compatible ? 0 : 1;
-        if (!compatible && planted != Planted::nothing) {
-            ++correctly_rejected;
-            planted_named += worst != nullptr && (planted == Planted::size ? worst->kind == ObjectionKind::size
-                                                                           : worst->kind == ObjectionKind::constraint &&
-                                                                                 worst->constraint == head_canon)
-                                 ? 1
-                                 : 0;
-        }
+        for (const Objection& objection : result.objections)
+            if (worst == nullptr || objection.kind < worst->kind ||
+                (objection.kind == worst->kind && objection.strain > worst->strain))
+                worst = &objection;
+        if (!compatible && !truth.back())
+            named.add(worst != nullptr &&
+                      (planted == Planted::size ? worst->kind == ObjectionKind::size
+                                                : worst->kind == ObjectionKind::constraint && worst->constraint == head_canon));
         const char* const names[] = {"nothing", "size", "proportion"};
         table.add({std::to_string(pair + 1), names[static_cast<int>(planted)], to_string(result.verdict),
                    fixed_cell(result.strain, 2),
                    worst == nullptr ? std::string("-") : to_string(worst->kind) + " " + std::to_string(worst->constraint)});
     }
     write_file(Path(options.output) / "verdicts.csv", table.csv());
-    const double positives = static_cast<double>(std::count(truth.begin(), truth.end(), true));
-    const double precision = called > 0 ? static_cast<double>(hit) / called : 0, recall = hit / positives;
     TextTable summary(
         {"pairs", "right", "precision", "recall", "F1 of compatible", "area under ROC", "rejected", "planted mismatch named"});
-    summary.add({std::to_string(options.pairs), std::to_string(right), fixed_cell(precision, 3), fixed_cell(recall, 3),
-                 fixed_cell(precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0, 3),
-                 fixed_cell(roc_curve(evidence, truth).area, 3), std::to_string(rejected),
-                 fmt::format("{} of {}", planted_named, correctly_rejected)});
-    std::cout << summary.markdown();
+    summary.add({std::to_string(options.pairs), std::to_string(scores.true_positive + scores.true_negative),
+                 fixed_cell(scores.precision(), 3), fixed_cell(scores.recall(), 3), fixed_cell(scores.f1(), 3),
+                 fixed_cell(roc_curve(evidence, truth).area, 3), std::to_string(scores.false_negative + scores.true_negative),
+                 named.text()});
+    fmt::print("{}", summary.markdown());
 }
 
 /// Fits fragments of deformed copies of a synthetic template: errors of pose, observed and missing part, constraints.
@@ -312,7 +273,6 @@ void fragments(const ExperimentOptions& options) {
     const bool in_mesh = how.fit.space == NonRigidOptions::Space::mesh;
     const std::optional<ShapePrior> prior = in_mesh ? std::optional(learn_canon(canon)) : std::nullopt;
     const std::optional<TemplateCage> made = in_mesh ? std::nullopt : std::optional(generated_cage(canon.statuette.mesh));
-    const TemplateCage* cage = made ? &*made : nullptr;
     TextTable table({"deformation", "at", "share", "noise", "erosion", "placed", "angle", "shift", "observed", "missing", "rigid",
                      "missing/rigid", "missing with class", "with class/rigid", "constraint before", "after", "crossings",
                      "seconds"});
@@ -320,32 +280,29 @@ void fragments(const ExperimentOptions& options) {
         for (const std::string at : {"head", "base"})
             for (const double share : options.shares)
                 for (const double noise : {0.001, 0.005}) {
-                    const Case what{deformation, at, share, noise, noise == 0.005 ? 0.01 : 0.0};
-                    Row sum, with_class;
-                    int placed = 0;
-                    for (int seed = 1; seed <= options.seeds; ++seed) {
-                        const Row row = run(canon, nullptr, cage, how, what, static_cast<std::uint64_t>(seed));
-                        if (!row.placed) continue;
-                        ++placed;
-                        const Row other =
-                            prior ? run(canon, &*prior, nullptr, how, what, static_cast<std::uint64_t>(seed)) : Row();
-                        with_class.missing += other.missing;
-                        with_class.rigid += other.rigid;
-                        sum.angle += row.angle, sum.shift += row.shift, sum.observed += row.observed, sum.missing += row.missing;
-                        sum.rigid += row.rigid, sum.before += row.before, sum.after += row.after, sum.crossings += row.crossings;
-                        sum.seconds += row.seconds;
+                    const Case test{deformation, at, share, noise, noise == 0.005 ? 0.01 : 0.0};
+                    Row sum = Row::Zero();
+                    double with_class = 0;
+                    Hits placed;
+                    for (int k = 1; k <= options.seeds; ++k) {
+                        const auto seed = static_cast<std::uint64_t>(k);
+                        const std::optional<Row> row = run(canon, nullptr, made ? &*made : nullptr, how, test, seed);
+                        placed.add(row.has_value());
+                        if (!row) continue;
+                        sum += *row;
+                        if (prior)
+                            if (const auto other = run(canon, &*prior, nullptr, how, test, seed)) with_class += (*other)[missing];
                     }
-                    const double n = std::max(1, placed);
-                    table.add({deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(what.erosion),
-                               fmt::format("{} of {}", placed, options.seeds), fixed_cell(sum.angle / n, 2),
-                               percent_cell(sum.shift / n, 2), percent_cell(sum.observed / n, 3),
-                               percent_cell(sum.missing / n, 2), percent_cell(sum.rigid / n, 2),
-                               fixed_cell(sum.missing / sum.rigid, 2), prior ? percent_cell(with_class.missing / n, 2) : "-",
-                               prior ? fixed_cell(with_class.missing / sum.rigid, 2) : "-", fixed_cell(sum.before / n, 2),
-                               fixed_cell(sum.after / n, 2), fixed_cell(static_cast<double>(sum.crossings) / n, 1),
-                               fixed_cell(sum.seconds / n, 2)});
+                    const double n = std::max<double>(1, static_cast<double>(placed.hits));
+                    const Row mean = sum / n;
+                    table.add({deformation, at, percent_cell(share, 0), percent_cell(noise), percent_cell(test.erosion),
+                               placed.text(), fixed_cell(mean[angle], 2), percent_cell(mean[shift], 2),
+                               percent_cell(mean[observed], 3), percent_cell(mean[missing], 2), percent_cell(mean[rigid], 2),
+                               fixed_cell(sum[missing] / sum[rigid], 2), prior ? percent_cell(with_class / n, 2) : "-",
+                               prior ? fixed_cell(with_class / sum[rigid], 2) : "-", fixed_cell(mean[before], 2),
+                               fixed_cell(mean[after], 2), fixed_cell(mean[crossings], 1), fixed_cell(mean[seconds], 2)});
                 }
-    std::cout << table.markdown();
+    fmt::print("{}", table.markdown());
     write_file(Path(options.output) / "fragments.csv", table.csv());
 }
 

@@ -39,14 +39,6 @@ struct FreeOutlineOptions {
 /// Other curves end at the border of an open mesh and are not projected.
 bool is_closed(const std::vector<Point>& curve) { return curve.front() == curve.back(); }
 
-double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
-    double sum = 0;
-    for (const SurfaceCurve& curve : curves_on(mesh, annotation))
-        for (std::size_t i = 0; i + 1 < curve.points.size(); ++i)
-            sum += distance(position(mesh, curve.points[i]), position(mesh, curve.points[i + 1]));
-    return sum;
-}
-
 /// Calls take(index of the segment, point) for points along a curve at distances of at most `step`.
 template <class Take>
 void sample(const std::vector<Point>& points, double step, const Take& take) {
@@ -280,11 +272,11 @@ private:
             // Directly from the first to the last, and back.
             const AnnotationSet far = carry(name, kind, first, last, set);
             carry(name, kind, last, first, far);
-            for (const Annotation& one : set.annotations)
-                if (const Annotation* there = now.find(one.id)) {
-                    const RegionMeasures a = measure_region(first.mesh, one), b = measure_region(first.mesh, *there);
-                    fmt::print("  {}, whole chain and back: perimeter {:.3g} %, area {:.3g} %, places {} -> {}\n", one.tag,
-                               100 * (b.perimeter / a.perimeter - 1), 100 * (b.area / a.area - 1), one.curves.front().size(),
+            for (const Annotation& region : set.annotations)
+                if (const Annotation* there = now.find(region.id)) {
+                    const RegionMeasures a = measure_region(first.mesh, region), b = measure_region(first.mesh, *there);
+                    fmt::print("  {}, whole chain and back: perimeter {:.3g} %, area {:.3g} %, places {} -> {}\n", region.tag,
+                               100 * (b.perimeter / a.perimeter - 1), 100 * (b.area / a.area - 1), region.curves.front().size(),
                                there->curves.front().size());
                 }
         }
@@ -311,21 +303,23 @@ private:
         const Stopwatch watch;
         TransferResult moved = transfer({from.mesh, set}, to.search, how);
         const double seconds = watch.seconds().wall;
-        for (const Annotation& one : set.annotations) {
-            const Annotation* there = moved.annotations.find(one.id);
+        for (const Annotation& region : set.annotations) {
+            const Annotation* there = moved.annotations.find(region.id);
             if (there == nullptr) {
-                fmt::print("{} {} {} -> {}: {} is lost\n", object, kind, from.name, to.name, one.tag);
+                fmt::print("{} {} {} -> {}: {} is lost\n", object, kind, from.name, to.name, region.tag);
                 continue;
             }
             const auto score =
-                std::find_if(moved.scores.begin(), moved.scores.end(), [&](const TransferScore& s) { return s.id == one.id; });
-            const Laid exact = laid(from.search, one, to.search, *there);
-            const LaidByRays rays = laid_by_rays(from.search, one, to.search, *there);
-            const double perimeter = length_of_curves(to.mesh, *there), area = measure_region(to.mesh, *there).area;
+                std::find_if(moved.scores.begin(), moved.scores.end(), [&](const TransferScore& s) { return s.id == region.id; });
+            const Laid exact = laid(from.search, region, to.search, *there);
+            const LaidByRays rays = laid_by_rays(from.search, region, to.search, *there);
+            const double area = measure_region(to.mesh, *there).area;
+            double perimeter = 0;
+            for (const SurfaceCurve& curve : curves_on(to.mesh, *there)) perimeter += curve.length(to.mesh);
             const double off_perimeter = 100 * (perimeter / exact.perimeter - 1), off_area = 100 * (area / exact.area - 1),
                          off_by_rays = 100 * (rays.of_written / rays.perimeter - 1),
-                         share = area_of(from.mesh, one) / surface_area(from.mesh);
-            csv_(object, kind, from.name, to.name, one.tag, share, perimeter, exact.perimeter, off_perimeter, off_by_rays,
+                         share = area_of(from.mesh, region) / surface_area(from.mesh);
+            csv_(object, kind, from.name, to.name, region.tag, share, perimeter, exact.perimeter, off_perimeter, off_by_rays,
                  rays.mean, rays.most, rays.without_ray, area, exact.area, off_area, exact.overlap, score->overlap.value_or(0),
                  score->vertices, score->by_ray, score->detours, score->crossings_resolved, seconds);
             Worst& cell = worst_[fmt::format("{} {} -> {} share {:.1g}", kind, from.name, to.name, share)];

@@ -1,8 +1,10 @@
 #include "harness.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/files/csv.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -50,6 +52,11 @@ void Rows::write(const Path& file) const {
     if (!file.empty()) write_file(file, text_);
 }
 
+void write_table(const TextTable& table, const Path& folder, const std::string& name, const std::string& title) {
+    fmt::print("{}{}{}\n", title, title.empty() ? "" : "\n\n", table.markdown());
+    table.write(folder, name);
+}
+
 PeakMemory::PeakMemory() {
     malloc_trim(0);
     std::ofstream reset("/proc/self/clear_refs");  // 5: resets the peak
@@ -74,6 +81,33 @@ MeanAndMax mean_and_max(const std::vector<double>& values, const std::vector<Ind
     std::vector<double> chosen;
     for (const Index v : vertices) chosen.push_back(values[v]);
     return mean_and_max(chosen);
+}
+
+void Calibration::add(double probability, bool truth, double weight) {
+    bins.row(static_cast<Eigen::Index>(std::min(9.0, 10 * probability))) +=
+        weight * Eigen::Array<double, 1, 3>(1, probability, truth ? 1 : 0);
+}
+
+double Calibration::error() const { return (bins.col(1) - bins.col(2)).abs().sum() / std::max(1e-300, bins.col(0).sum()); }
+
+Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth,
+                         const std::vector<double>& weights, double ridge) {
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
+    for (int step = 0; step < 60; ++step) {
+        Eigen::Matrix3d hessian = ridge * Eigen::Matrix3d::Identity();
+        hessian(0, 0) = 1e-9;
+        Eigen::Vector3d gradient = -ridge * result;
+        gradient[0] = 0;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const double p = 1 / (1 + std::exp(-result.dot(rows[k])));
+            hessian += weights[k] * std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
+            gradient += weights[k] * ((truth[k] ? 1 : 0) - p) * rows[k];
+        }
+        const Eigen::Vector3d move = solve_ldlt<3>(hessian, gradient);
+        result += move / std::max(1.0, move.norm());
+        if (move.norm() < 1e-9) break;
+    }
+    return result;
 }
 
 }  // namespace ostraka::experiments

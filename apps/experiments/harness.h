@@ -2,10 +2,12 @@
 #pragma once
 
 #include "ostraka/core/options.h"
+#include "ostraka/figures/table.h"
 #include "ostraka/files/file.h"
 #include "ostraka/mesh/mesh.h"
 
 #include <fmt/format.h>
+#include <Eigen/Core>
 
 #include <chrono>
 #include <ctime>
@@ -82,6 +84,9 @@ private:
     std::string text_;
 };
 
+/// Prints the table, below a title, and writes it to FOLDER/NAME.
+void write_table(const TextTable& table, const Path& folder, const std::string& name, const std::string& title = {});
+
 /// Wall time, and processor time of all threads; the latter is unaffected by other load if there is one thread.
 struct Seconds {
     double wall = 0, processor = 0;
@@ -129,5 +134,29 @@ inline double mean_of(const std::vector<double>& values) { return mean_and_max(v
 inline double percentage(std::size_t part, std::size_t all) {
     return all == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
 }
+
+/// How many of a number of trials succeed.
+struct Hits {
+    std::size_t hits = 0, all = 0;
+    void add(bool hit) { ++all, hits += hit ? 1 : 0; }
+    Hits& operator+=(const Hits& other) {
+        hits += other.hits, all += other.all;
+        return *this;
+    }
+    [[nodiscard]] double percent() const { return percentage(hits, all); }
+    [[nodiscard]] std::string text() const { return fmt::format("{} of {}", hits, all); }
+};
+
+/// Calibration of probabilities: weight, expected and true sum of each of ten bins.
+struct Calibration {
+    Eigen::Array<double, 10, 3> bins = Eigen::Array<double, 10, 3>::Zero();
+    void add(double probability, bool truth, double weight = 1);
+    /// Mean difference of expected and true share, weighted.
+    [[nodiscard]] double error() const;
+};
+
+/// Logistic regression weights with ridge penalty (iteratively reweighted least squares). Each row begins with a 1.
+Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth,
+                         const std::vector<double>& weights, double ridge);
 
 }  // namespace ostraka::experiments

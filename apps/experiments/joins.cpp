@@ -1,23 +1,23 @@
-// Pairs of fragments of broken objects: accuracy of the pose found, and calibration of its confidence.
+// Pairs of fragments of broken objects: accuracy of the pose found, and calibration of its confidence. Boxes that mix the
+// fragments of one object with unrelated ones, reassembled.
 #include "boxes.h"
 
-#include "ostraka/algebra/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/files/csv.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/fracture/pair_registration.h"
+#include "ostraka/reassembly/reassembly.h"
 #include "ostraka/stats/boosted_trees.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <map>
 
 namespace ostraka::experiments {
 
 namespace {
 
-using Features = std::array<double, JoinEvidence::count>;
+using Features = Eigen::Array<double, JoinEvidence::count, 1>;
 
 struct JoinOptions : BoxOptions {
     JoinOptions() { output = "experiments-output/joins"; }
@@ -35,70 +35,49 @@ struct JoinOptions : BoxOptions {
     }
 };
 
+struct Candidate {
+    bool right = false;
+    double log_odds = 0;
+    Features features;
+};
+
 /// Result of a pair.
 struct Row {
     std::string box, other;  ///< boxes of the first and of the second fragment
     std::size_t first = 0, second = 0;
     double contact = 0;  ///< truth: share of the smaller fracture surface; 0 for unrelated fragments
     bool stranger = false;
-    std::vector<bool> right;  ///< per candidate
-    std::vector<Features> features;
-    std::vector<double> log_odds;
-    double confidence = 0;
-    double seconds = 0;
+    double confidence = 0, seconds = 0;
+    std::vector<Candidate> candidates;
 };
 
-Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const PreparedFracture& a,
+/// Whether a pose that is off by a motion joins a fragment to its neighbour.
+bool is_right(const Mesh& mesh, const Motion& off) {
+    return degrees_of(off) < 6 && off_of(mesh, off) < 0.06 * box_diagonal(mesh);
+}
+
+Row try_pair(const Box& from, std::size_t i, const Box& with, std::size_t j, const PreparedFracture& a,
              const PreparedFracture& moved_b, const Motion& motion) {
-    Row row;
-    row.box = of.name;
-    row.other = with.name;
-    row.first = i, row.second = j;
-    row.stranger = &of != &with;
-    if (!row.stranger) row.contact = of.contact[std::min(i, j)][std::max(i, j)];
+    const bool stranger = &from != &with;
     const Stopwatch watch;
     const PairRegistration pair = register_fractures(a, moved_b);
-    row.seconds = watch.seconds().processor;
-    const Mesh& mesh = with.fragments[j].mesh;
-    for (const PairCandidate& one : pair.candidates) {
-        const Motion off = one.pose.after(motion);
-        row.right.push_back(!row.stranger && degrees_of(off) < 6 && off_of(mesh, off) < 0.06 * box_diagonal(mesh));
-        row.features.push_back(one.evidence.features());
-        row.log_odds.push_back(one.log_odds);
+    const double seconds = watch.seconds().processor, contact = stranger ? 0 : from.contact[std::min(i, j)][std::max(i, j)];
+    Row row{from.name, with.name, i, j, contact, stranger, pair.confidence, seconds, {}};
+    for (const PairCandidate& candidate : pair.candidates) {
+        const bool right = !stranger && is_right(with.fragments[j].mesh, candidate.pose.after(motion));
+        row.candidates.push_back({right, candidate.log_odds, Features::Map(candidate.evidence.features().data())});
     }
-    row.confidence = pair.confidence;
     return row;
 }
 
 /// Scanned and published objects are few but most relevant.
 double weight_of(const Row& row) { return row.box.find(':') == std::string::npos ? 2 : 1; }
 
-/// Logistic regression weights with ridge penalty (iteratively reweighted least squares). Each row begins with a 1.
-Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth,
-                         const std::vector<double>& counted, double ridge) {
-    Eigen::Vector3d weights = Eigen::Vector3d::Zero();
-    for (int step = 0; step < 60; ++step) {
-        Eigen::Matrix3d hessian = ridge * Eigen::Matrix3d::Identity();
-        hessian(0, 0) = 1e-9;
-        Eigen::Vector3d gradient = -ridge * weights;
-        gradient[0] = 0;
-        for (std::size_t k = 0; k < rows.size(); ++k) {
-            const double p = 1 / (1 + std::exp(-weights.dot(rows[k])));
-            hessian += counted[k] * std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
-            gradient += counted[k] * ((truth[k] ? 1 : 0) - p) * rows[k];
-        }
-        const Eigen::Vector3d move = solve_ldlt<3>(hessian, gradient);
-        weights += move / std::max(1.0, move.norm());
-        if (move.norm() < 1e-9) break;
-    }
-    return weights;
-}
-
 struct Trained {
     BoostedTrees trees;
     Eigen::Vector3d pair;
-    Features usual{}, spread{};  ///< per feature over true joins: mean, standard deviation
-    double joined = 0;           ///< share of the pairs whose first candidate is correct
+    Features usual = Features::Zero(), spread = Features::Zero();  ///< per feature over true joins: mean, standard deviation
+    double joined = 0;                                             ///< share of the pairs whose first candidate is correct
 };
 
 std::vector<float> row_of(const Features& features) { return {features.begin(), features.end()}; }
@@ -108,27 +87,21 @@ BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     std::vector<bool> truth;
     std::vector<double> weights;
     for (const Row& row : rows)
-        if (chosen(row))
-            for (std::size_t c = 0; c < row.features.size(); ++c) {
-                table.add(row_of(row.features[c]));
-                truth.push_back(row.right[c]);
-                weights.push_back(weight_of(row));
-            }
-    BoostOptions how;
-    how.trees = 200;
-    how.depth = 3;
-    how.rate = 0.04;
-    how.leaf_weight = 15;
-    how.ridge = 1;
-    return boost(table, truth, weights, how);
+        for (const Candidate& candidate : row.candidates) {
+            if (!chosen(row)) break;
+            table.add(row_of(candidate.features));
+            truth.push_back(candidate.right);
+            weights.push_back(weight_of(row));
+        }
+    return boost(table, truth, weights, {.trees = 200, .depth = 3, .rate = 0.04, .leaf_weight = 15, .ridge = 1});
 }
 
 /// Negative log odds and truth of the candidates, the most probable first.
 using Scores = std::vector<std::pair<double, bool>>;
 Scores scores_of(const Row& row, const BoostedTrees& trees) {
     Scores scored;
-    for (std::size_t c = 0; c < row.features.size(); ++c)
-        scored.emplace_back(-trees.log_odds(row_of(row.features[c])), row.right[c]);
+    for (const Candidate& candidate : row.candidates)
+        scored.emplace_back(-trees.log_odds(row_of(candidate.features)), candidate.right);
     std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
     return scored;
 }
@@ -155,14 +128,8 @@ Trained train(const std::vector<Row>& rows) {
     std::vector<bool> truth;
     std::vector<double> weights;
     for (const Row& row : rows) {
-        for (std::size_t c = 0; c < row.features.size(); ++c) {
-            if (!row.right[c]) continue;
-            ++joins;
-            for (std::size_t k = 0; k < model.usual.size(); ++k) {
-                model.usual[k] += row.features[c][k];
-                model.spread[k] += row.features[c][k] * row.features[c][k];
-            }
-        }
+        for (const Candidate& candidate : row.candidates)
+            if (candidate.right) ++joins, model.usual += candidate.features, model.spread += candidate.features.square();
         const auto scored = scores_of(row, others[fold.at(row.box)]);
         if (scored.empty()) continue;
         inputs.push_back(input_of(scored));
@@ -170,10 +137,8 @@ Trained train(const std::vector<Row>& rows) {
         weights.push_back(weight_of(row));
         model.joined += scored[0].second ? 1 : 0;
     }
-    for (std::size_t k = 0; k < model.usual.size(); ++k) {
-        model.usual[k] /= std::max(1.0, joins);
-        model.spread[k] = std::sqrt(std::max(1e-6, model.spread[k] / std::max(1.0, joins) - model.usual[k] * model.usual[k]));
-    }
+    model.usual /= std::max(1.0, joins);
+    model.spread = (model.spread / std::max(1.0, joins) - model.usual.square()).max(1e-6).sqrt();
     model.joined /= static_cast<double>(rows.size());
     model.pair = logistic(inputs, truth, weights, 0.01);
     return model;
@@ -183,7 +148,7 @@ Trained train(const std::vector<Row>& rows) {
 Row judged(Row row, const Trained& model) {
     const auto scored = scores_of(row, model.trees);
     row.confidence = scored.empty() ? 0 : 1 / (1 + std::exp(-model.pair.dot(input_of(scored))));
-    for (std::size_t c = 0; c < scored.size(); ++c) row.right[c] = scored[c].second;
+    for (std::size_t c = 0; c < scored.size(); ++c) row.candidates[c].right = scored[c].second;
     return row;
 }
 
@@ -207,53 +172,46 @@ std::vector<Row> read_rows(const std::string& file) {
         if (line.cells.size() != before + JoinEvidence::count)
             fail_input(file, "has rows with another number of features than today's", "make it anew");
         const auto number = [&](std::size_t k) { return std::stod(line.cells[k]); };
-        if (number(6) == 0) {
-            Row& row = rows.emplace_back();
-            row.box = line.cells[0];
-            row.first = static_cast<std::size_t>(number(1)), row.second = static_cast<std::size_t>(number(2));
-            row.other = line.cells[3];
-            row.contact = number(4);
-            row.stranger = number(5) != 0;
-            row.confidence = number(9);
-        }
-        rows.back().right.push_back(number(7) != 0);
-        rows.back().log_odds.push_back(number(8));
-        for (std::size_t k = 0; k < JoinEvidence::count; ++k) {
-            if (k == 0) rows.back().features.emplace_back();
-            rows.back().features.back()[k] = number(before + k);
-        }
+        if (number(6) == 0)
+            rows.push_back({line.cells[0],
+                            line.cells[3],
+                            static_cast<std::size_t>(number(1)),
+                            static_cast<std::size_t>(number(2)),
+                            number(4),
+                            number(5) != 0,
+                            number(9),
+                            0,
+                            {}});
+        Candidate& candidate = rows.back().candidates.emplace_back();
+        candidate.right = number(7) != 0;
+        candidate.log_odds = number(8);
+        for (std::size_t k = 0; k < JoinEvidence::count; ++k)
+            candidate.features[static_cast<Eigen::Index>(k)] = number(before + k);
     }
     return rows;
 }
 
 void report(const std::vector<Row>& rows, const std::string& name, Table& table) {
-    std::size_t sure = 0, sure_right = 0, even = 0, even_right = 0, joins = 0, found = 0, reached = 0, strangers = 0,
-                strangers_sure = 0, strangers_even = 0;
-    double error = 0, seconds = 0;
-    std::array<std::array<double, 3>, 10> bins{};
+    Hits sure, even, joins, strangers_sure, strangers_even;
+    std::size_t reached = 0;
+    double seconds = 0;
+    Calibration calibration;
     for (const Row& row : rows) {
-        const bool right = !row.right.empty() && row.right.front();
+        const bool right = !row.candidates.empty() && row.candidates.front().right;
         seconds += row.seconds;
-        if (row.confidence >= 0.9) ++sure, sure_right += right;
-        if (row.confidence >= 0.5) ++even, even_right += right;
-        if (row.stranger) ++strangers, strangers_sure += row.confidence > 0.9, strangers_even += row.confidence >= 0.5;
+        if (row.confidence >= 0.9) sure.add(right);
+        if (row.confidence >= 0.5) even.add(right);
+        if (row.stranger) strangers_sure.add(row.confidence > 0.9), strangers_even.add(row.confidence >= 0.5);
         if (row.contact > 0.1) {
-            ++joins;
-            found += right && row.confidence >= 0.5;
-            reached += std::find(row.right.begin(), row.right.end(), true) != row.right.end();
+            joins.add(right && row.confidence >= 0.5);
+            reached += std::any_of(row.candidates.begin(), row.candidates.end(), [](const Candidate& c) { return c.right; });
         }
-        auto& bin = bins[static_cast<std::size_t>(std::min(9.0, 10 * row.confidence))];
-        ++bin[0], bin[1] += row.confidence, bin[2] += right;
+        calibration.add(row.confidence, right);
     }
-    for (const auto& bin : bins) error += std::abs(bin[1] - bin[2]);
-    const auto count = static_cast<double>(std::max<std::size_t>(1, rows.size()));
-    table.row(
-        "{} | {} | {} of {} ({:.1f} %) | {} of {} ({:.1f} %) | {}, {} of {} | {} of {} ({:.0f} %), among candidates {} | {:.3f} "
-        "| "
-        "{:.2f}",
-        name, rows.size(), sure_right, sure, percentage(sure_right, sure), even_right, even, percentage(even_right, even),
-        strangers_sure, strangers_even, strangers, found, joins, percentage(found, joins), reached, error / count,
-        seconds / count);
+    table.row("{} | {} | {} ({:.1f} %) | {} ({:.1f} %) | {}, {} | {} ({:.0f} %), among candidates {} | {:.3f} | {:.2f}", name,
+              rows.size(), sure.text(), sure.percent(), even.text(), even.percent(), strangers_sure.hits, strangers_even.text(),
+              joins.text(), joins.percent(), reached, calibration.error(),
+              seconds / static_cast<double>(std::max<std::size_t>(1, rows.size())));
 }
 
 /// Evaluates each scanned or published object by a model trained without it, and synthetic objects by five-fold
@@ -267,10 +225,7 @@ void report_left_out(const std::vector<Row>& rows, Table& table) {
     std::map<std::string, std::vector<Row>> boxes;
     for (std::size_t f = 0; f < folds; ++f) {
         std::vector<Row> others;
-        const auto of_fold = [&](const std::string& name) {
-            const auto found = fold.find(name);
-            return found != fold.end() && found->second == f;
-        };
+        const auto of_fold = [&](const std::string& name) { return fold.contains(name) && fold.at(name) == f; };
         for (const Row& row : rows)
             if (!of_fold(row.box) && !of_fold(row.other)) others.push_back(row);
         const Trained model = train(others);
@@ -280,7 +235,7 @@ void report_left_out(const std::vector<Row>& rows, Table& table) {
                 (f < 5 ? all_made : all_real).push_back(boxes[row.box].back());
             }
     }
-    for (const auto& [name, those] : boxes) report(those, name, table);
+    for (const auto& [name, pairs] : boxes) report(pairs, name, table);
     report(all_made, "made, left out", table);
     report(all_real, "scanned and published, left out", table);
 }
@@ -299,15 +254,14 @@ PreparedBox prepare(Box&& box, std::uint64_t seed) {
     Random random(seed, 9);
     for (std::size_t k = 0; k < prepared.box.fragments.size(); ++k) {
         const Fragment& fragment = prepared.box.fragments[k];
-        const Motion motion = random_motion(random, 2 * prepared.box.diagonal);
         Fragment away = fragment;
-        away.mesh = moved(away.mesh, motion);
+        const Motion motion = move_at_random(away, random, 2 * prepared.box.diagonal);
         try {
             PreparedFracture here(fragment), there(away);
             prepared.given.push_back(std::move(here));
             prepared.moved.push_back(std::move(there));
         } catch (const Error& error) {
-            std::cerr << prepared.box.name << ' ' << fragment.name << " has no part in it: " << error.what() << '\n';
+            fmt::print(stderr, "{} {} has no part in it: {}\n", prepared.box.name, fragment.name, error.what());
             continue;
         }
         prepared.motions.push_back(motion);
@@ -349,12 +303,12 @@ void joins(const JoinOptions& options) {
         const std::vector<Row> rows = try_pairs(now, before, options.adjacent_only);
         report(rows, now.box.name + now.box.level, table);
         for (const Row& row : rows)
-            for (std::size_t c = 0; c < row.right.size(); ++c) {
+            for (std::size_t c = 0; c < row.candidates.size(); ++c) {
+                const auto& [right, log_odds, features] = row.candidates[c];
                 std::vector<std::string> cells{row.box, Rows::cell(row.first), Rows::cell(row.second), row.other};
-                for (const double x :
-                     {row.contact, double(row.stranger), double(c), double(row.right[c]), row.log_odds[c], row.confidence})
+                for (const double x : {row.contact, double(row.stranger), double(c), double(right), log_odds, row.confidence})
                     cells.push_back(Rows::cell(x));
-                for (const double x : row.features[c]) cells.push_back(Rows::cell(x));
+                for (const double x : features) cells.push_back(Rows::cell(x));
                 csv.add(cells);
             }
         all.insert(all.end(), rows.begin(), rows.end());
@@ -371,7 +325,130 @@ void joins(const JoinOptions& options) {
     write_model(options.model, train(all), options.recipe);
 }
 
-const Registration registered("joins", "pairs of fragments of broken objects: right poses and calibration", joins);
+const Registration registered_joins("joins", "pairs of fragments of broken objects: right poses and calibration", joins);
+
+struct AssemblyOptions : BoxOptions {
+    AssemblyOptions() { output = "experiments-output/assemblies", pieces = 10; }
+    int strangers = 10;
+    bool found = false;
+    void list_options(OptionList& list) {
+        BoxOptions::list_options(list);
+        list("strangers", strangers, "number of unrelated fragments per box, one from each of the other boxes", Range{0, 100});
+        list("found", found, "facets that the library finds, instead of known ones");
+    }
+};
+
+/// Results of one box, or of several.
+struct Outcome {
+    Hits placed, strangers, joins, sure, even;  ///< fragments of the object, unrelated ones joined, right joins
+    std::size_t pairs = 0;
+    double degrees = 0, off = 0;  ///< root mean square over the object's fragments in its main group; off: share of the diagonal
+    Seconds seconds;
+
+    Outcome& operator+=(const Outcome& o) {
+        placed += o.placed, strangers += o.strangers, joins += o.joins, sure += o.sure, even += o.even;
+        pairs += o.pairs, seconds += o.seconds;
+        return *this;
+    }
+};
+
+/// A fragment of the mixture: whether it belongs to the box's object, and the motion applied to it.
+struct Given {
+    bool belongs = false;
+    Motion motion;
+};
+
+Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& given, const Reassembly& result, double diagonal,
+              const std::string& name, Rows& joins) {
+    constexpr double near_degrees = 2, near_share = 0.01;
+    Outcome outcome;
+    std::vector<Motion> home(given.size());  // from the true position in the object to the group's frame
+    for (std::size_t k = 0; k < given.size(); ++k) home[k] = result.poses[k].after(given[k].motion);
+    // Motion error of a fragment against another one, in the fragment's frame.
+    const auto off_from = [&](std::size_t k, std::size_t reference) {
+        return given[k].motion.after(home[reference].inverse().after(home[k])).after(given[k].motion.inverse());
+    };
+    // The reference fragment for which most fragments are correct.
+    for (std::size_t r = 0; r < given.size(); ++r) {
+        if (!given[r].belongs || result.group[r] < 0) continue;
+        std::size_t right = 0, members = 0;
+        double angles = 0, ways = 0;
+        for (std::size_t k = 0; k < given.size(); ++k) {
+            if (!given[k].belongs || result.group[k] != result.group[r]) continue;
+            const Motion motion = off_from(k, r);
+            const double angle = degrees_of(motion), off = off_of(fragments[k].mesh, motion);
+            ++members;
+            angles += angle * angle, ways += off * off / diagonal / diagonal;
+            right += angle <= near_degrees && off <= near_share * diagonal ? 1 : 0;
+        }
+        if (right <= outcome.placed.hits) continue;
+        outcome.placed.hits = right;
+        outcome.degrees = std::sqrt(angles / static_cast<double>(members));
+        outcome.off = std::sqrt(ways / static_cast<double>(members));
+    }
+    for (std::size_t k = 0; k < given.size(); ++k)
+        if (given[k].belongs) ++outcome.placed.all;
+        else outcome.strangers.add(result.group[k] >= 0);
+    for (const FragmentJoin& join : result.joins) {
+        const std::size_t i = join.first, j = join.second;
+        const bool right = given[i].belongs && given[j].belongs && is_right(fragments[j].mesh, off_from(j, i));
+        outcome.joins.add(right);
+        if (join.confidence >= 0.9) outcome.sure.add(right);
+        if (join.confidence >= 0.5) outcome.even.add(right);
+        joins(name, fragments[i].name, fragments[j].name, right, join.confidence, join.pair, join.loops, join.carries,
+              join.evidence.share);
+    }
+    outcome.pairs = result.pairs_tried;
+    return outcome;
+}
+
+void add_row(Table& table, const std::string& name, const Outcome& box) {
+    table.row("{} | {} | {} | {}, {} | {} | {} | {:.2f} | {:.2f} | {} | {:.1f} | {:.1f}", name, box.placed.text(),
+              box.strangers.text(), box.joins.all, box.joins.all - box.joins.hits, box.sure.text(), box.even.text(), box.degrees,
+              100 * box.off, box.pairs, box.seconds.wall, box.seconds.processor);
+}
+
+/// Reassembles boxes that contain the fragments of one object and unrelated fragments, one from each other box.
+void assemblies(const AssemblyOptions& options) {
+    std::vector<Box> boxes;
+    for_each_box(
+        options, [&](std::uint64_t) { return options.found ? FacetChoice::found : FacetChoice::known; },
+        [&](Box&& box, std::uint64_t) { boxes.push_back(std::move(box)); });
+    Table table(
+        "box | placed, of | strangers joined, of | joins, wrong | right of those at 0.9 | at 0.5 | degrees off | % of the "
+        "diagonal off | pairs | s wall | s processor");
+    Rows joins("box,first,second,right,confidence,pair,loops,carries,share");
+    Outcome all;
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+        Random random(options.seed + b, 11);
+        std::vector<Fragment> fragments;
+        std::vector<Given> given;
+        const auto add = [&](const Box& from, std::size_t k) {
+            Fragment fragment = from.fragments[k];
+            fragment.name = from.name + "-" + fragment.name;
+            given.push_back({&from == &boxes[b], move_at_random(fragment, random, 2 * boxes[b].diagonal)});
+            fragments.push_back(std::move(fragment));
+        };
+        for (std::size_t k = 0; k < boxes[b].fragments.size(); ++k) add(boxes[b], k);
+        for (std::size_t s = 1; s <= std::min<std::size_t>(static_cast<std::size_t>(options.strangers), boxes.size() - 1); ++s) {
+            const Box& other = boxes[(b + s) % boxes.size()];
+            add(other, (b + s) % other.fragments.size());
+        }
+        const Stopwatch watch;
+        const Reassembly result = reassemble(fragments, {});
+        const Seconds seconds = watch.seconds();
+        Outcome outcome = judge(fragments, given, result, boxes[b].diagonal, boxes[b].name, joins);
+        outcome.seconds = seconds;
+        add_row(table, boxes[b].name + boxes[b].level, outcome);
+        all += outcome;
+        all.degrees += outcome.degrees / static_cast<double>(boxes.size());
+        all.off += outcome.off / static_cast<double>(boxes.size());
+    }
+    add_row(table, "all", all);
+    joins.write(Path(options.output) / "assemblies.csv");
+}
+
+const Registration registered_assemblies("assemblies", "fragments of one object among strangers put together", assemblies);
 
 }  // namespace
 

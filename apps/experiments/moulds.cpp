@@ -1,18 +1,159 @@
 // The mould study on synthetic heads and on mixes of scanned faces: which similarity and epsilon recover the moulds.
-#include "mould_heads.h"
+#include "harness.h"
+#include "scenes.h"
 
+#include "ostraka/collection/moulds.h"
+#include "ostraka/core/error.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/figures/plot.h"
-#include "ostraka/figures/table.h"
+#include "ostraka/geom/diffusion.h"
+#include "ostraka/geom/submesh.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/stats/scores.h"
+#include "ostraka/stats/summary.h"
+#include "ostraka/synthetic/head_casts.h"
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <set>
 
 namespace ostraka::experiments {
 
 namespace {
+
+struct Head {
+    Mesh mesh;
+    std::vector<std::int32_t> labels;
+    std::string mould, name;
+    bool beard = false, long_hair = false, hand_made = false;
+};
+
+/// Generates a planned head. If its features touch, so that the surface has a handle, it is drawn again: another cast of its
+/// mould or, for hand-formed heads, another head with such a hat.
+HeadCast cast_planned(PlannedHead& head, const MouldPopulationOptions& population) {
+    constexpr int attempts = 10;
+    const HeadShape::Hat hat = head.shape.hat;
+    for (int attempt = 1;; ++attempt) {
+        try {
+            return cast_head(head.shape, head.cast);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::failure || attempt == attempts) throw;
+        }
+        ++head.cast.seed;
+        if (hat == HeadShape::Hat::none) continue;
+        ArchetypeOptions archetype;
+        archetype.hand_made = true;
+        archetype.difference = population.difference;
+        archetype.seed = head.cast.seed;
+        do head.shape = head_archetype(archetype), ++archetype.seed;
+        while (head.shape.hat != hat);
+    }
+}
+
+std::vector<Head> synthetic_heads(const MouldPopulationOptions& population, const CastOptions& cast) {
+    auto plan = plan_heads(population, cast);
+    std::vector<Head> heads(plan.size());
+    parallel_for(plan.size(), 1, [&](std::size_t i) {
+        HeadCast made = cast_planned(plan[i], population);
+        heads[i] = {std::move(made.mesh),
+                    std::move(made.face_labels),
+                    plan[i].mould,
+                    plan[i].name,
+                    made.beard,
+                    plan[i].shape.long_hair,
+                    plan[i].shape.hat != HeadShape::Hat::none};
+    });
+    return heads;
+}
+
+/// Casts of moulds that are mixes of the faces in mesh files, with about half of `vertices`. Throws Error (usage) if the faces
+/// are not in correspondence.
+std::vector<Head> scanned_heads(const std::vector<std::string>& files, int objects, std::uint64_t vertices, double difference,
+                                double wear) {
+    std::vector<Mesh> faces;
+    std::vector<Eigen::MatrixXd> places;
+    for (const std::string& file : files) {
+        faces.push_back(read_mesh(file).mesh);
+        places.push_back(positions(faces.back()));
+        if (places.back().rows() != places.front().rows() || files.size() < 2)
+            fail_usage("the faces are not in correspondence", "give two or more with the same vertices");
+    }
+    // The largest component is the shell of the face; eyes and teeth are separate components.
+    const SubMesh shell = keep_faces(faces.front(), std::vector<bool>(faces.front().number_of_faces(), true), true);
+    Random random(11);
+    constexpr int moulds = 4;
+    std::vector<Eigen::MatrixXd> archetypes(moulds, places.front());
+    for (Eigen::MatrixXd& mix : archetypes)
+        for (std::size_t k = 1; k < places.size(); ++k) mix += difference * random.normal() * (places[k] - places.front());
+    std::vector<Head> heads(static_cast<std::size_t>(objects));
+    parallel_for(heads.size(), 1, [&](std::size_t i) {
+        const Eigen::MatrixXd& archetype = archetypes[i % moulds];
+        std::vector<Point> points;
+        for (const Index v : shell.vertices) points.push_back(point_of(archetype.row(static_cast<Eigen::Index>(v)).transpose()));
+        // A different number of vertices for each cast, so that no two meshes coincide.
+        Random draw(23, i);
+        Mesh mesh = remeshed(with_points(shell.mesh, points),
+                             static_cast<std::uint64_t>(static_cast<double>(vertices / 2) * draw.uniform(0.9, 1.1)));
+        const double size = std::sqrt(surface_area(mesh));
+        if (wear > 0) set_positions(mesh, Diffusion(mesh).smoothed(positions(mesh), wear * draw.uniform(0.5, 1) * size, 3));
+        std::vector<Vector> normals;
+        for (const Vertex v : mesh.vertices()) normals.push_back(vertex_normal(mesh, v));
+        for (const Vertex v : mesh.vertices()) mesh.point(v) += 0.001 * size * draw.normal() * normals[v];
+        const Eigen::Matrix3d rotation =
+            Eigen::Quaterniond(draw.normal(), draw.normal(), draw.normal(), draw.normal()).normalized().toRotationMatrix();
+        heads[i].mesh = warped(std::move(mesh), [&](const Eigen::Vector3d& p) { return rotation * p; });
+        heads[i].mould = "mould-" + std::to_string(i % moulds + 1);
+        heads[i].name = "head-" + std::to_string(i + 1);
+    });
+    return heads;
+}
+
+/// Comparison of a selection of heads without some of their parts.
+struct Compared {
+    MouldMatrices matrices;
+    std::vector<int> truth;
+    std::vector<std::string> moulds;
+    double features = 0;  ///< mean number
+    Seconds finding, comparing;
+};
+
+Compared compare(const std::vector<Head>& heads, const std::function<bool(const Head&)>& chosen,
+                 const std::vector<HeadPart>& without) {
+    std::vector<const Head*> list;
+    for (const Head& head : heads)
+        if (chosen(head)) list.push_back(&head);
+    std::vector<Mesh> meshes(list.size());
+    std::vector<double> sizes(list.size());
+    parallel_for(list.size(), 1, [&](std::size_t k) {
+        std::vector<bool> keep(list[k]->mesh.number_of_faces(), true);
+        for (std::size_t f = 0; f < list[k]->labels.size(); ++f)
+            keep[f] = std::find(without.begin(), without.end(), static_cast<HeadPart>(list[k]->labels[f])) == without.end();
+        meshes[k] = keep_faces(list[k]->mesh, keep, true).mesh;
+        sizes[k] = std::sqrt(surface_area(meshes[k]));
+    });
+    CompareOptions options;
+    options.features.size = upper_median(sizes);
+
+    Compared result;
+    std::vector<std::optional<PreparedHead>> ready(list.size());
+    Stopwatch finding;
+    parallel_for(list.size(), 1, [&](std::size_t k) { ready[k].emplace(prepare_head(meshes[k], options)); });
+    result.finding = finding.seconds();
+    std::vector<PreparedHead> prepared;
+    std::vector<std::string> names;
+    std::map<std::string, int> numbers;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        result.features += static_cast<double>(ready[k]->features.features.size()) / static_cast<double>(list.size());
+        prepared.push_back(std::move(*ready[k]));
+        names.push_back(list[k]->name);
+        result.moulds.push_back(list[k]->mould);
+        result.truth.push_back(numbers.try_emplace(list[k]->mould, static_cast<int>(numbers.size())).first->second);
+    }
+    Stopwatch comparing;
+    result.matrices = compare_heads(names, prepared, options);
+    result.comparing = comparing.seconds();
+    return result;
+}
 
 struct MouldExperiment {
     std::string output = "experiments-output/moulds";
@@ -30,8 +171,8 @@ struct MouldExperiment {
     }
 };
 
-const auto everyone = [](std::size_t) { return true; };
-std::vector<HeadPart> back_only(std::size_t) { return {HeadPart::back}; }
+const auto everyone = [](const Head&) { return true; };
+const std::vector<HeadPart> back_only{HeadPart::back};
 
 int group_count(const std::vector<int>& labels) { return static_cast<int>(std::set<int>(labels.begin(), labels.end()).size()); }
 
@@ -97,12 +238,6 @@ Scores scores_by_wear(const MouldExperiment& options, const std::vector<double>&
     return scores;
 }
 
-/// Prints the table and writes it to OUTPUT/NAME.
-void write_table(const MouldExperiment& options, const std::string& name, const std::string& title, const TextTable& table) {
-    std::cout << title << "\n\n" << table.markdown() << '\n';
-    table.write(options.output, name);
-}
-
 /// All similarities and choices of epsilon, without wear and with moderate wear.
 void choice_experiment(const MouldExperiment& options) {
     TextTable table({"similarity", "method", "epsilon", "no wear", "wear 0.01", "wear 0.02"});
@@ -111,10 +246,9 @@ void choice_experiment(const MouldExperiment& options) {
     for (std::size_t i = 0; i < list.size(); ++i)
         table.add({list[i].similarity, list[i].method, list[i].epsilon, fixed(mean_of(scores[0][i]), 2),
                    fixed(mean_of(scores[1][i]), 2), fixed(mean_of(scores[2][i]), 2)});
-    write_table(options, "choices",
+    write_table(table, options.output, "choices",
                 fmt::format("Adjusted Rand index, mean of {} populations of {} casts of 4 moulds, faces only", options.seeds,
-                            options.objects),
-                table);
+                            options.objects));
 }
 
 const std::vector<std::pair<std::string, Choice>> compared_choices{
@@ -152,11 +286,10 @@ void wear_experiment(const MouldExperiment& options) {
         table.add(cells);
     }
     write_table(
-        options, "wear",
+        table, options.output, "wear",
         fmt::format("Adjusted Rand index as wear grows, mean (least) of {} populations of {} casts of 4 moulds, faces only, "
                     "pressure 0.01, noise 0.001",
-                    options.seeds, options.objects),
-        table);
+                    options.seeds, options.objects));
     write_plot(Path(options.output) / "wear.svg", plot);
 }
 
@@ -192,27 +325,27 @@ void run_experiment(const MouldExperiment& options) {
     CastOptions cast = cast_of(options, 0.01);
     cast.beard = 0.4;
     cast.dents = 2;
-    const Heads heads = synthetic_heads(population, cast);
-    const auto moulded = [&](std::size_t i) { return !heads.hand_made[i]; };
-    const auto short_hair = [&](std::size_t i) { return moulded(i) && !heads.long_hair[i]; };
+    const std::vector<Head> heads = synthetic_heads(population, cast);
+    const auto moulded = [](const Head& head) { return !head.hand_made; };
+    const auto short_hair = [](const Head& head) { return !head.hand_made && !head.long_hair; };
     struct StudyVariant {
         const char* name;
-        std::function<bool(std::size_t)> chosen;
+        std::function<bool(const Head&)> chosen;
         std::vector<HeadPart> without;
         const char* drawn = nullptr;  ///< file of the plot
     };
     const std::vector<StudyVariant> runs{
-        {"moulded, faces only", moulded, {HeadPart::back}, "moulded.svg"},
-        {"short hair, heads without beards", [&](std::size_t i) { return short_hair(i) && !heads.beard[i]; }, {HeadPart::back}},
-        {"short hair, with beards", short_hair, {HeadPart::back}},
+        {"moulded, faces only", moulded, back_only, "moulded.svg"},
+        {"short hair, heads without beards", [&](const Head& head) { return short_hair(head) && !head.beard; }, back_only},
+        {"short hair, with beards", short_hair, back_only},
         {"short hair, beards removed", short_hair, {HeadPart::back, HeadPart::beard}},
         {"short hair, beards and chins removed", short_hair, {HeadPart::back, HeadPart::beard, HeadPart::chin}},
-        {"formed by hand, whole heads (truth: hats)", [&](std::size_t i) { return !moulded(i); }, {}},
+        {"formed by hand, whole heads (truth: hats)", [](const Head& head) { return head.hand_made; }, {}},
         {"all together, whole heads (truth: moulds, hats)", everyone, {}, "all.svg"}};
     TextTable table({"run", "heads", "kinds", "groups", "adjusted Rand index", "silhouette", "thesis's choice: groups",
                      "its index", "moulded against hand-made"});
     for (const StudyVariant& run : runs) {
-        const Compared compared = compare(heads, run.chosen, [&](std::size_t) { return run.without; });
+        const Compared compared = compare(heads, run.chosen, run.without);
         const MouldGroups groups = grouped(compared, by_default, 0), theirs = grouped(compared, thesis, 0);
         // Number of groups that contain both kinds.
         std::map<int, std::set<bool>> kinds;
@@ -227,14 +360,13 @@ void run_experiment(const MouldExperiment& options) {
         if (run.drawn != nullptr)
             draw_groups(Path(options.output) / run.drawn, std::string(run.name) + ": groups as the thesis finds them", theirs,
                         compared.moulds);
-        std::cerr << run.name << " done\n";
+        fmt::print(stderr, "{} done\n", run.name);
     }
     write_table(
-        options, "runs",
+        table, options.output, "runs",
         fmt::format("The thesis's runs: {} casts of 4 moulds (wear 0.01, pressure 0.01, noise 0.001, beards on 40 %), {} heads "
                     "formed by hand",
-                    population.objects, population.hand_made),
-        table);
+                    population.objects, population.hand_made));
 }
 
 void scan_experiment(const MouldExperiment& options) {
@@ -253,10 +385,9 @@ void scan_experiment(const MouldExperiment& options) {
             table.add(cells);
             fmt::print(stderr, "difference {:g} wear {:g} done\n", difference, wear);
         }
-    write_table(options, "scans",
+    write_table(table, options.output, "scans",
                 fmt::format("Mixes of {} scanned faces: adjusted Rand index over {} casts of 4 moulds", options.faces.size(),
-                            options.objects),
-                table);
+                            options.objects));
 }
 
 /// Compares similarities and choices of epsilon for grouping synthetic heads, and mixes of scanned faces, by mould.

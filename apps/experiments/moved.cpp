@@ -2,7 +2,6 @@
 #include "harness.h"
 #include "scenes.h"
 
-#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
 #include "ostraka/files/json.h"
@@ -15,12 +14,12 @@ namespace ostraka::experiments {
 
 namespace {
 
-struct MovedOptions {
-    std::string mesh, annotations, output, fit, pose, fragment;
+struct MovedOptions : AnnotatedOptions {
+    MovedOptions() { output = "experiments-output/moved"; }
+    std::string fit, pose, fragment;
     std::vector<std::string> shapes;
     void list_options(OptionList& list) {
-        list("mesh", mesh, "the shape at rest").positional().required();
-        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        AnnotatedOptions::list_options(list);
         list("shapes", shapes, "mesh files with the same vertices").positional();
         list("fit", fit,
              "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "
@@ -28,7 +27,6 @@ struct MovedOptions {
              "the shape at rest is moved to the frame in which the fragment was placed");
         list("pose", pose, "file of 'ostraka mesh break --pose-out', if the fragment was moved");
         list("fragment", fragment, "mesh file of the fragment: laid.ply shows where it was placed");
-        list("output", output, "output folder").required();
     }
 };
 
@@ -53,8 +51,7 @@ void write_placed(const Path& file, const Mesh& shape, const Mesh& fragment) {
 
 void moved_annotations(const MovedOptions& options) {
     const Path folder(options.output), fit(options.fit);
-    const Mesh mesh = read_mesh(options.mesh).mesh;
-    const AnnotationSet set = read_annotations(options.annotations, mesh);
+    const auto [mesh, set] = options.read();
     std::vector<Point> rest = ostraka::points_of(mesh);
     std::vector<std::string> shapes = options.shapes;
     if (options.fit.empty() == shapes.empty()) fail_usage("the shapes are not clear", "give either mesh files or --fit");

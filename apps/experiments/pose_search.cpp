@@ -1,8 +1,10 @@
 // How often pose search finds the position of a broken piece, and how often its verdict is correct.
 #include "harness.h"
 #include "scenes.h"
+#include "shatter.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/fracture/fragment.h"
 #include "ostraka/registration/part_alignment.h"
 #include "ostraka/registration/pose_search.h"
 #include "ostraka/synthetic/fragments.h"
@@ -70,38 +72,31 @@ PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& mid
 }
 
 struct Count {
-    std::size_t all = 0, right = 0, found = 0, decided = 0, decided_right = 0;
+    Hits right, found, decided, decided_right;
     double seconds = 0;
 };
 
 /// Registers the pieces of one case to its whole.
 class CaseTrial {
 public:
-    CaseTrial(const Case& one, const PoseSearchExperiment& options, Rows& csv)
-        : case_(one),
+    CaseTrial(const Case& trial, const PoseSearchExperiment& options, Rows& csv)
+        : case_(trial),
           options_(options),
           csv_(csv),
-          whole_(read_or_make(one.whole, options.vertices, 1)),
-          other_(read_or_make(one.from, options.vertices, 2)),
+          whole_(read_or_make(trial.whole, options.vertices, 1)),
+          other_(read_or_make(trial.from, options.vertices, 2)),
           surface_(whole_) {
-        if (one.kind == Case::Kind::stranger) {
+        if (trial.kind == Case::Kind::stranger) {
             // Scaled to the size of the whole, so that size does not reveal it.
-            const double ratio = std::sqrt(surface_area(whole_) / surface_area(other_));
-            other_ = warped(std::move(other_), [&](const Vector3d& p) { return ratio * p; });
+            other_ = scaled_by(other_, std::sqrt(surface_area(whole_) / surface_area(other_)));
         }
         const Stopwatch building;
         search_.emplace(surface_, options.search);
-        fmt::print(stderr, "{}: prepared in {:g} s\n", one.name, building.seconds().processor);
+        fmt::print(stderr, "{}: prepared in {:g} s\n", trial.name, building.seconds().processor);
     }
 
     /// Counts nothing if no such piece can be broken off.
     void lay(double share, double noise, std::uint64_t seed, std::map<std::string, Count>& table) const {
-        const std::string row = fmt::format("{} | {:g} | {:g}", case_.name, 100 * share, 100 * noise);
-        if (const auto piece = broken(share, noise, seed)) judge(*piece, share, noise, seed, table[row]);
-    }
-
-private:
-    [[nodiscard]] std::optional<SyntheticFragment> broken(double share, double noise, std::uint64_t seed) const {
         Random random(seed, 77);
         const Mesh& source = case_.kind == Case::Kind::same ? whole_ : other_;
         const Point centre = source.point(Vertex(static_cast<Index>(random.below(source.number_of_vertices()))));
@@ -110,13 +105,16 @@ private:
         breaking.noise = noise;
         breaking.erosion = options_.erosion;
         breaking.seed = seed;
+        std::optional<SyntheticFragment> piece;
         try {
-            return generate_fragment(source, centre, breaking);
+            piece = generate_fragment(source, centre, breaking);
         } catch (const Error&) {
-            return std::nullopt;
+            return;
         }
+        judge(*piece, share, noise, seed, table[fmt::format("{} | {:g} | {:g}", case_.name, 100 * share, 100 * noise)]);
     }
 
+private:
     /// True position of a piece on the whole.
     [[nodiscard]] Motion truth_of(const SyntheticFragment& piece) const {
         if (case_.kind != Case::Kind::member) return piece.pose;
@@ -152,11 +150,8 @@ private:
             const PoseError e = error_of(result.candidates[c].pose, truth, middle, diagonal, {});
             if (e.degrees < 15 && e.percent < 5) rank = static_cast<int>(c);
         }
-        ++count.all;
-        count.right += right ? 1 : 0;
-        count.found += rank >= 0 ? 1 : 0;
-        count.decided += result.decided ? 1 : 0;
-        count.decided_right += result.decided && right ? 1 : 0;
+        count.right.add(right), count.found.add(rank >= 0), count.decided.add(result.decided);
+        if (result.decided) count.decided_right.add(right);
         count.seconds += seconds;
         csv_(case_.name, kind_words[static_cast<int>(case_.kind)], share, noise, options_.erosion, seed, error.degrees,
              error.percent, right, rank >= 0, best.score, best.share,
@@ -181,8 +176,8 @@ void pose_search(const PoseSearchExperiment& options) {
         "case,kind,share,noise,erosion,seed,degrees,percent,right,found,score,share_on,second,margin,confidence,decided,freedom,"
         "seconds,rank");
     std::map<std::string, Count> counts;
-    for (const Case& one : cases) {
-        const CaseTrial trial(one, options, csv);
+    for (const Case& each : cases) {
+        const CaseTrial trial(each, options, csv);
         for (const double share : options.shares)
             for (const double noise : options.noises)
                 for (int k = 0; k < options.pieces; ++k) trial.lay(share, noise, static_cast<std::uint64_t>(1 + k), counts);
@@ -191,10 +186,10 @@ void pose_search(const PoseSearchExperiment& options) {
         "piece of | % of the surface | noise % | pieces | right % | among the candidates % | decided % | of these right % | s "
         "each");
     for (const auto& [name, count] : counts)
-        table.row("{} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.2f}", name, count.all, percentage(count.right, count.all),
-                  percentage(count.found, count.all), percentage(count.decided, count.all),
-                  count.decided > 0 ? fmt::format("{:.0f}", percentage(count.decided_right, count.decided)) : "-",
-                  count.seconds / static_cast<double>(count.all));
+        table.row("{} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.2f}", name, count.right.all, count.right.percent(),
+                  count.found.percent(), count.decided.percent(),
+                  count.decided.hits > 0 ? fmt::format("{:.0f}", count.decided_right.percent()) : "-",
+                  count.seconds / static_cast<double>(count.right.all));
     csv.write(options.csv);
 }
 

@@ -58,11 +58,11 @@ void cut(TriangleSoup& soup, Random& random) {
                 if (chosen[t] != 0)
                     for (const Index v : soup.triangles[t]) inside[v] = 1;
         }
-        std::map<Index, Index> own;
+        std::map<Index, Index> copies;
         for (std::size_t t = 0; t < chosen.size(); ++t) {
             if (chosen[t] == 0) continue;
             for (Index& v : soup.triangles[t]) {
-                const auto [at, fresh] = own.emplace(v, static_cast<Index>(soup.points.size()));
+                const auto [at, fresh] = copies.emplace(v, static_cast<Index>(soup.points.size()));
                 if (fresh) soup.points.push_back(std::array(soup.points[v]));
                 v = at->second;
             }
@@ -125,7 +125,8 @@ std::string names_of(int defects) {
 
 void repairs(const DefectOptions& options) {
     Rows rows("mesh,defects,triangles,closed,components,components were,volume error,self-intersections,what is left");
-    std::size_t tried = 0, restored = 0, without_crossings = 0;
+    Hits restored;
+    std::size_t without_crossings = 0;
     Table table("mesh | triangles | restored | of | largest error of volume, % | not restored");
     for (std::size_t m = 0; m < options.meshes.size(); ++m) {
         const std::string& file = options.meshes[m];
@@ -136,13 +137,12 @@ void repairs(const DefectOptions& options) {
             table.row("{} | not closed, left out | | | |", name);
             continue;
         }
-        std::size_t good = 0;
+        Hits good;
         double worst = 0;
         std::vector<std::string> failed;
         for (int i = 0; i < options.combinations; ++i) {
             Random random(options.seed, 1000 * m + static_cast<std::size_t>(i));
             const int defects = 1 + static_cast<int>(random.below(all_defects));
-            ++tried;
             MeshDiagnosis is;
             std::string left;
             try {
@@ -154,7 +154,7 @@ void repairs(const DefectOptions& options) {
             const double error = std::abs(is.volume - was.volume) / std::abs(was.volume);
             const bool ok = is.closed() && is.manifold() && is.oriented() && is.components.size() == was.components.size() &&
                             is.euler() == was.euler() && error <= 1e-3;
-            good += ok;
+            good.add(ok);
             without_crossings += ok && is.self_intersections <= was.self_intersections;
             if (ok) worst = std::max(worst, error);
             else failed.push_back(names_of(defects));
@@ -162,14 +162,13 @@ void repairs(const DefectOptions& options) {
                  is.self_intersections, left);
         }
         restored += good;
-        table.row("{} | {} | {} | {} | {:.2g} | {}", name, whole.triangles.size(), good, options.combinations, 100 * worst,
+        table.row("{} | {} | {} | {} | {:.2g} | {}", name, whole.triangles.size(), good.hits, good.all, 100 * worst,
                   fmt::join(failed, "; "));
     }
     fmt::print(
-        "\n{} of {} restored: closed, oriented, a manifold, of the same components and genus, the volume within 0.1 %; {} of "
-        "these "
+        "\n{} restored: closed, oriented, a manifold, of the same components and genus, the volume within 0.1 %; {} of these "
         "without new self-intersections\n",
-        restored, tried, without_crossings);
+        restored.text(), without_crossings);
     rows.write(options.csv);
 }
 

@@ -16,6 +16,8 @@ namespace ostraka::experiments {
 
 namespace {
 
+using Eigen::Vector3d;
+
 constexpr double factor = 1.4;
 constexpr double ring_radius = 1.6;  ///< in units of a flower's radius
 constexpr double tilt = 20 * M_PI / 180;
@@ -45,10 +47,9 @@ std::vector<Variant> variants() {
             list.push_back({name + std::string(converged ? ", converged" : ", 3 iterations"),
                             file + std::string(converged ? "-converged" : "-3"), "{" + parameters + "}", 4, laplacian, "rest",
                             converged ? 2000 : 3, converged, std::string(file) == "tilted"});
-    const int usual = DeformOptions().solve.iterations;
-    list.push_back({"defaults, soft", "soft", "{}", 1, 2, "edited", usual, true});
-    list.push_back({"defaults, hard", "hard", R"({"hard": true})", 1, 2, "edited", usual, true});
-    list.push_back({"seated", "seat", R"({"shapes": "seat"})", 1, 2, "edited", usual, true});
+    list.push_back({"defaults, soft", "soft", "{}", 1, 2, "edited", usual.iterations, true});
+    list.push_back({"defaults, hard", "hard", R"({"hard": true})", 1, 2, "edited", usual.iterations, true});
+    list.push_back({"seated", "seat", R"({"shapes": "seat"})", 1, 2, "edited", usual.iterations, true});
     return list;
 }
 
@@ -60,11 +61,11 @@ struct Ring {
 Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
     std::vector<bool> inside(pot.mesh.number_of_faces(), false), ring(inside.size(), false);
     for (const int id : flowers)
-        for (const Index f : pot.set.find(id)->faces) inside[f] = true;
+        for (const Index f : pot.annotations.find(id)->faces) inside[f] = true;
     const std::vector<Point> points = points_of(pot.mesh);
     for (const int id : flowers) {
-        const std::vector<Index> vertices = vertices_of(pot.mesh, *pot.set.find(id));
-        const Eigen::Vector3d middle = centre_of(points, vertices);
+        const std::vector<Index> vertices = vertices_of(pot.mesh, *pot.annotations.find(id));
+        const Vector3d middle = centre_of(points, vertices);
         double radius = 0;
         for (const Index v : vertices) radius = std::max(radius, (eigen(points[v]) - middle).norm());
         for (const Face f : pot.mesh.faces())
@@ -77,10 +78,10 @@ Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
 
 /// The vertex nearest to the mean of a flower's vertices in their plane (section 5.2.1).
 Index reference_vertex(const std::vector<Point>& points, const std::vector<Index>& vertices) {
-    const Eigen::Vector3d mean = centre_of(points, vertices);
+    const Vector3d mean = centre_of(points, vertices);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Index v : vertices) spread += (eigen(points[v]) - mean) * (eigen(points[v]) - mean).transpose();
-    const Eigen::Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
+    const Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
     const auto off = [&](Index v) { return normal.cross(eigen(points[v]) - mean).squaredNorm(); };
     return *std::min_element(vertices.begin(), vertices.end(), [&](Index v, Index w) { return off(v) < off(w); });
 }
@@ -101,12 +102,13 @@ public:
         : options_(options),
           pot_(synthetic_subject(options.data, "teapot", options.vertices == 0 ? 60000 : options.vertices)),
           rest_(points_of(pot_.mesh)) {
-        for (const Annotation& annotation : pot_.set.annotations)
+        for (const Annotation& annotation : pot_.annotations.annotations)
             if (annotation.tag.starts_with("flower ")) flowers_.push_back(annotation.id);
         if (flowers_.size() != 5)
             fail_input((Path(options.data) / "teapot.recipe.json").string(), "has not five flowers", "use the project's own");
-        for (const int id : flowers_) references_[id] = reference_vertex(rest_, vertices_of(pot_.mesh, *pot_.set.find(id)));
-        edited_ = warped(rest_, [](Eigen::Vector3d p) { return p.z() *= factor, p; });
+        for (const int id : flowers_)
+            references_[id] = reference_vertex(rest_, vertices_of(pot_.mesh, *pot_.annotations.find(id)));
+        edited_ = warped(rest_, [](Vector3d p) { return p.z() *= factor, p; });
         ring_ = ring_of(pot_, flowers_);
         edited_mesh_ = with_points(pot_.mesh, edited_);
     }
@@ -114,10 +116,10 @@ public:
     void run() {
         const Path folder(options_.output);
         const std::vector<Variant> list = variants();
-        Trials trials(pot_, edited_);
+        Trials trials{pot_};
         trials.given("rest", "rest", rest_);
         trials.given("stretched, unconstrained", "unconstrained", edited_);
-        for (const Variant& variant : list) trials.deformed(variant.name, variant.file, graph(variant), settings(variant));
+        for (const Variant& variant : list) trials.solved(variant.name, variant.file, method(variant), solving(variant));
         const SurfaceSearch surface(edited_mesh_);
         Plot trade{"Flowers kept against their surroundings",
                    {"rms distance of the worst flower from a rigid copy, mm", true, {}, {}},
@@ -155,42 +157,40 @@ public:
         });
         write_table(table, folder, "table");
         write_plot(folder / "trade-off.svg", trade);
-        const auto problem = [&](const std::string& name, const std::string& title, const Variant& variant) {
-            return deform_problem(name, title, pot_, edited_, graph(variant), settings(variant));
-        };
         compare_convergence(folder,
-                            {problem("thesis", "Same level on the teapot, thesis mode, 4 against 4", list.front()),
-                             problem("defaults", "Same level on the teapot, defaults, soft", list[list.size() - 3])},
+                            {problem_of("thesis", "Same level on the teapot, thesis mode, 4 against 4", method(list.front())),
+                             problem_of("defaults", "Same level on the teapot, defaults, soft", method(list[list.size() - 3]))},
                             options_.convergence);
     }
 
 private:
-    [[nodiscard]] RelationGraph graph(const Variant& variant) const {
+    [[nodiscard]] Method method(const Variant& variant) const {
         RelationGraph graph;
         graph.relationships.push_back(constraint(0, "same level", flowers_, variant.parameters, variant.weight));
-        return graph;
-    }
-    static DeformOptions settings(const Variant& variant) {
         DeformOptions options;
         set_option(options, "details", variant.details);
         options.laplacian = variant.laplacian;
         options.handles = 0.001;  // the edit moves all vertices
-        options.solve.iterations = variant.iterations;
-        if (!variant.accelerated) options.solve.window = 0;
+        return deform_method(pot_, edited_, std::move(graph), options);
+    }
+    static SolveOptions solving(const Variant& variant) {
+        SolveOptions options = usual;
+        options.iterations = variant.iterations;
+        if (!variant.accelerated) options.window = 0;
         return options;
     }
 
     [[nodiscard]] Measures measure(const std::vector<Point>& points, const SurfaceSearch& surface, bool tilted) const {
         Measures result;
-        const Eigen::Vector3d up = tilted ? Eigen::Vector3d(std::sin(tilt), 0, std::cos(tilt)) : Eigen::Vector3d(0, 0, 1);
+        const Vector3d up = tilted ? Vector3d(std::sin(tilt), 0, std::cos(tilt)) : Vector3d(0, 0, 1);
         const Mesh mesh = with_points(pot_.mesh, points);
         std::vector<double> means, centroids, references;
         for (const int id : flowers_) {
-            const auto own = vertices_of(pot_.mesh, *pot_.set.find(id));
-            means.push_back(up.dot(centre_of(points, own)));
-            centroids.push_back(up.dot(eigen(area_moments(mesh, pot_.set.find(id)->faces).centroid)));
+            const auto vertices = vertices_of(pot_.mesh, *pot_.annotations.find(id));
+            means.push_back(up.dot(centre_of(points, vertices)));
+            centroids.push_back(up.dot(eigen(area_moments(mesh, pot_.annotations.find(id)->faces).centroid)));
             references.push_back(up.dot(eigen(points[references_.at(id)])));
-            result.rigid = std::max(result.rigid, rigid_distance(pot_, own, points));
+            result.rigid = std::max(result.rigid, rigid_distance(pot_, vertices, points));
         }
         const auto spread = [](const std::vector<double>& heights) {
             const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
@@ -199,19 +199,16 @@ private:
         result.heights = spread(means);
         result.centroids = spread(centroids);
         result.references = spread(references);
-        const std::vector<double> stretch = distortions(pot_.mesh, edited_, points);
-        double area = 0, squares = 0;
+        std::vector<double> turned(pot_.mesh.number_of_faces(), 0);
         for (const Index f : ring_.faces) {
-            const double weight = face_area(pot_.mesh, Face(f));
-            const Vector normal = area_vector(mesh, Face(f));
-            const Eigen::Vector3d n = eigen(normal), m = eigen(surface.normal(surface.closest(centroid(mesh, Face(f))).face));
-            area += weight;
-            result.stretch += weight * stretch[f];
-            result.turned += weight * std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / M_PI;
+            const Vector3d n = eigen(area_vector(mesh, Face(f))),
+                           m = eigen(surface.normal(surface.closest(centroid(mesh, Face(f))).face));
+            turned[f] = std::atan2(n.cross(m).norm(), n.dot(m)) * 180 / M_PI;
         }
+        double squares = 0;
         for (const Index v : ring_.vertices) squares += std::pow(surface.closest(points[v]).distance, 2);
-        result.stretch /= area;
-        result.turned /= area;
+        result.stretch = mean_over(pot_.mesh, ring_.faces, distortions(pot_.mesh, edited_, points));
+        result.turned = mean_over(pot_.mesh, ring_.faces, turned);
         result.off = 100 * std::sqrt(squares / static_cast<double>(ring_.vertices.size())) / box_diagonal(pot_.mesh);
         return result;
     }

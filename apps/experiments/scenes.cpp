@@ -1,7 +1,10 @@
 #include "scenes.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/measure/measure.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/remesh.h"
 #include "ostraka/remesh/simplify.h"
@@ -14,7 +17,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <queue>
 
 namespace ostraka::experiments {
 
@@ -62,22 +64,7 @@ std::pair<std::string, std::string> split_pair(const std::string& pair) {
 }
 
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share) {
-    std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
-    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
-    distance[seed] = 0;
-    queue.emplace(0.0, seed);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[v]) continue;
-        for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) {
-            const Vertex w = mesh.target(h);
-            const double next = d + std::sqrt(CGAL::squared_distance(mesh.point(Vertex(v)), mesh.point(w)));
-            if (next >= distance[w]) continue;
-            distance[w] = next;
-            queue.emplace(next, w);
-        }
-    }
+    const std::vector<double> distance = edge_distances(mesh, {{seed, 0.0}});
     std::vector<std::pair<double, Index>> order;
     for (const Face f : mesh.faces()) {
         double sum = 0;
@@ -127,6 +114,12 @@ const Annotation& tagged(const AnnotationSet& set, const std::string& tag) {
     fail_input(tag, "no annotation has this tag", "see the recipe of the experiment");
 }
 
+Subject AnnotatedOptions::read() const {
+    Mesh shape = read_mesh(mesh).mesh;
+    AnnotationSet set = read_annotations(annotations, shape);
+    return {{std::move(shape), std::move(set)}};
+}
+
 Annotation landmark(int id, const std::string& tag, Index vertex) {
     Annotation point;
     point.id = id;
@@ -136,24 +129,29 @@ Annotation landmark(int id, const std::string& tag, Index vertex) {
     return point;
 }
 
-Vector3d surface_centre(const Mesh& mesh) {
-    Vector3d sum = Vector3d::Zero();
-    double area = 0;
-    for (const Face f : mesh.faces()) {
-        const double weight = face_area(mesh, f);
-        sum += weight * eigen(centroid(mesh, f));
-        area += weight;
-    }
-    return sum / area;
+Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight) {
+    Relationship r;
+    r.id = id;
+    r.type = type;
+    r.annotations = std::move(members);
+    r.is_constraint = true;
+    r.weight = weight;
+    r.constraint = parameters;
+    return r;
 }
 
-Motion random_motion(Random& random, double far) {
-    Motion motion;
-    Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
-    q.normalize();
-    motion.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
-    motion.translation = far * normal_vector(random);
-    return motion;
+double add_height(const Mesh& mesh, Annotation& part, const std::string& name) {
+    Attribute height;
+    height.id = 50;
+    height.name = name;
+    height.type = AttributeType::measure;
+    height.measure.tool = "bounding";
+    height.measure.direction = {0, 0, 1};
+    height.measure.unit = "mm";
+    for (const Index pin : extremes(mesh, part, *height.measure.direction)) height.measure.points.push_back(pin);
+    height.measure.value = evaluate(mesh, part, height.measure);
+    part.attributes.push_back(height);
+    return *height.measure.value;
 }
 
 double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.rotation).angle(); }
@@ -162,6 +160,12 @@ double off_of(const Mesh& mesh, const Motion& motion) {
     double squares = 0;
     for (const Vertex v : mesh.vertices()) squares += (motion(eigen(mesh.point(v))) - eigen(mesh.point(v))).squaredNorm();
     return std::sqrt(squares / static_cast<double>(mesh.number_of_vertices()));
+}
+
+std::vector<Point> mesh_points(const Eigen::Matrix3Xd& columns) {
+    std::vector<Point> points;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) points.push_back(point_of(columns.col(i)));
+    return points;
 }
 
 std::vector<double> displacements(const std::vector<Point>& from, const std::vector<Point>& to) {

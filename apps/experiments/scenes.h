@@ -1,11 +1,14 @@
 // The scenes of experiments: objects at several resolutions, regions, motions, coloured meshes.
 #pragma once
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/annotated_mesh.h"
+#include "ostraka/core/options.h"
 #include "ostraka/files/file.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/rigid_fit.h"
 #include "ostraka/geom/with_points.h"
+#include "ostraka/relation/graph.h"
+#include "ostraka/semantic/edit.h"
 #include "ostraka/stats/random.h"
 
 #include <optional>
@@ -29,6 +32,26 @@ Mesh remeshed(const Mesh& mesh, std::uint64_t vertices);
 /// Splits "TEMPLATE=MEMBER". Throws Error (usage) if there is no equals sign.
 std::pair<std::string, std::string> split_pair(const std::string& pair);
 
+/// The annotation with this tag. Throws Error (input) if there is none.
+const Annotation& tagged(const AnnotationSet& set, const std::string& tag);
+/// An annotated mesh whose parts are found by their tags.
+struct Subject : AnnotatedMesh {
+    [[nodiscard]] const Annotation& part(const std::string& tag) const { return tagged(annotations, tag); }
+    [[nodiscard]] int id(const std::string& tag) const { return part(tag).id; }
+    [[nodiscard]] std::vector<Index> vertices(const std::string& tag) const { return vertices_of(mesh, part(tag)); }
+};
+
+/// Options of experiments on an annotated mesh.
+struct AnnotatedOptions {
+    std::string mesh, annotations, output = "experiments-output";
+    void list_options(OptionList& list) {
+        list("mesh", mesh, "mesh file").positional().required();
+        list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
+        list("output", output, "output folder");
+    }
+    [[nodiscard]] Subject read() const;
+};
+
 /// A copy whose vertices are at warp(position), Eigen::Vector3d to Eigen::Vector3d.
 template <class Warp>
 Mesh warped(Mesh mesh, const Warp& warp) {
@@ -51,11 +74,10 @@ std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 /// Farthest-point sampling of vertices, starting with the one farthest from the centre.
 std::vector<Index> spread_out(const Mesh& mesh, const std::vector<Index>& among, std::size_t count);
 std::vector<Index> all_vertices(const Mesh& mesh);
-/// The annotation with this tag. Throws Error (input) if there is none.
-const Annotation& tagged(const AnnotationSet& set, const std::string& tag);
 Annotation landmark(int id, const std::string& tag, Index vertex);
-/// Centre of gravity of the surface.
-Eigen::Vector3d surface_centre(const Mesh& mesh);
+Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight);
+/// Adds a measure of the part's height, along z, in mm; returns its value.
+double add_height(const Mesh& mesh, Annotation& part, const std::string& name);
 /// Calls take(barycentric weights) for the centroids of the n^2 equal triangles that divide a triangle.
 template <class Take>
 void for_each_part(int n, const Take& take) {
@@ -67,8 +89,6 @@ void for_each_part(int n, const Take& take) {
             }
 }
 
-/// A uniformly random rotation, and a shift of about `far`.
-Motion random_motion(Random& random, double far);
 double degrees_of(const Motion& motion);
 /// Root mean square displacement of the vertices.
 double off_of(const Mesh& mesh, const Motion& motion);
@@ -81,6 +101,8 @@ Motion motion_of(const Rows& matrix) {
     return motion;
 }
 
+/// The columns as points.
+std::vector<Point> mesh_points(const Eigen::Matrix3Xd& columns);
 /// Length of each vertex's displacement between two shapes.
 std::vector<double> displacements(const std::vector<Point>& from, const std::vector<Point>& to);
 /// Writes a PLY whose vertices are coloured by one value each, also stored as the property "quality". The colour scale runs

@@ -1,17 +1,14 @@
 #include "semantics.h"
 
+#include "ostraka/algebra/dense.h"
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/files/json_build.h"
 #include "ostraka/files/npy.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/make_mesh.h"
 
-#include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <set>
 
 namespace ostraka::experiments {
@@ -41,49 +38,47 @@ Subject synthetic_subject(const Path& data, const std::string& object, std::uint
     SyntheticMesh made = make_mesh(synthetic_object(object), {.vertices = vertices});
     if (warp) made.mesh = warped(std::move(made.mesh), warp);
     AnnotationSet set = apply_recipe(data / (object + ".recipe.json"), made.mesh, made.face_labels);
-    return {std::move(made.mesh), std::move(set)};
+    return {{std::move(made.mesh), std::move(set)}};
 }
 
-Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight) {
-    Relationship r;
-    r.id = id;
-    r.type = type;
-    r.annotations = std::move(members);
-    r.is_constraint = true;
-    r.weight = weight;
-    r.constraint = parameters;
-    return r;
+Method thesis_method(const Subject& subject, std::vector<Point> edited, std::function<Constraints()> constraints) {
+    return [&subject, edited = std::move(edited), constraints = std::move(constraints)](const SolveOptions& options) {
+        Constraints list = constraints();
+        Outcome outcome;
+        const Stopwatch watch;
+        MeshSpaceSolver solver(std::move(list), columns_of(subject.mesh));
+        Points x = columns_of(edited);
+        outcome.summary = solver.solve(x, options);
+        outcome.points = mesh_points(x);
+        outcome.seconds = watch.seconds().wall;
+        return outcome;
+    };
 }
 
-SolveSummary solve_thesis(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
-                          const SolveOptions& options, std::vector<Point>* points) {
-    MeshSpaceSolver solver(std::move(constraints), columns_of(subject.mesh));
-    Points x = columns_of(edited);
-    SolveSummary summary = solver.solve(x, options);
-    if (points != nullptr)
-        for (Eigen::Index i = 0; i < x.cols(); ++i) points->push_back(point_of(x.col(i)));
-    return summary;
+Method deform_method(const Subject& subject, std::vector<Point> edited, RelationGraph graph, DeformOptions options) {
+    return [&subject, edited = std::move(edited), graph = std::make_shared<const RelationGraph>(std::move(graph)),
+            options](const SolveOptions& solve) {
+        DeformOptions deforming = options;
+        deforming.solve = solve;
+        deforming.conflicts = 0;
+        if (solve.tolerance < 1e-9) deforming.passes = 1;  // a fixed number of iterations is requested
+        const Stopwatch watch;
+        DeformResult result = deform({subject}, *graph, moved_to(points_of(subject.mesh), edited), "experiment", deforming);
+        return Outcome{"", "", std::move(result.points), std::move(result.summary), result.rounds, watch.seconds().wall};
+    };
 }
 
-DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
-                            DeformOptions options, const std::string& name) {
-    options.conflicts = 0;
-    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
-    return deform({{subject.mesh, subject.set}}, graph, moved_to(points_of(subject.mesh), edited), name, options);
+Problem problem_of(const std::string& name, const std::string& title, Method method) {
+    return {name, title, [method = std::move(method)](int iterations, int window) {
+                return method({iterations, 1e-10, 0, window}).summary;
+            }};
 }
 
-void Trials::thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options) {
-    Outcome& outcome = outcomes.emplace_back(Outcome{name, file, {}, {}});
-    const Stopwatch watch;
-    outcome.summary = solve_thesis(subject_, edited_, std::move(constraints), options, &outcome.points);
-    outcome.seconds = watch.seconds().wall;
-}
-
-void Trials::deformed(const std::string& name, const std::string& file, const RelationGraph& graph, DeformOptions options) {
-    std::cerr << "  " << name << '\n';
-    const Stopwatch watch;
-    const DeformResult result = solve_deformed(subject_, edited_, graph, std::move(options), name);
-    outcomes.push_back({name, file, result.points, result.summary, result.rounds, watch.seconds().wall});
+void Trials::solved(const std::string& name, const std::string& file, const Method& method, const SolveOptions& options) {
+    fmt::print(stderr, "  {}\n", name);
+    outcomes.push_back(method(options));
+    outcomes.back().name = name;
+    outcomes.back().file = file;
 }
 
 TextTable trial_table(std::vector<std::string> columns) {
@@ -91,49 +86,27 @@ TextTable trial_table(std::vector<std::string> columns) {
     return TextTable(columns);
 }
 
-void write_table(const TextTable& table, const Path& folder, const std::string& name) {
-    table.write(folder, name);
-    std::cout << table.markdown() << '\n';
-}
-
 void Trials::write(const Path& folder, TextTable& table, const std::function<std::vector<std::string>(const Outcome&)>& cells,
                    const std::function<std::vector<double>(const Outcome&)>& value_per_face) const {
     for (const Outcome& outcome : outcomes) {
-        const Mesh mesh = with_points(subject_.mesh, outcome.points);
-        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation({mesh, subject_.set}), {.comment = outcome.name});
+        const Mesh mesh = with_points(subject.mesh, outcome.points);
+        write_mesh(folder / (outcome.file + ".ply"), mesh, colour_by_annotation({mesh, subject.annotations}),
+                   {.comment = outcome.name});
         if (&outcome != &outcomes.front()) {
             const std::vector<double> values = value_per_face(outcome);
             write_npy(folder / (outcome.file + ".npy"), std::span(values), {values.size()});
         }
-        const std::vector<std::string> own = cells(outcome);
-        if (own.empty()) continue;
+        const std::vector<std::string> measured = cells(outcome);
+        if (measured.empty()) continue;
         const int iterations = outcome.summary.iterations;
         std::vector<std::string> row{outcome.name,
                                      outcome.rounds > 0 ? fmt::format("{} rounds", outcome.rounds)
                                      : iterations > 0   ? std::to_string(iterations)
                                                         : "",
                                      outcome.if_solved(fixed(outcome.seconds, 2))};
-        row.insert(row.end(), own.begin(), own.end());
+        row.insert(row.end(), measured.begin(), measured.end());
         table.add(row);
     }
-}
-
-Problem thesis_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
-                       std::function<Constraints()> constraints) {
-    return {name, title,
-            [&subject, edited = std::move(edited), constraints = std::move(constraints)](int iterations, int window) {
-                return solve_thesis(subject, edited, constraints(), {iterations, 1e-10, 0, window});
-            }};
-}
-
-Problem deform_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
-                       RelationGraph graph, DeformOptions options) {
-    return {name, title,
-            [&subject, edited = std::move(edited), graph = std::make_shared<RelationGraph>(std::move(graph)), options](
-                int iterations, int window) mutable {
-                options.solve = {iterations, 1e-10, 0, window};
-                return solve_deformed(subject, edited, *graph, options).summary;
-            }};
 }
 
 void add_closeness(Constraints& list, const Subject& subject, const std::vector<Point>& edited, double weight) {
@@ -186,8 +159,7 @@ std::vector<double> distortions(const Mesh& mesh, const std::vector<Point>& from
             m << u.norm(), x.dot(v), 0, (v - x * x.dot(v)).norm();
             return m;
         };
-        const Eigen::Matrix2d map = frame(to) * frame(from).inverse();
-        const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(map).singularValues();
+        const Eigen::Vector2d s = singular_values(frame(to) * frame(from).inverse());
         values.push_back(std::max(std::abs(s[0] - 1), std::abs(s[1] - 1)));
     }
     return values;
@@ -201,6 +173,11 @@ double mean_over(const Mesh& mesh, const std::vector<Index>& faces, const std::v
         area += weight;
     }
     return sum / area;
+}
+
+double smooth_step(double from, double to, double x) {
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
 }
 
 std::string moved_text(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to,

@@ -26,15 +26,6 @@ struct SemanticOptions {
     }
 };
 
-/// An object with its annotations.
-struct Subject {
-    Mesh mesh;
-    AnnotationSet set;
-    [[nodiscard]] const Annotation& part(const std::string& tag) const { return tagged(set, tag); }
-    [[nodiscard]] int id(const std::string& tag) const { return part(tag).id; }
-    [[nodiscard]] std::vector<Index> vertices(const std::string& tag) const { return vertices_of(mesh, part(tag)); }
-};
-
 /// A synthetic object; with `warp`, its points are transformed before it is annotated.
 Subject synthetic_subject(const Path& data, const std::string& object, std::uint64_t vertices,
                           const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& warp = {});
@@ -52,49 +43,34 @@ struct Outcome {
     [[nodiscard]] std::string if_solved(const std::string& text) const { return solved() ? text : ""; }
 };
 
-Relationship constraint(int id, const std::string& type, std::vector<int> members, const std::string& parameters, double weight);
-
 using Constraints = std::vector<std::unique_ptr<Constraint>>;
+/// Solves from an edited shape; the outcome has no names.
+using Method = std::function<Outcome(const SolveOptions&)>;
+/// Solves constraints directly, like the thesis's prototype.
+Method thesis_method(const Subject& subject, std::vector<Point> edited, std::function<Constraints()> constraints);
+/// Runs `deform` without a cage; all displaced vertices are handles.
+Method deform_method(const Subject& subject, std::vector<Point> edited, RelationGraph graph, DeformOptions options = {});
+/// A problem to compare plain and accelerated iterations by.
+Problem problem_of(const std::string& name, const std::string& title, Method method);
+inline const SolveOptions five{5, 0, 0, 0}, many{2000, 1e-7, 0, 5}, usual = DeformOptions().solve;
 
 /// Trials of one edit of an object: given shapes, the thesis's method and this library's.
-class Trials {
-public:
-    Trials(const Subject& subject, std::vector<Point> edited) : subject_(subject), edited_(std::move(edited)) {}
+struct Trials {
+    const Subject& subject;
+    std::vector<Outcome> outcomes = {};
 
     void given(const std::string& name, const std::string& file, const std::vector<Point>& points) {
         outcomes.push_back({name, file, points, {}});
     }
-    /// Solves constraints directly, like the thesis's prototype, starting from the edited shape.
-    void thesis(const std::string& name, const std::string& file, Constraints constraints, const SolveOptions& options);
-    /// Runs `deform` without a cage from the edited shape; all displaced vertices are handles.
-    void deformed(const std::string& name, const std::string& file, const RelationGraph& graph, DeformOptions options);
-
+    void solved(const std::string& name, const std::string& file, const Method& method, const SolveOptions& options = usual);
     /// Writes each shape as a PLY with the annotations' colours, and NAME.npy with `value_per_face` of all but the first (NaN:
     /// none). Adds a row of name, iterations, seconds and cells(outcome) for each outcome that has cells.
     void write(const Path& folder, TextTable& table, const std::function<std::vector<std::string>(const Outcome&)>& cells,
                const std::function<std::vector<double>(const Outcome&)>& value_per_face) const;
-
-    std::vector<Outcome> outcomes;
-
-private:
-    const Subject& subject_;
-    std::vector<Point> edited_;
 };
 
 /// A table for trials: the columns after name, iterations and seconds.
 TextTable trial_table(std::vector<std::string> columns);
-/// Prints the table and writes it to FOLDER/NAME.
-void write_table(const TextTable& table, const Path& folder, const std::string& name);
-
-SolveSummary solve_thesis(const Subject& subject, const std::vector<Point>& edited, Constraints constraints,
-                          const SolveOptions& options, std::vector<Point>* points = nullptr);
-DeformResult solve_deformed(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph,
-                            DeformOptions options, const std::string& name = {});
-/// Problems to compare plain and accelerated iterations by.
-Problem thesis_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
-                       std::function<Constraints()> constraints);
-Problem deform_problem(const std::string& name, const std::string& title, const Subject& subject, std::vector<Point> edited,
-                       RelationGraph graph, DeformOptions options);
 
 /// Weight of closeness in the thesis's method, which does not state what fixes the other vertices.
 inline constexpr double closeness_weight = 0.01;
@@ -112,8 +88,13 @@ double rigid_distance(const Subject& subject, const std::vector<Index>& vertices
 std::vector<double> distortions(const Mesh& mesh, const std::vector<Point>& from, const std::vector<Point>& to);
 /// Area-weighted mean over some faces of a value per face.
 double mean_over(const Mesh& mesh, const std::vector<Index>& faces, const std::vector<double>& values);
+/// 0 up to `from`, 1 beyond `to`.
+double smooth_step(double from, double to, double x);
 /// "mean (max)" of the displacements of vertices between two shapes.
 std::string moved_text(const std::vector<Index>& vertices, const std::vector<Point>& from, const std::vector<Point>& to,
                        int after_point);
+
+/// Figure 5.19: a finger in proportion to another.
+void proportions_of_hand(const SemanticOptions& options, Subject& subject, std::vector<Problem>& problems);
 
 }  // namespace ostraka::experiments

@@ -1,6 +1,6 @@
 #include "shatter.h"
-#include "ostraka/core/angles.h"
 
+#include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
@@ -47,15 +47,24 @@ Mesh turned(const std::vector<Vector2d>& profile, int around) {
     return build_mesh(soup);
 }
 
-/// The half-space on one side of a rough sheet, as a closed mesh.
-struct Sheet {
-    Vector3d middle, normal, u, v;
-    double extent = 1;
+/// A sum of waves over the plane or in space.
+template <class V>
+struct Waves {
     struct Wave {
-        Vector2d number;
+        V number;
         double phase, height;
     };
     std::vector<Wave> waves;
+    [[nodiscard]] double add_at(const V& p, double sum) const {
+        for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
+        return sum;
+    }
+};
+
+/// The half-space on one side of a rough sheet, as a closed mesh.
+struct Sheet : Waves<Vector2d> {
+    Vector3d middle, normal, u, v;
+    double extent = 1;
     Vector2d arch = Vector2d::Zero();  ///< heights at the extent, along u and v
 
     Sheet(const Vector3d& place, const Vector3d& across, double size, const ShatterOptions& options, Random& random)
@@ -71,11 +80,7 @@ struct Sheet {
         }
         if (options.bow > 0) arch = options.bow * extent * Vector2d(random.uniform(-1, 1), random.uniform(-1, 1));
     }
-    [[nodiscard]] double height(const Vector2d& p) const {
-        double sum = arch.dot((p / extent).cwiseAbs2());
-        for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
-        return sum;
-    }
+    [[nodiscard]] double height(const Vector2d& p) const { return add_at(p, arch.dot((p / extent).cwiseAbs2())); }
     /// `side`: 1 for above, -1 for below. `uneven`: triangles of varying shapes.
     [[nodiscard]] Mesh half(double side, double edge, bool uneven) const {
         const int n = std::clamp(static_cast<int>(std::lround(2.2 * extent / edge)), 8, 300);
@@ -120,10 +125,7 @@ Mesh in_order(const Mesh& mesh) {
     std::iota(order.begin(), order.end(), Index(0));
     std::sort(order.begin(), order.end(), [&](Index a, Index b) { return soup.points[a] < soup.points[b]; });
     TriangleSoup sorted;
-    for (const Index i : order) {
-        place[i] = static_cast<Index>(sorted.points.size());
-        sorted.points.push_back(soup.points[i]);
-    }
+    for (const Index i : order) place[i] = static_cast<Index>(sorted.points.size()), sorted.points.push_back(soup.points[i]);
     for (const auto& t : soup.triangles) {
         std::array<Index, 3> corners{place[t[0]], place[t[1]], place[t[2]]};
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -131,23 +133,6 @@ Mesh in_order(const Mesh& mesh) {
     }
     std::sort(sorted.triangles.begin(), sorted.triangles.end());
     return build_mesh(sorted);
-}
-
-double extent_of(const Mesh& mesh, const Vector3d& middle) {
-    double far = 0;
-    for (const Vertex v : mesh.vertices()) far = std::max(far, (eigen(mesh.point(v)) - middle).norm());
-    return far;
-}
-
-Vector3d middle_of(const Mesh& mesh) {
-    Vector3d sum = Vector3d::Zero();
-    double area = 0;
-    for (const Face f : mesh.faces()) {
-        const double a = face_area(mesh, f);
-        sum += a * eigen(centroid(mesh, f));
-        area += a;
-    }
-    return sum / area;
 }
 
 /// Intersection of two bodies; false if it cannot be computed: a rough sheet, or the result of earlier cuts, may
@@ -222,10 +207,8 @@ Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
     const std::vector<std::size_t> points = random.permutation(soup.points.size()),
                                    triangles = random.permutation(soup.triangles.size());
     std::vector<Index> place(points.size());
-    for (const std::size_t i : points) {
-        place[i] = static_cast<Index>(shuffled.points.size());
-        shuffled.points.push_back(soup.points[i]);
-    }
+    for (const std::size_t i : points)
+        place[i] = static_cast<Index>(shuffled.points.size()), shuffled.points.push_back(soup.points[i]);
     for (const std::size_t t : triangles) {
         const auto& corner = soup.triangles[t];
         shuffled.triangles.push_back({place[corner[0]], place[corner[1]], place[corner[2]]});
@@ -236,12 +219,22 @@ Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
     how.vertices = std::max<std::uint64_t>(
         60, static_cast<std::uint64_t>(std::lround(surface_area(sherd.mesh) / (std::sqrt(3.0) / 2 * length * length))));
     Sherd result{remesh(build_mesh(shuffled), how).mesh, {}};
-    const SurfaceSearch cut(sherd.mesh);
-    for (const Face f : result.mesh.faces()) result.broken.push_back(sherd.broken[cut.closest(centroid(result.mesh, f)).face]);
+    result.broken = broken_of_nearest(result.mesh, sherd);
     return result;
 }
 
 }  // namespace
+
+Vector3d surface_centre(const Mesh& mesh) {
+    Vector3d sum = Vector3d::Zero();
+    double area = 0;
+    for (const Face f : mesh.faces()) {
+        const double a = face_area(mesh, f);
+        sum += a * eigen(centroid(mesh, f));
+        area += a;
+    }
+    return sum / area;
+}
 
 Mesh make_pot(const PotOptions& options) {
     check_options(options, "pot");
@@ -278,25 +271,20 @@ Mesh make_pot(const PotOptions& options) {
 Mesh with_relief(const Mesh& mesh, double height, double longest, std::uint64_t seed) {
     Random random(seed, 5);
     const double diagonal = box_diagonal(mesh);
-    struct Wave {
-        Vector3d number;
-        double phase, height;
-    };
-    std::vector<Wave> waves;
+    Waves<Vector3d> relief;
     constexpr int count = 16;
     double power = 0;
     for (int k = 0; k < count; ++k) {
         const double share = std::pow(0.1, k / (count - 1.0));
         const Vector3d direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-        waves.push_back({2 * pi / (share * longest * diagonal) * direction, random.uniform(0, 2 * pi), std::sqrt(share)});
+        relief.waves.push_back({2 * pi / (share * longest * diagonal) * direction, random.uniform(0, 2 * pi), std::sqrt(share)});
         power += share / 2;
     }
     Mesh result = mesh;
     for (const Vertex v : mesh.vertices()) {
         const Vector3d p = eigen(mesh.point(v));
-        double sum = 0;
-        for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
-        result.point(v) = point_of(p + height * diagonal / std::sqrt(power) * sum * eigen(vertex_normal(mesh, v)));
+        result.point(v) =
+            point_of(p + height * diagonal / std::sqrt(power) * relief.add_at(p, 0) * eigen(vertex_normal(mesh, v)));
     }
     return result;
 }
@@ -317,9 +305,10 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
                              [](const Mesh& x, const Mesh& y) { return surface_area(x) < surface_area(y); }) -
             pieces.begin());
         const Mesh piece = pieces[largest];
-        const Vector3d middle = middle_of(piece);
+        const Vector3d middle = surface_centre(piece);
         Vector3d across(random.normal(), random.normal(), random.normal());
-        const double extent = extent_of(piece, middle);
+        double extent = 0;
+        for (const Point& p : piece.points()) extent = std::max(extent, (eigen(p) - middle).norm());
         const bool coarse = options.sheet > 0;
         const Sheet sheet(middle + 0.15 * extent * random.uniform(-1, 1) * across.normalized(), across.normalized(), 1.2 * extent,
                           options, random);
@@ -348,10 +337,8 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
     std::vector<Sherd> sherds;
     for (Mesh& piece : pieces) {
         Sherd sherd{std::move(piece), {}};
-        for (const Face f : sherd.mesh.faces()) {
-            const SurfaceHit hit = skin.closest(centroid(sherd.mesh, f));
-            sherd.broken.push_back(hit.distance > 1e-7 * diagonal);
-        }
+        for (const Face f : sherd.mesh.faces())
+            sherd.broken.push_back(skin.closest(centroid(sherd.mesh, f)).distance > 1e-7 * diagonal);
         if (options.edge > 0) {
             Random own(options.seed, 10000 + sherds.size());
             sherd = meshed_anew(sherd, options.edge * diagonal, own);
@@ -377,15 +364,20 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
     return sherds;
 }
 
+std::vector<bool> broken_of_nearest(const Mesh& mesh, const Sherd& sherd) {
+    const SurfaceSearch skin(sherd.mesh);
+    std::vector<bool> broken;
+    for (const Face f : mesh.faces()) broken.push_back(sherd.broken[skin.closest(centroid(mesh, f)).face]);
+    return broken;
+}
+
 Sherd simplified(const Sherd& sherd, std::uint64_t vertices) {
     Sherd result = sherd;
     if (vertices >= sherd.mesh.number_of_vertices()) return result;
     SimplifyOptions how;
     how.vertices = vertices;
     simplify(result.mesh, how);
-    const SurfaceSearch skin(sherd.mesh);
-    result.broken.clear();
-    for (const Face f : result.mesh.faces()) result.broken.push_back(sherd.broken[skin.closest(centroid(result.mesh, f)).face]);
+    result.broken = broken_of_nearest(result.mesh, sherd);
     return result;
 }
 

@@ -4,6 +4,8 @@
 #include "ostraka/core/options.h"
 #include "ostraka/mesh/mesh.h"
 
+#include <Eigen/Core>
+
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +55,10 @@ struct Sherd {
 /// edges), worn, and noise is added. Throws Error (input) for a mesh that is not closed, (failure) if a cut fails.
 std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options = {});
 
+/// Centre of gravity of a surface.
+Eigen::Vector3d surface_centre(const Mesh& mesh);
+/// Per face of another mesh of the sherd, whether the nearest face of the sherd belongs to a fracture.
+std::vector<bool> broken_of_nearest(const Mesh& mesh, const Sherd& sherd);
 /// Simplifies to at most `vertices` vertices, as small scans in archives; facets are those of the nearest faces.
 Sherd simplified(const Sherd& sherd, std::uint64_t vertices);
 

@@ -1,16 +1,20 @@
-// Table 2.1 of the thesis: regions transferred between resolutions and back, by metric, size and pair of resolutions.
+// Table 2.1 of the thesis: regions transferred between resolutions and back, by metric, size and pair of resolutions; human part
+// labels (layout of the Princeton segmentation benchmark), transferred to a remeshed version and back.
 #include "harness.h"
 #include "scenes.h"
 
+#include "ostraka/annotation/label_file.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/mesh/flood.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/synthetic/synthetic_object.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 namespace ostraka::experiments {
@@ -155,8 +159,8 @@ private:
                 for (const Index f : region.faces) {
                     const double face = face_area(*truth.mesh, Face(f));
                     area += face;
-                    if (const auto found = truth.shares[f].find(region.id); found != truth.shares[f].end())
-                        common += found->second * face;
+                    if (const auto share = truth.shares[f].find(region.id); share != truth.shares[f].end())
+                        common += share->second * face;
                 }
                 const double true_area = truth.areas.at(region.id), share = true_area / truth.whole;
                 const double overlap = common / (area + true_area - common);
@@ -243,8 +247,8 @@ private:
     }
 
     struct Sum {
-        double seconds = 0, area = 0, perimeter = 0, perimeter_by_area = 0, area_by_perimeter = 0, circularity = 0, mean = 0,
-               overlap = 0, wrong = 0;
+        /// Seconds, A, P, P/A, A/P, C, their mean, overlap, wrong side.
+        Eigen::Array<double, 9, 1> values = Eigen::Array<double, 9, 1>::Zero();
         double worst_overlap = 1, worst_wrong = 0;
         int count = 0, lost = 0, voted = 0;
     };
@@ -261,15 +265,9 @@ private:
                 continue;
             }
             const double wrong = *score.wrong_side / (edge * score.source_length);
-            sum.seconds += seconds / static_cast<double>(scores.size());
-            sum.area += d.area;
-            sum.perimeter += d.perimeter;
-            sum.perimeter_by_area += d.perimeter_by_area;
-            sum.area_by_perimeter += d.area_by_perimeter;
-            sum.circularity += d.circularity;
-            sum.mean += d.mean;
-            sum.overlap += *score.overlap;
-            sum.wrong += wrong;
+            sum.values += Eigen::Array<double, 9, 1>{{seconds / static_cast<double>(scores.size()), d.area, d.perimeter,
+                                                      d.perimeter_by_area, d.area_by_perimeter, d.circularity, d.mean,
+                                                      *score.overlap, wrong}};
             sum.worst_overlap = std::min(sum.worst_overlap, *score.overlap);
             sum.worst_wrong = std::max(sum.worst_wrong, wrong);
             sum.voted += score.voted ? 1 : 0;
@@ -282,24 +280,21 @@ private:
     [[nodiscard]] std::string tables() const {
         Table distortion(
             "resolutions | S -> T | share % | metric | time | A | P | P/A | A/P | C | average | overlap (worst) | wrong side "
-            "(worst) "
-            "| n (lost, voted)",
+            "(worst) | n (lost, voted)",
             false);
         for (const auto& [key, sum] : sums_) {
             const auto& [kind, pair, share, metric] = key;
-            const double n = std::max(1, sum.count);
+            const auto mean = (sum.values / std::max(1, sum.count)).eval();
             distortion.row(
                 "{} | {} | {:g} | {} | {:.3f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.5f} ({:.5f}) | {:.3f} "
                 "({:.3f}) | {} ({}, {})",
-                kind, pair, 100 * share, metric, sum.seconds / n * static_cast<double>(shares.size()) * seeds_per_size,
-                100 * sum.area / n, 100 * sum.perimeter / n, 100 * sum.perimeter_by_area / n, 100 * sum.area_by_perimeter / n,
-                100 * sum.circularity / n, 100 * sum.mean / n, sum.overlap / n, sum.worst_overlap, sum.wrong / n, sum.worst_wrong,
-                sum.count, sum.lost, sum.voted);
+                kind, pair, 100 * share, metric, mean[0] * static_cast<double>(shares.size()) * seeds_per_size, 100 * mean[1],
+                100 * mean[2], 100 * mean[3], 100 * mean[4], 100 * mean[5], 100 * mean[6], mean[7], sum.worst_overlap, mean[8],
+                sum.worst_wrong, sum.count, sum.lost, sum.voted);
         }
         std::string text =
             "Mean distortions in percent over objects and places; time in seconds for all regions of an object; wrong side in "
-            "units "
-            "of (larger mean edge) x (outline length).\n\n" +
+            "units of (larger mean edge) x (outline length).\n\n" +
             distortion.text();
         if (truth_.empty()) return text;
         Table overlap("resolutions | S -> T | part's share of the area | rounding | parts | mean overlap | worst", false);
@@ -325,9 +320,99 @@ private:
     Rows csv_{"object,resolutions,pair,metric,share,seconds,A,P,P/A,A/P,C,overlap,wrong_side,hausdorff"};
 };
 
-const Registration registered(
+const Registration registered_table(
     "table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)",
     +[](const TableOptions& options) { TransferTable(options).run(); });
+
+struct LabelOptions {
+    std::string models, labels, csv;
+    std::uint64_t limit = 0;
+    void list_options(OptionList& list) {
+        list("models", models, "folder with <class>/<number>.off").positional().required();
+        list("labels", labels, "folder with <class>/<number>/<number>_0.seg").positional().required();
+        list("csv", csv, "file for the raw rows");
+        list("limit", limit, "number of models; 0: all");
+    }
+};
+
+struct Painted {
+    std::vector<int> labels;
+    double bare = 0, twice = 0;  ///< area shares covered by no region and by several regions
+};
+
+/// One label per face; uncovered faces get the label of a neighbour, faces in several regions the first one's.
+Painted paint(const Mesh& mesh, const AnnotationSet& set) {
+    Painted painted;
+    constexpr int none = std::numeric_limits<int>::min();
+    painted.labels.assign(mesh.number_of_faces(), none);
+    const double area = surface_area(mesh);
+    for (const Annotation& region : set.annotations)
+        for (const Index f : region.faces) {
+            if (painted.labels[f] == none) painted.labels[f] = region.id;
+            else painted.twice += face_area(mesh, Face(f)) / area;
+        }
+    std::vector<Face> covered;
+    std::vector<bool> labelled(mesh.number_of_faces(), false);
+    for (const Face f : mesh.faces()) {
+        if (painted.labels[f] == none) painted.bare += face_area(mesh, f) / area;
+        else covered.push_back(f), labelled[f] = true;
+    }
+    flood(std::move(covered), labelled, [&](Face f, auto&& reach) {
+        for (const Face g : mesh.faces_around_face(mesh.halfedge(f))) {
+            if (g == Mesh::null_face() || labelled[g]) continue;
+            painted.labels[g] = painted.labels[f];
+            reach(g);
+        }
+    });
+    return painted;
+}
+
+void label_transfer(const LabelOptions& options) {
+    std::vector<Path> models;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(options.models))
+        if (entry.path().extension() == ".off") models.push_back(entry.path());
+    std::sort(models.begin(), models.end());
+    if (options.limit > 0 && models.size() > options.limit) models.resize(options.limit);
+    Rows csv("model,factor,kept,bare,twice");
+    std::map<double, std::vector<std::pair<double, std::string>>> kept_of;
+    TransferOptions transferring;
+    transferring.overlap = false;
+    for (const Path& model : models) {
+        const std::string number = model.stem().string(), group = model.parent_path().filename().string(),
+                          name = group + "/" + number;
+        const Mesh mesh = read_mesh(model).mesh;
+        const SurfaceSearch home(mesh);
+        const std::vector<int> labels =
+            read_labels(Path(options.labels) / group / number / (number + "_0.seg"), mesh.number_of_faces());
+        const AnnotationSet set = regions_from_labels(mesh, labels);
+        for (const double factor : {2.0, 0.25}) {
+            const Mesh other =
+                remeshed(mesh, static_cast<std::uint64_t>(factor * static_cast<double>(mesh.number_of_vertices())));
+            const SurfaceSearch search(other);
+            const Painted there = paint(other, transfer({mesh, set}, search, transferring).annotations);
+            const AnnotationSet painted = regions_from_labels(other, there.labels);
+            const AnnotationSet returned = transfer({other, painted}, home, transferring).annotations;
+            const Painted back = paint(mesh, returned);
+            double kept = 0;
+            for (const Face f : mesh.faces())
+                if (back.labels[f] == labels[f]) kept += face_area(mesh, f);
+            kept /= surface_area(mesh);
+            kept_of[factor].emplace_back(kept, name);
+            csv(name, factor, kept, there.bare, there.twice);
+            fmt::print(stderr, "{} x{:g} kept {:g} bare {:g} twice {:g}\n", name, factor, kept, there.bare, there.twice);
+        }
+    }
+    Table table("vertices | models | mean area that keeps its label % | worst % | worst model");
+    for (const auto& [factor, list] : kept_of) {
+        std::vector<double> all;
+        for (const auto& [kept, name] : list) all.push_back(kept);
+        const auto worst = *std::min_element(list.begin(), list.end());
+        table.row("x {:g} | {} | {:.3f} | {:.3f} | {}", factor, list.size(), 100 * mean_of(all), 100 * worst.first, worst.second);
+    }
+    csv.write(options.csv);
+}
+
+const Registration registered_labels("labels", "part labels carried to a remeshed version and back", label_transfer);
 
 }  // namespace
 
