@@ -182,9 +182,8 @@ void write_coloured(const Path& file, const Mesh& mesh, const std::vector<double
         const Rgb c = colour_of(scale, value);
         extras.vertex_colours.push_back({c.red, c.green, c.blue, 255});
     }
-    WriteOptions options;
-    options.vertex_quality = values;
-    write_mesh(file, mesh, extras, options);
+    extras.vertex_values.push_back({"quality", values});
+    write_mesh(file, mesh, extras);
 }
 
 }  // namespace ostraka::experiments
