@@ -169,10 +169,8 @@ void MotionSteps::declare(Parameters& p) {
               Range{1e-30, 1e30});
     p.options("mirror", mirror_, "mirror along this axis; triangles are reversed, so that the surface stays oriented outwards",
               direction_words("--mirror"));
-    p.options("rotate", rotate_, "axis and angle in degrees, counter-clockwise seen against the axis: z,90 or 0,0,1,90",
-              Words{{}, "an axis and an angle like z,90", [](const std::string& text) { (void)rotation_of(text); }});
-    p.options("quaternion", quaternion_, "rotation as a quaternion w,x,y,z",
-              Words{{}, "four numbers w,x,y,z", [](const std::string& text) { (void)rotation_of_quaternion(text); }});
+    p.options("rotate", rotate_, "axis and angle in degrees, counter-clockwise seen against the axis: z,90 or 0,0,1,90");
+    p.options("quaternion", quaternion_, "rotation as a quaternion w,x,y,z");
     p.options("about", about_, "place that --scale, --mirror and --rotate leave where it is",
               Words{{"origin", "box", "centroid"}, "three numbers like 0,0,1", [](const std::string& text) {
                         if (text != "origin" && text != "box" && text != "centroid") (void)three_numbers(text, "--about");
@@ -183,9 +181,7 @@ void MotionSteps::declare(Parameters& p) {
         "on the ground)",
         Choices{"box", "centroid", "base"});
     up_.declare(p, "upward direction after the rotation, for --centre base; default: that of the annotations, or z");
-    p.options(
-        "translate", translate_, "x,y,z that are added to all coordinates, last",
-        Words{{}, "three numbers like 10,0,-2.5", [](const std::string& text) { (void)three_numbers(text, "--translate"); }});
+    p.options("translate", translate_, "x,y,z that are added to all coordinates, last, like 10,0,-2.5");
 }
 
 void MotionSteps::check() const {
@@ -195,6 +191,9 @@ void MotionSteps::check() const {
                    "give --translate, --rotate, --scale, --mirror, --to-unit, --axes, --centre or --matrix");
     if (inverse_ && !matrix_) fail_usage("--inverse without --matrix", "give the file of the matrix to invert");
     if (from_unit_ && !to_unit_) fail_usage("--from-unit without --to-unit", "give the unit of the output as well");
+    if (!rotate_.empty()) (void)rotation_of(rotate_);
+    if (!quaternion_.empty()) (void)rotation_of_quaternion(quaternion_);
+    if (!translate_.empty()) (void)three_numbers(translate_, "--translate");
     if (!rotate_.empty() && !quaternion_.empty()) fail_usage("--rotate and --quaternion", "give one of them");
     if (about_ != "origin" && !turns) fail_usage("--about without --scale, --mirror or --rotate", "give one of these");
     if (up_ && centre_ != "base") fail_usage("--up without --centre base", "give both, or neither");
