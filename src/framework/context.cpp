@@ -219,6 +219,12 @@ void Context::record(const std::function<void()>& read) {
     call_->add(record.files);
 }
 
+std::vector<Path> Context::files_read() const {
+    std::vector<Path> files;
+    for (const ReadRecord::Entry& entry : call_->read) files.push_back(entry.file);
+    return files;
+}
+
 void Context::record_input(const std::string& name, const std::string& sha256) {
     call_->recorded_inputs.emplace_back(name, sha256);
 }

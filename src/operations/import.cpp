@@ -33,10 +33,8 @@ struct Import final : Operation {
 
     void run(Context& context, Report& report) override {
         object.open();
-        ReadRecord reads;
         PolygonSoup polygons = scan.take_polygons();
         if (image) add_given_image(polygons, context);
-        const std::vector<ReadRecord::Entry> raw_files = reads.files;
         const std::vector<Index> file_vertices = polygons.vertex_of_file_vertex;
         report.line(state_in_words(polygons));
         const TriangulatedSoup triangles = triangulate(std::move(polygons));
@@ -56,7 +54,7 @@ struct Import final : Operation {
         if (!sound) report.answer_no();
         const std::string name = Path(scan.file()).stem().string();
         write_object(name, repaired, file_vertices);
-        const std::vector<std::string> copies = no_raw ? std::vector<std::string>() : copy_raw(raw_files);
+        const std::vector<std::string> copies = no_raw ? std::vector<std::string>() : copy_raw(context.files_read());
         note_far_coordinates(repaired.after, report);
         report("sound", sound)("mesh", name + ".ply")("vertices", repaired.after.vertices)("triangles", repaired.after.triangles)(
             "materials", repaired.extras.appearance.materials.size())("images", repaired.extras.appearance.images.size())(
@@ -123,15 +121,15 @@ struct Import final : Operation {
     }
 
     /// Copies the files that were read to the folder "raw"; files in subfolders keep their place below it.
-    std::vector<std::string> copy_raw(const std::vector<ReadRecord::Entry>& raw_files) const {
+    std::vector<std::string> copy_raw(const std::vector<Path>& raw_files) const {
         std::vector<std::string> names;
         const Path folder = Path(scan.file()).parent_path();
-        for (const ReadRecord::Entry& entry : raw_files) {
-            Path inside = entry.file.lexically_relative(folder.empty() ? Path(".") : folder);
-            if (inside.empty() || *inside.begin() == "..") inside = entry.file.filename();
+        for (const Path& file : raw_files) {
+            Path inside = file.lexically_relative(folder.empty() ? Path(".") : folder);
+            if (inside.empty() || *inside.begin() == "..") inside = file.filename();
             const Path copy = object.in((Path("raw") / inside).string());
             make_folder(copy.parent_path());
-            write_file(copy, read_file(entry.file));
+            write_file(copy, read_file(file));
             names.push_back((Path("raw") / inside).string());
         }
         return names;
