@@ -219,7 +219,7 @@ void Context::record(const std::function<void()>& read) {
     call_->add(record.files);
 }
 
-std::vector<Path> Context::files_read() const {
+std::vector<Path> Context::files_so_far() const {
     std::vector<Path> files;
     for (const ReadRecord::Entry& entry : call_->read) files.push_back(entry.file);
     return files;

@@ -54,7 +54,7 @@ struct Import final : Operation {
         if (!sound) report.answer_no();
         const std::string name = Path(scan.file()).stem().string();
         write_object(name, repaired, file_vertices);
-        const std::vector<std::string> copies = no_raw ? std::vector<std::string>() : copy_raw(context.files_read());
+        const std::vector<std::string> copies = no_raw ? std::vector<std::string>() : copy_raw(context.files_so_far());
         note_far_coordinates(repaired.after, report);
         report("sound", sound)("mesh", name + ".ply")("vertices", repaired.after.vertices)("triangles", repaired.after.triangles)(
             "materials", repaired.extras.appearance.materials.size())("images", repaired.extras.appearance.images.size())(

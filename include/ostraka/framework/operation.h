@@ -132,7 +132,7 @@ public:
     /// Runs `read` and records all files that are read as inputs.
     void record(const std::function<void()>& read);
     /// Files read so far, in the order of reading: the inputs and the files that they name, such as images.
-    [[nodiscard]] std::vector<Path> files_read() const;
+    [[nodiscard]] std::vector<Path> files_so_far() const;
     /// Records the name and checksum of an input that is read elsewhere, such as the objects of a collection read by several
     /// threads.
     void record_input(const std::string& name, const std::string& sha256);
