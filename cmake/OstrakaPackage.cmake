@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The module is for one version of Python; code that uses the library needs the headers it was compiled with.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, fonts-dejavu-core")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, libcgal-dev, libeigen3-dev, libfmt-dev, libboost-dev, rapidjson-dev, libembree-dev, libssl-dev, libsuitesparse-dev, libcairo2-dev, libpugixml-dev, libraptor2-dev, zlib1g-dev, libminizip-dev, libexpat1-dev, libpng-dev, libmeshoptimizer-dev, libceres-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, libcgal-dev, libeigen3-dev, libfmt-dev, libboost-dev, rapidjson-dev, libembree-dev, libssl-dev, libsuitesparse-dev, libcairo2-dev, libpugixml-dev, libraptor2-dev, zlib1g-dev, libminizip-dev, libexpat1-dev, libpng-dev, libjpeg-dev, libwebp-dev, libgif-dev, libmeshoptimizer-dev, libdraco-dev, libceres-dev")
 set(CPACK_DEB_COMPONENT_INSTALL OFF)
 install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/COPYRIGHT DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ostraka RENAME copyright)
 include(CPack)

@@ -6,6 +6,7 @@
 #include "ostraka/framework/operation.h"
 #include "ostraka/framework/outputs.h"
 #include "ostraka/io/mesh_of_polygons.h"
+#include "ostraka/point_cloud/point_cloud.h"
 #include "ostraka/render/values.h"
 
 namespace ostraka {
@@ -68,6 +69,11 @@ T copy_or_move(const Slot& slot, std::size_t i, const T& object) {
 }  // namespace
 
 std::vector<std::string> endings_of(Kind kind) {
+    const auto point_cloud_files = [] {
+        std::vector<std::string> endings = point_cloud_endings();
+        endings.insert(endings.end(), {".ply", ".obj", ".off"});
+        return endings;
+    };
     static const std::map<Kind, std::vector<std::string>> endings{
         {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb", ".gltf", ".3mf", ".mesh", ".vtu"}},
         {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb", ".gltf", ".3mf"}},
@@ -82,16 +88,17 @@ std::vector<std::string> endings_of(Kind kind) {
         {Kind::assembly, {".assembly.json"}},
         {Kind::study, {".study.json"}},
         {Kind::coordinates, {".npy"}},
+        {Kind::point_cloud, point_cloud_files()},
     };
     const auto entry = endings.find(kind);
     return entry == endings.end() ? std::vector<std::string>() : entry->second;
 }
 
 std::string to_string(Kind kind) {
-    static constexpr const char* names[]{"mesh",       "annotations", "graph",     "cage",     "coordinates", "values",
-                                         "labels",     "index map",   "edit",      "recipe",   "rules",       "template",
-                                         "vocabulary", "class",       "landmarks", "assembly", "pose",        "collection",
-                                         "study",      "picture",     "table",     "report",   "text",        "folder"};
+    static constexpr const char* names[]{
+        "mesh",   "annotations", "graph",    "cage",       "coordinates", "values",    "labels",     "index map", "edit",
+        "recipe", "rules",       "template", "vocabulary", "class",       "landmarks", "assembly",   "pose",      "collection",
+        "study",  "picture",     "table",    "report",     "text",        "folder",    "point cloud"};
     return names[static_cast<std::size_t>(kind)];
 }
 

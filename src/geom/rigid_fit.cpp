@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace ostraka {
@@ -21,6 +22,21 @@ Motion Motion::inverse() const {
 
 Motion Motion::after(const Motion& other) const {
     return {rotation * other.rotation, scale * (rotation * other.translation) + translation, scale * other.scale};
+}
+
+Vector3d PreciseMotion::operator()(const Vector3d& p) const {
+    Vector3d result;
+    for (int row = 0; row < 3; ++row) {
+        // Error-free transformations of products and sums (Ogita, Rump and Oishi 2005, algorithm Dot2).
+        double sum = translation_[row], rest = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double product = matrix_(row, k) * p[k], total = sum + product, part = total - sum;
+            rest += std::fma(matrix_(row, k), p[k], -product) + ((sum - (total - part)) + (product - part));
+            sum = total;
+        }
+        result[row] = sum + rest;
+    }
+    return result;
 }
 
 Motion fit_motion(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to, const std::vector<double>& weights,

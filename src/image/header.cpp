@@ -144,7 +144,8 @@ void require_proportion(const Header& header, std::size_t file_bytes, double dec
         refuse(place,
                fmt::format("claims {} x {} pixels, which need {} of memory; a file of {} may use {}", header.width, header.height,
                            megabytes(bytes), megabytes(static_cast<double>(file_bytes)), megabytes(limit)),
-               "reduce the image, or save it as JPEG that is not progressive");
+               header.format == ImageFormat::jpeg && decoder_bytes > 0 ? "save it as JPEG that is not progressive, or reduce it"
+                                                                       : "reduce the image");
     };
     if (pixel_bytes > allowed + pixel_allowance) refuse_size(pixel_bytes, allowed + pixel_allowance);
     if (pixel_bytes + decoder_bytes > allowed + total_allowance)

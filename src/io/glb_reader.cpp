@@ -142,8 +142,7 @@ void Reader::check_version() const {
     for (const std::string& stated : {version, needed})
         if (!stated.empty() && stated != "2" && !stated.starts_with("2."))
             fail_input(where_, fmt::format("has glTF version {}", printable(stated, 20)), "export glTF 2.0");
-    if (needed > "2.0")
-        fail_input(where_, fmt::format("needs a reader of glTF {}", printable(needed, 20)), "export glTF 2.0");
+    if (needed > "2.0") fail_input(where_, fmt::format("needs a reader of glTF {}", printable(needed, 20)), "export glTF 2.0");
 }
 
 void Reader::fail(const std::string& pointer, const std::string& problem) const {
@@ -168,7 +167,8 @@ const JsonValue& Reader::element(const char* list_name, std::size_t index, const
         fail(pointer, fmt::format("refers to element {} of {}, which does not exist", index, list_name));
     const JsonValue& entry = (*list)[static_cast<rapidjson::SizeType>(index)];
     // Members are found by a search through all of them: bounds the work on objects with absurdly many.
-    if (entry.MemberCount() + document_.MemberCount() > 200) charge(16.0 * (entry.MemberCount() + document_.MemberCount()), pointer);
+    if (entry.MemberCount() + document_.MemberCount() > 200)
+        charge(16.0 * (entry.MemberCount() + document_.MemberCount()), pointer);
     return entry;
 }
 

@@ -18,7 +18,7 @@ public:
     DracoPrimitive(const DracoPrimitive&) = delete;
     DracoPrimitive& operator=(const DracoPrimitive&) = delete;
 
-    [[nodiscard]] std::size_t vertices() const;                      ///< number of vertices
+    [[nodiscard]] std::size_t vertices() const;                                           ///< number of vertices
     [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return indices_; }  ///< three vertices per triangle
     /// Values of the attribute with this unique id: as many numbers per vertex as `shape` has; normalised as `shape` says.
     [[nodiscard]] glb::Reader::Values values(std::size_t unique_id, const glb::Reader::Shape& shape,

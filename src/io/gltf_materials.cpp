@@ -53,13 +53,21 @@ TextureWrap wrap_of(std::size_t code) {
     return code == clamp_to_edge ? TextureWrap::clamp : code == mirrored_repeat ? TextureWrap::mirror : TextureWrap::repeat;
 }
 
-/// True if an object has no members except metallicFactor and roughnessFactor in pbrMetallicRoughness.
+/// True if the rest of a material does not change what is seen of a diffuse surface: it has at most metallicFactor and
+/// roughnessFactor, and black emission.
 bool says_nothing_more(const JsonValue& rest) {
     for (const auto& member : rest.GetObject()) {
-        if (std::string_view(member.name.GetString()) != "pbrMetallicRoughness" || !member.value.IsObject()) return false;
+        const std::string name = text_of(member.name);
+        const bool is_pbr = name == "pbrMetallicRoughness" && member.value.IsObject();
+        const bool is_emission = name == "emissiveFactor" && member.value.IsArray();
+        if (!is_pbr && !is_emission) return false;
+        if (is_emission)
+            for (const JsonValue& light : member.value.GetArray())
+                if (!light.IsNumber() || light.GetDouble() != 0) return false;
+        if (!is_pbr) continue;
         for (const auto& factor : member.value.GetObject()) {
-            const std::string_view name(factor.name.GetString(), factor.name.GetStringLength());
-            if (name != "metallicFactor" && name != "roughnessFactor") return false;
+            const std::string factor_name = text_of(factor.name);
+            if (factor_name != "metallicFactor" && factor_name != "roughnessFactor") return false;
         }
     }
     return true;
@@ -69,7 +77,8 @@ bool says_nothing_more(const JsonValue& rest) {
 
 TexturePoint TextureMap::operator()(double u, double v) const {
     if (*this == TextureMap{}) return {static_cast<float>(u), static_cast<float>(1 - v)};
-    return {static_cast<float>(rows[0] * u + rows[1] * v + rows[2]), static_cast<float>(1 - (rows[3] * u + rows[4] * v + rows[5]))};
+    return {static_cast<float>(rows[0] * u + rows[1] * v + rows[2]),
+            static_cast<float>(1 - (rows[3] * u + rows[4] * v + rows[5]))};
 }
 
 GltfMaterials::GltfMaterials(const glb::Reader& reader, const Path& file, PolygonSoup& soup)
@@ -88,7 +97,7 @@ GltfMaterials::Parsed GltfMaterials::parsed(const JsonValue& entry, const std::s
     material.name = text_in(entry, "name");
     material.double_sided = flag_in(entry, "doubleSided");
     read_alpha(entry, material, pointer);
-    std::optional<Use> kept;
+    std::optional<Coordinates> kept;
     read_base(entry, result, kept, pointer);
     JsonValue rest(entry, allocator_);
     for (const char* name : {"name", "doubleSided", "alphaMode", "alphaCutoff"}) rest.RemoveMember(name);
@@ -99,7 +108,7 @@ GltfMaterials::Parsed GltfMaterials::parsed(const JsonValue& entry, const std::s
         if (extensions->value.ObjectEmpty()) rest.RemoveMember("extensions");
     }
     read_rest(rest, kept, pointer);
-    if (kept) result.coordinates = kept->coordinates;
+    if (kept) result.coordinates = *kept;
     const bool is_white = material.base_colour == std::array<float, 4>{1, 1, 1, 1};
     result.plain = is_white && material.image == no_index && says_nothing_more(rest);
     material.gltf_rest = to_compact_text(rest);
@@ -129,7 +138,8 @@ std::array<float, 4> GltfMaterials::factor(const JsonValue& object, const char* 
 }
 
 /// Reads the base colour; the diffuse colour takes its place in materials with specular colour and glossiness.
-void GltfMaterials::read_base(const JsonValue& entry, Parsed& result, std::optional<Use>& base, const std::string& pointer) {
+void GltfMaterials::read_base(const JsonValue& entry, Parsed& result, std::optional<Coordinates>& base,
+                              const std::string& pointer) {
     const JsonValue* pbr = object_in(entry, "pbrMetallicRoughness");
     const JsonValue* gloss = extension_in(entry, gloss_extension);
     const JsonValue* colours = gloss != nullptr ? gloss : pbr;
@@ -141,8 +151,8 @@ void GltfMaterials::read_base(const JsonValue& entry, Parsed& result, std::optio
     result.material.base_colour = factor(*colours, gloss != nullptr ? "diffuseFactor" : "baseColorFactor", pointer);
     const JsonValue* texture_info = object_in(*colours, gloss != nullptr ? "diffuseTexture" : "baseColorTexture");
     if (texture_info == nullptr) return;
-    base = use(*texture_info, pointer);
-    result.material.image = base->image;
+    base = coordinates_of(*texture_info, pointer);
+    result.material.image = image_of_texture(reader_.number(*texture_info, "index", pointer, no_element), pointer);
     read_sampler(*texture_info, result.material, pointer);
 }
 
@@ -159,20 +169,17 @@ void GltfMaterials::read_sampler(const JsonValue& texture_info, Material& materi
     material.nearest = reader_.number(sampler, "magFilter", sampler_pointer, 0) == nearest;
 }
 
-GltfMaterials::Use GltfMaterials::use(const JsonValue& texture_info, const std::string& pointer) {
-    Use result;
-    result.image = image_of_texture(reader_.number(texture_info, "index", pointer, no_element), pointer);
-    result.coordinates.set = reader_.number(texture_info, "texCoord", pointer, 0);
+GltfMaterials::Coordinates GltfMaterials::coordinates_of(const JsonValue& texture_info, const std::string& pointer) const {
+    Coordinates result{reader_.number(texture_info, "texCoord", pointer, 0), {}};
     if (const JsonValue* transform = extension_in(texture_info, transform_extension); transform != nullptr) {
-        result.coordinates.map = map_of(*transform);
-        result.coordinates.set = reader_.number(*transform, "texCoord", pointer, result.coordinates.set);
-        result.maps = true;
+        result.map = map_of(*transform);
+        result.set = reader_.number(*transform, "texCoord", pointer, result.set);
     }
     return result;
 }
 
 /// Replaces the textures in the rest of a material by images, and removes those that use other texture coordinates than `kept`.
-void GltfMaterials::read_rest(JsonValue& value, std::optional<Use>& kept, const std::string& pointer) {
+void GltfMaterials::read_rest(JsonValue& value, std::optional<Coordinates>& kept, const std::string& pointer) {
     if (value.IsArray())
         for (JsonValue& element : value.GetArray()) read_rest(element, kept, pointer);
     if (!value.IsObject()) return;
@@ -188,28 +195,29 @@ void GltfMaterials::read_rest(JsonValue& value, std::optional<Use>& kept, const 
     }
 }
 
-bool GltfMaterials::keeps_texture(JsonValue& texture_info, std::optional<Use>& kept, const std::string& pointer) {
-    const Use texture = use(texture_info, pointer);
+bool GltfMaterials::keeps_texture(JsonValue& texture_info, std::optional<Coordinates>& kept, const std::string& pointer) {
+    const Coordinates coordinates = coordinates_of(texture_info, pointer);
     // The first texture decides which coordinates are kept. A base colour texture has its map applied to the coordinates; without
     // one, the maps of the others are kept as they are.
-    const bool is_first = !kept;
-    if (is_first) kept = Use{texture.image, {texture.coordinates.set, {}}, false};
-    const bool same_coordinates = texture.coordinates.set == kept->coordinates.set;
-    const bool same_map = texture.coordinates.map == kept->coordinates.map, unmapped = kept->coordinates.map == TextureMap{};
-    if (texture.image == no_index || !same_coordinates || !(same_map || unmapped)) {
-        if (texture.image != no_index && !dropped_textures_)
-            soup_.notes.push_back(fmt::format("at {}: the texture uses other coordinates than the base colour; such textures are "
-                                              "not kept",
-                                              pointer));
-        dropped_textures_ = dropped_textures_ || texture.image != no_index;
+    if (!kept) kept = Coordinates{coordinates.set, {}};
+    const bool is_mapped = kept->map != TextureMap{};
+    if (coordinates.set != kept->set || (is_mapped && coordinates.map != kept->map)) {
+        if (!dropped_textures_)
+            soup_.notes.push_back(fmt::format(
+                "at {}: the texture uses other coordinates than the base colour; such textures are not kept", pointer));
+        dropped_textures_ = true;
         return false;
     }
-    texture_info["index"].SetUint(texture.image);
+    const Index image = image_of_texture(reader_.number(texture_info, "index", pointer, no_element), pointer);
+    if (image == no_index) return false;
+    texture_info["index"].SetUint(image);
     texture_info.RemoveMember("texCoord");
     const auto extensions = texture_info.FindMember("extensions");
-    if (extensions == texture_info.MemberEnd() || !extensions->value.IsObject() || !texture.maps) return true;
-    if (!unmapped || same_map) extensions->value.RemoveMember(transform_extension);
-    else extensions->value[transform_extension].RemoveMember("texCoord");
+    if (extensions == texture_info.MemberEnd() || !extensions->value.IsObject()) return true;
+    const auto transform = extensions->value.FindMember(transform_extension);
+    if (transform == extensions->value.MemberEnd()) return true;
+    if (is_mapped || coordinates.map == TextureMap{} || !transform->value.IsObject()) extensions->value.EraseMember(transform);
+    else transform->value.RemoveMember("texCoord");
     if (extensions->value.ObjectEmpty()) texture_info.RemoveMember("extensions");
     return true;
 }
@@ -232,9 +240,10 @@ Index GltfMaterials::image_of_texture(std::size_t texture, const std::string& po
         if (soup_.extras.appearance.images[result] != nullptr) break;
     }
     if (basis != no_element && usual != no_element && soup_.extras.appearance.images[result] == nullptr)
-        soup_.notes.push_back(fmt::format("at {}: the texture is there as KTX2 (Basis Universal), which is not read; convert it to "
-                                          "PNG under the name of the missing image",
-                                          entry_pointer));
+        soup_.notes.push_back(
+            fmt::format("at {}: the texture is there as KTX2 (Basis Universal), which is not read; convert it to "
+                        "PNG under the name of the missing image",
+                        entry_pointer));
     return result;
 }
 
@@ -244,8 +253,7 @@ Index GltfMaterials::image(std::size_t index, const std::string& pointer) {
     const JsonValue& entry = reader_.element("images", index, pointer);
     const std::string entry_pointer = "/images/" + std::to_string(index), uri = text_in(entry, "uri");
     const bool is_embedded = uri.empty() || lower_case(uri.substr(0, 5)) == "data:";
-    const Index added =
-        is_embedded ? embedded_image(entry, text_in(entry, "name"), entry_pointer) : add_image(soup_, file_, uri);
+    const Index added = is_embedded ? embedded_image(entry, text_in(entry, "name"), entry_pointer) : add_image(soup_, file_, uri);
     return images_[index] = added;
 }
 

@@ -43,19 +43,13 @@ private:
         Coordinates coordinates;
         bool plain = false;  ///< white, without image and further properties
     };
-    /// A texture that a material refers to.
-    struct Use {
-        Index image = no_index;
-        Coordinates coordinates;
-        bool maps = false;  ///< the texture has a map of its coordinates
-    };
     Parsed parsed(const JsonValue& entry, const std::string& pointer);
-    void read_base(const JsonValue& entry, Parsed& result, std::optional<Use>& base, const std::string& pointer);
+    void read_base(const JsonValue& entry, Parsed& result, std::optional<Coordinates>& base, const std::string& pointer);
     void read_alpha(const JsonValue& entry, Material& material, const std::string& pointer);
     void read_sampler(const JsonValue& texture_info, Material& material, const std::string& pointer);
-    Use use(const JsonValue& texture_info, const std::string& pointer);
-    void read_rest(JsonValue& value, std::optional<Use>& kept, const std::string& pointer);
-    bool keeps_texture(JsonValue& texture_info, std::optional<Use>& kept, const std::string& pointer);
+    [[nodiscard]] Coordinates coordinates_of(const JsonValue& texture_info, const std::string& pointer) const;
+    void read_rest(JsonValue& value, std::optional<Coordinates>& kept, const std::string& pointer);
+    bool keeps_texture(JsonValue& texture_info, std::optional<Coordinates>& kept, const std::string& pointer);
     Index image_of_texture(std::size_t texture, const std::string& pointer);
     Index image(std::size_t index, const std::string& pointer);
     Index embedded_image(const JsonValue& entry, const std::string& name, const std::string& pointer);
@@ -65,8 +59,8 @@ private:
     const Path& file_;
     PolygonSoup& soup_;
     JsonAllocator allocator_;
-    std::map<std::size_t, Parsed> parsed_;       ///< materials by their index in the file
-    std::map<std::size_t, Index> images_;        ///< images of the soup by their index in the file
+    std::map<std::size_t, Parsed> parsed_;  ///< materials by their index in the file
+    std::map<std::size_t, Index> images_;   ///< images of the soup by their index in the file
     bool dropped_textures_ = false, dropped_gloss_ = false;
 };
 

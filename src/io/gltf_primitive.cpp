@@ -6,7 +6,7 @@ namespace ostraka::io {
 
 namespace {
 
-constexpr std::size_t missing = static_cast<std::size_t>(-1);
+constexpr std::size_t no_number = static_cast<std::size_t>(-1);
 constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
 /// The corners of triangles from those of a strip or fan (glTF 2.0, section 3.7.2.1).
@@ -37,15 +37,15 @@ GltfPrimitive::GltfPrimitive(const glb::Reader& reader, const JsonValue& primiti
     if (extension == nullptr || mode_ < glb::triangles_mode) return;
     const std::string place = fmt::format("{}/extensions/{}", pointer_, draco_extension);
     draco_attributes_ = find_member(*extension, "attributes");
-    draco_view_ = reader.number(*extension, "bufferView", place, missing);
+    draco_view_ = reader.number(*extension, "bufferView", place, no_number);
     std::unique_ptr<DracoPrimitive>& decoded = draco[draco_view_];
     if (!decoded) decoded = std::make_unique<DracoPrimitive>(reader, reader.view(draco_view_, place), place);
     draco_ = decoded.get();
 }
 
 std::optional<std::size_t> GltfPrimitive::accessor(const std::string& attribute) const {
-    const std::size_t index = reader_.number(*attributes_, attribute.c_str(), pointer_ + "/attributes", missing);
-    return index == missing ? std::nullopt : std::optional(index);
+    const std::size_t index = reader_.number(*attributes_, attribute.c_str(), pointer_ + "/attributes", no_number);
+    return index == no_number ? std::nullopt : std::optional(index);
 }
 
 glb::Reader::Shape GltfPrimitive::shape(const std::string& attribute) const {
@@ -55,8 +55,8 @@ glb::Reader::Shape GltfPrimitive::shape(const std::string& attribute) const {
 std::optional<std::size_t> GltfPrimitive::draco_id(const std::string& attribute) const {
     if (draco_attributes_ == nullptr) return std::nullopt;
     const std::string place = fmt::format("{}/extensions/{}/attributes", pointer_, draco_extension);
-    const std::size_t id = reader_.number(*draco_attributes_, attribute.c_str(), place, missing);
-    return id == missing ? std::nullopt : std::optional(id);
+    const std::size_t id = reader_.number(*draco_attributes_, attribute.c_str(), place, no_number);
+    return id == no_number ? std::nullopt : std::optional(id);
 }
 
 glb::Reader::Values GltfPrimitive::values(const std::string& attribute, std::size_t width, std::size_t count) const {
@@ -77,18 +77,18 @@ std::size_t GltfPrimitive::vertices() const { return draco_ != nullptr ? draco_-
 
 std::size_t GltfPrimitive::corners() const {
     if (draco_ != nullptr) return draco_->indices().size();
-    const std::size_t index = reader_.number(primitive_, "indices", pointer_, missing);
-    return index == missing ? vertices() : reader_.shape(index, pointer_ + "/indices").count;
+    const std::size_t index = reader_.number(primitive_, "indices", pointer_, no_number);
+    return index == no_number ? vertices() : reader_.shape(index, pointer_ + "/indices").count;
 }
 
 std::vector<std::uint32_t> GltfPrimitive::triangles() const {
     std::vector<std::uint32_t> list;
-    const std::size_t count = vertices(), index = reader_.number(primitive_, "indices", pointer_, missing);
+    const std::size_t count = vertices(), index = reader_.number(primitive_, "indices", pointer_, no_number);
     if (draco_ != nullptr) {
         reader_.charge(4.0 * static_cast<double>(draco_->indices().size()), pointer_);
         return draco_->indices();  // always triangles, whatever the mode
     }
-    if (index != missing) {
+    if (index != no_number) {
         list = reader_.integers(index, pointer_ + "/indices");
     } else {
         reader_.charge(4.0 * static_cast<double>(count), pointer_);
@@ -97,8 +97,8 @@ std::vector<std::uint32_t> GltfPrimitive::triangles() const {
     }
     for (std::size_t i = 0; i < list.size(); ++i)
         if (list[i] >= count)
-            reader_.fail(pointer_ + "/indices", fmt::format("index {} (number {}) is out of range: there are {} vertices", list[i],
-                                                            i, count));
+            reader_.fail(pointer_ + "/indices",
+                         fmt::format("index {} (number {}) is out of range: there are {} vertices", list[i], i, count));
     if (mode_ != glb::triangles_mode) {
         reader_.charge(12.0 * static_cast<double>(list.size()), pointer_);
         return unrolled(list, mode_ == glb::fan_mode);
@@ -108,8 +108,8 @@ std::vector<std::uint32_t> GltfPrimitive::triangles() const {
 }
 
 std::array<std::size_t, 3> GltfPrimitive::key() const {
-    return {draco_ != nullptr ? draco_view_ : missing, accessor("POSITION").value_or(missing),
-            accessor("COLOR_0").value_or(missing)};
+    return {draco_ != nullptr ? draco_view_ : no_number, accessor("POSITION").value_or(no_number),
+            accessor("COLOR_0").value_or(no_number)};
 }
 
 }  // namespace ostraka::io

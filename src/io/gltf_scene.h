@@ -12,12 +12,12 @@ namespace ostraka::io {
 /// An affine map of points.
 struct AffineMap {
     std::array<std::array<double, 3>, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< rows of the matrix
-    std::array<double, 3> shift{0, 0, 0};                                              ///< image of the origin
+    std::array<double, 3> shift{0, 0, 0};                                            ///< image of the origin
 
     [[nodiscard]] std::array<double, 3> operator()(const std::array<double, 3>& p) const;
     /// The map that applies `first`, then this map.
     [[nodiscard]] AffineMap after(const AffineMap& first) const;
-    [[nodiscard]] bool mirrors() const;                        ///< true if the determinant is negative
+    [[nodiscard]] bool mirrors() const;  ///< true if the determinant is negative
     friend bool operator==(const AffineMap&, const AffineMap&) = default;
 };
 

@@ -19,12 +19,13 @@ namespace ostraka::io {
 namespace {
 
 /// Extensions whose data are read.
-constexpr std::array read_extensions{"KHR_mesh_quantization",  "KHR_texture_transform", "EXT_meshopt_compression",
-                                     "KHR_draco_mesh_compression", "EXT_texture_webp",  "KHR_texture_basisu"};
+constexpr std::array read_extensions{"KHR_mesh_quantization",      "KHR_texture_transform", "EXT_meshopt_compression",
+                                     "KHR_draco_mesh_compression", "EXT_texture_webp",      "KHR_texture_basisu"};
 /// Beginnings of the names of extensions that do not change the surface; what they say of materials is passed through.
-constexpr std::array harmless_extensions{"KHR_materials_", "EXT_materials_", "KHR_texture_",        "EXT_texture_",
-                                         "MSFT_texture_",  "KHR_lights_",    "EXT_lights_",         "KHR_xmp",
-                                         "KHR_animation_", "ADOBE_materials_", "EXT_mesh_features", "EXT_structural_metadata",
+constexpr std::array harmless_extensions{"KHR_materials_",       "EXT_materials_",    "KHR_texture_",
+                                         "EXT_texture_",         "MSFT_texture_",     "KHR_lights_",
+                                         "EXT_lights_",          "KHR_xmp",           "KHR_animation_",
+                                         "ADOBE_materials_",     "EXT_mesh_features", "EXT_structural_metadata",
                                          "EXT_instance_features"};
 
 bool is_read(std::string_view extension) {
@@ -107,8 +108,7 @@ private:
         const auto [place, is_new] = first_vertices_.try_emplace(primitive.key(), static_cast<Index>(soup_.points.size()));
         if (!is_new) return place->second;
         const std::size_t count = primitive.vertices(), first = soup_.points.size();
-        if (first + count >= no_index)
-            fail_work(path_.string(), "has more than four thousand million vertices", "split it");
+        if (first + count >= no_index) fail_work(path_.string(), "has more than four thousand million vertices", "split it");
         reader_.charge(static_cast<double>((sizeof(std::array<double, 3>) + sizeof(Colour)) * count), primitive.pointer());
         const auto positions = primitive.values("POSITION", 3, count);
         soup_.points.reserve(first + count);
@@ -131,7 +131,9 @@ private:
             reader_.fail(primitive.pointer() + "/attributes/COLOR_0", "has not three or four channels");
         const auto values = primitive.values("COLOR_0", shape.width, count);
         // Integers are always fractions, also where a writer forgot to say so.
-        const double largest = shape.normalised || shape.component == glb::single ? 1 : shape.component == glb::byte ? 255 : 65535;
+        const double largest = shape.normalised || shape.component == glb::single ? 1
+                               : shape.component == glb::byte                     ? 255
+                                                                                  : 65535;
         std::vector<Colour>& colours = soup_.extras.vertex_colours;
         colours.resize(first, white);
         colours.reserve(first + count);
@@ -140,7 +142,8 @@ private:
             for (std::size_t k = 0; k < shape.width; ++k) {
                 const double value = (*values)[shape.width * i + k] / largest;
                 const double light = value >= 0 ? std::min(value, 1.0) : 0;
-                colour[k] = k == 3 ? static_cast<std::uint8_t>(std::lround(255 * light)) : srgb_from_linear(static_cast<float>(light));
+                colour[k] =
+                    k == 3 ? static_cast<std::uint8_t>(std::lround(255 * light)) : srgb_from_linear(static_cast<float>(light));
             }
             colours.push_back(colour);
         }

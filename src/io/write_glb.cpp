@@ -107,8 +107,9 @@ public:
         Notes notes;
         if (rounded_) notes.emplace_back("GLB stores coordinates in single precision; they were rounded");
         if (precision_.shifts)
-            notes.push_back(fmt::format("coordinates were written about their centre; the translation of the node is ({}, {}, {})",
-                                        digits(precision_.origin[0]), digits(precision_.origin[1]), digits(precision_.origin[2])));
+            notes.push_back(
+                fmt::format("coordinates were written about their centre; the translation of the node is ({}, {}, {})",
+                            digits(precision_.origin[0]), digits(precision_.origin[1]), digits(precision_.origin[2])));
         if (face_coloured_ || count_ > soup_.points.size())
             notes.emplace_back("vertices were split so that GLB can store the data of faces and corners");
         if (!extras_.vertex_colours.empty() && !extras_.face_colours.empty())
@@ -250,7 +251,7 @@ private:
     bool coloured_ = face_coloured_ || !extras_.vertex_colours.empty();
     TexturedVertices pairs_;
     std::size_t corner_count_ = 3 * soup_.triangles.size(), count_ = 0;  ///< number of corners, of vertices in the file
-    std::vector<Index> order_;                                           ///< triangles in the order of writing; empty: as they are
+    std::vector<Index> order_;  ///< triangles in the order of writing; empty: as they are
     std::vector<Group> groups_;
     std::unique_ptr<GlbMaterials> materials_;
     std::array<float, 3> low_, high_;

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace ostraka {
@@ -91,6 +92,11 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
     const auto triple = [](const std::array<double, 3>& v) {
         return fmt::format("{} x {} x {}", number(v[0]), number(v[1]), number(v[2]));
     };
+    // Coordinates show digits down to a hundred thousandth of the object's size, however far it lies from the origin.
+    const auto place = [&](double x) {
+        const double places = d.diagonal > 0 && x != 0 ? std::ceil(std::log10(std::abs(x) / d.diagonal)) : 0;
+        return number(x, 5 + static_cast<int>(std::clamp(places, 0.0, 12.0)));
+    };
     const auto first = [](const auto& items, std::size_t maximum, const auto& text_of) {
         std::vector<std::string> texts;
         for (std::size_t i = 0; i < std::min(maximum, items.size()); ++i) texts.push_back(text_of(items[i]));
@@ -128,7 +134,7 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
     if (d.edges > 0) {
         add("box", fmt::format("{} from ({}, {}, {})",
                                triple({d.box.xmax() - d.box.xmin(), d.box.ymax() - d.box.ymin(), d.box.zmax() - d.box.zmin()}),
-                               number(d.box.xmin()), number(d.box.ymin()), number(d.box.zmin())));
+                               place(d.box.xmin()), place(d.box.ymin()), place(d.box.zmin())));
         add("oriented box", triple(d.oriented_box.sides));
     }
     add("diagonal", number(d.diagonal));

@@ -9,7 +9,8 @@ namespace ostraka {
 
 // clang-format off
 std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
-    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_register(), make_mesh_make();
+    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_register(), make_mesh_make(),
+    make_mesh_surface(), make_mesh_move(), make_mesh_bake();
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
     make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
@@ -32,12 +33,15 @@ constexpr OperationEntry entries[]{
     {"mesh info", "report counts, measures and defects of a mesh; exit code 3 if the mesh is not closed, oriented, manifold and free of self-intersections", make_mesh_info},
     {"mesh convert", "write a mesh in another format, with polygons triangulated and the vertex order kept", make_mesh_convert},
     {"mesh repair", "repair a mesh to an oriented manifold; exit code 3 if the repaired mesh is still open or intersects itself", make_mesh_repair},
-    {"mesh simplify", "reduce the number of vertices, with annotations, labels and colours transferred", make_mesh_simplify, 2},
+    {"mesh simplify", "reduce the number of vertices, with annotations, labels and colours transferred", make_mesh_simplify, 3},
     {"mesh refine", "increase the number of vertices, with annotations, labels and colours transferred", make_mesh_refine, 2},
-    {"mesh remesh", "replace the mesh by new, nearly equilateral triangles of the same surface", make_mesh_remesh},
+    {"mesh remesh", "replace the mesh by new, nearly equilateral triangles of the same surface, with texture or colours baked from the old mesh", make_mesh_remesh, 2},
+    {"mesh bake", "bake the texture, colours, occlusion, curvature or relief of a mesh into an image or the vertices of another mesh of the same object", make_mesh_bake},
     {"mesh register", "register a mesh to another mesh of the same object by rotation, translation and scale; exit code 3, and nothing written, if the meshes show different objects", make_mesh_register},
+    {"mesh move", "translate, rotate, scale or mirror a mesh, or change its unit or axes, together with annotations, relationships and cage", make_mesh_move},
     {"mesh extract", "cut annotated parts out of an object, and keep the annotations on these parts", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment with known pose", make_mesh_break},
+    {"mesh surface", "reconstruct the surface of a point cloud, with the colours and intensities of its points", make_mesh_surface},
     {"mesh make", "make a closed synthetic mesh whose parts are known exactly", make_mesh_make},
     {"annotation apply", "annotate a mesh from a recipe or from labels", make_annotation_apply, 3},
     {"annotation list", "list the annotations of a mesh", make_annotation_list},

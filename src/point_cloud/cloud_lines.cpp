@@ -3,8 +3,9 @@
 
 #include "ostraka/core/text.h"
 
+#include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <limits>
 
 namespace ostraka::clouds {
 

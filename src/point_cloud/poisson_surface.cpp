@@ -3,8 +3,8 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/point_tree.h"
 #include "ostraka/io/repair.h"
-#include "ostraka/mesh/limits.h"
 #include "ostraka/point_cloud/cloud_surface.h"
 
 #include <CGAL/Implicit_surface_3.h>
@@ -50,25 +50,19 @@ private:
     CGAL::Random before_;
 };
 
-/// The facets of a meshed level set, oriented towards larger values of the function (the outside): each facet is compared at
-/// `step` before and behind its centroid.
+/// The facets of a meshed level set, each in any orientation.
 template <class Complex>
-TriangleSoup oriented_triangles(const Complex& complex, const PoissonFunction& function, double step) {
+TriangleSoup triangles_of(const Complex& complex) {
     TriangleSoup soup;
     std::map<typename Complex::Vertex_handle, Index> number;
     for (auto facet = complex.facets_begin(); facet != complex.facets_end(); ++facet) {
         std::array<Index, 3> triangle{};
-        std::array<Point, 3> corner;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto vertex = facet->first->vertex(static_cast<int>((static_cast<std::size_t>(facet->second) + k + 1) % 4));
+        for (int k = 0; k < 3; ++k) {
+            const auto vertex = facet->first->vertex((facet->second + k + 1) % 4);
             const auto [entry, is_new] = number.try_emplace(vertex, static_cast<Index>(soup.points.size()));
-            corner[k] = vertex->point();
-            if (is_new) soup.points.push_back({corner[k].x(), corner[k].y(), corner[k].z()});
-            triangle[k] = entry->second;
+            if (is_new) soup.points.push_back({vertex->point().x(), vertex->point().y(), vertex->point().z()});
+            triangle[static_cast<std::size_t>(k)] = entry->second;
         }
-        const Vector ahead = step * unit_vector(CGAL::cross_product(corner[1] - corner[0], corner[2] - corner[0]));
-        const Point middle = CGAL::centroid(corner[0], corner[1], corner[2]);
-        if (function(middle + ahead) < function(middle - ahead)) std::swap(triangle[1], triangle[2]);
         soup.triangles.push_back(triangle);
     }
     return soup;
@@ -94,7 +88,19 @@ TriangleSoup level_set(const PoissonFunction& function, double spacing, const Po
     Triangulation triangulation;
     Complex complex(triangulation);
     CGAL::make_surface_mesh(complex, surface, criteria, CGAL::Manifold_with_boundary_tag());
-    return oriented_triangles(complex, function, 0.1 * spacing);
+    return triangles_of(complex);
+}
+
+/// Agreement of the triangles within `distance` of a point with its normal: negative if the surface is inside out.
+double agreement_with_normals(const Mesh& mesh, const std::vector<Point>& points, const std::vector<Vector>& normals,
+                              double distance) {
+    const PointTree tree(points);
+    double sum = 0;
+    for (const Face face : mesh.faces()) {
+        const Index nearest = tree.nearest(centroid(mesh, face), distance).index;
+        if (nearest != no_index) sum += area_vector(mesh, face) * normals[nearest];
+    }
+    return sum;
 }
 
 }  // namespace
@@ -131,6 +137,12 @@ CloudSurface poisson_surface(const PointCloud& cloud, const PoissonOptions& opti
     CloudSurface result;
     result.mesh = std::move(repaired.mesh);
     result.sources.assign(result.mesh.number_of_vertices(), no_index);
+    constexpr double near = 4;
+    if (agreement_with_normals(result.mesh, cloud.points, normals, near * spacing * frame.size()) < 0) {
+        soup = to_soup(result.mesh);
+        for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+        result.mesh = build_mesh(soup);
+    }
     clouds::count_borders(repaired.after, result);
     return result;
 }

@@ -223,6 +223,13 @@ std::vector<std::vector<int>> groups_of(const ConstraintMembers& members, const 
 
 }  // namespace
 
+int length_power(const std::string& type) {
+    if (!is_low_level(type)) return 0;
+    const std::string name = letters_of(type);
+    if (name == "polylinelength" || name == "edgestrain" || name == "bending") return 1;
+    return name == "area" ? 2 : name == "volume" ? 3 : 0;
+}
+
 bool is_low_level(const std::string& type) { return form_of(type) != nullptr; }
 
 Statement low_level(const MembersPtr& members, const ParameterReader& read, const RelationOptions& tolerances) {

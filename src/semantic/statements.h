@@ -41,6 +41,8 @@ Statement keep_direction(const MembersPtr&, const spec::KeepDirection&, const Re
 Statement keep_position(const MembersPtr&, const spec::KeepPosition&, const RelationOptions&);
 /// Whether the type has the name of one of the solver's kinds of constraint ("edge strain").
 bool is_low_level(const std::string& type);
+/// Exponent of the unit of length in the absolute range of a constraint of the solver; 0 for types without such a range.
+int length_power(const std::string& type);
 /// Statement of a constraint of one of the solver's kinds; reads the parameters, including parameters that the kind does not use.
 Statement low_level(const MembersPtr&, const ParameterReader&, const RelationOptions&);
 

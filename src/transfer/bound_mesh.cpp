@@ -221,16 +221,16 @@ void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& v
     }
 }
 
-MarkedParts BoundMesh::marked(const AnnotationTable& table, bool pins) const {
+MarkedParts BoundMesh::marked(const AnnotationTable& table, bool protects) const {
     MarkedParts parts;
     if (!annotations) return parts;
     const auto regions = mesh.property_map<Face, std::uint32_t>(face_annotations).first;
     const auto lines = mesh.property_map<Edge, std::uint32_t>(edge_annotations).first;
     const auto points = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first;
-    // On the border, the outlines of regions are marked, except that of the whole object.
+    // On the border, the outlines of regions are marked; that of the whole object only if outlines are protected.
     std::vector<bool> has_outline(table.size(), false);
     for (std::uint32_t set = 0; set < table.size(); ++set)
-        for (const int id : table.ids(set)) has_outline[set] = has_outline[set] || !annotations->find(id)->all;
+        for (const int id : table.ids(set)) has_outline[set] = has_outline[set] || protects || !annotations->find(id)->all;
     parts.edges.assign(mesh.number_of_edges(), false);
     parts.vertices.assign(mesh.number_of_vertices(), false);
     for (const Edge e : mesh.edges()) {
@@ -239,7 +239,7 @@ MarkedParts BoundMesh::marked(const AnnotationTable& table, bool pins) const {
         parts.edges[e] = outline || lines[e] != 0;
     }
     for (const Vertex v : mesh.vertices()) parts.vertices[v] = points[v] != 0;
-    if (!pins) return parts;
+    if (!protects) return parts;
     for (const Annotation& annotation : annotations->annotations)
         for (const Attribute& attribute : annotation.attributes)
             for (const Index v : pins_of(attribute.measure)) parts.vertices.at(v) = true;

@@ -51,9 +51,9 @@ struct Unit {
 };
 
 std::optional<Unit> unit_of(std::string text) {
-    static const std::map<std::string, double> lengths{{"um", 1e-6}, {"\xC2\xB5m", 1e-6}, {"mm", 1e-3},
-                                                       {"cm", 1e-2}, {"dm", 0.1},         {"m", 1},
-                                                       {"km", 1e3},  {"in", 0.0254},      {"ft", 0.3048}};
+    // In micrometres, so that all factors are whole numbers and their ratios are rounded once.
+    static const std::map<std::string, double> lengths{{"um", 1},  {"\xC2\xB5m", 1}, {"mm", 1e3},   {"cm", 1e4},   {"dm", 1e5},
+                                                       {"m", 1e6}, {"km", 1e9},      {"in", 25400}, {"ft", 304800}};
     if (text == "rad") return Unit{1, 0};
     if (text == "deg" || text == "\xC2\xB0") return Unit{degree, 0};
     const bool reciprocal = text.starts_with("1/");

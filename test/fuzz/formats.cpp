@@ -2,6 +2,8 @@
 #include "subjects.h"
 
 #include "ostraka/image/image.h"
+#include "../point_cloud/e57_writer.h"
+
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
@@ -128,6 +130,19 @@ void make_formats(const Path& project) {
     write_file("clouds/points.obj", points_text(sphere.mesh, "v ", 2));
     write_file("clouds/points.ply", read_file(inputs / "points-only.ply"));
     make_images();
+    write_file("clouds/points.ptx",
+               "200\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n" + points_text(sphere.mesh, "", 3));
+    write_file("clouds/points.pcd",
+               "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 30\nHEIGHT 1\nDATA ascii\n" +
+                   points_text(sphere.mesh, "", 1));
+    test::E57Writer e57;
+    for (const char* axis : {"X", "Y", "Z"}) {
+        if (e57.scans.empty()) e57.scans.emplace_back();
+        auto& values = e57.scans.back().column("<cartesian" + std::string(axis) + " type=\"Float\"/>", 64);
+        for (const auto vertex : sphere.mesh.vertices())
+            values.push_back(std::bit_cast<std::uint64_t>(sphere.mesh.point(vertex)[axis[0] - 'X']));
+    }
+    write_file("clouds/points.e57", e57.file(500));
     make_folder("exchange");
     Stopper stopper;
     const auto quoted = [](const Path& file) { return "\"" + file.string() + "\""; };

@@ -6,6 +6,7 @@
 #include "ostraka/image/image.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 namespace ostraka {
 namespace {
@@ -73,6 +74,46 @@ TEST(HostileImage, Mutated) {
         std::size_t decoded = 0;
         for (std::uint64_t seed = 0; seed < 1500; ++seed) decoded += is_decoded(test::mutate(bytes, seed)) ? 1 : 0;
         EXPECT_LT(decoded, 1500U);
+    }
+}
+
+/// The PNG with the checksums of its chunks made right, so that damage reaches the decoder.
+std::string with_checksums(std::string bytes) {
+    const auto byte = [&](std::size_t at) { return std::size_t{static_cast<std::uint8_t>(bytes[at])}; };
+    for (std::size_t at = 8; at + 12 <= bytes.size();) {
+        const std::size_t length = byte(at) << 24U | byte(at + 1) << 16U | byte(at + 2) << 8U | byte(at + 3);
+        if (length > bytes.size() - at - 12) break;
+        const auto* chunk = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
+        const auto checksum = ::crc32(0, chunk, static_cast<uInt>(length + 4));
+        for (std::size_t k = 0; k < 4; ++k) bytes[at + 8 + length + k] = static_cast<char>(checksum >> (24 - 8 * k) & 255U);
+        at += 12 + length;
+    }
+    return bytes;
+}
+
+TEST(HostileImage, MutatedPngWithRightChecksums) {
+    std::size_t decoded = 0;
+    for (const auto& [name, bytes] : small_images())
+        if (name.ends_with("png"))
+            for (std::uint64_t seed = 0; seed < 1500; ++seed)
+                decoded += is_decoded(with_checksums(test::mutate(bytes, seed))) ? 1 : 0;
+    EXPECT_GT(decoded, 0U);
+}
+
+TEST(HostileImage, JpegOfOtherSizes) {
+    for (const auto& [name, bytes] : small_images()) {
+        if (!name.ends_with("jpeg")) continue;
+        const std::size_t frame = std::min(bytes.find("\xff\xc0"), bytes.find("\xff\xc2"));
+        for (int width = 1; width < 65536; width = width * 3 + 1)
+            for (int height = 1; height < 65536; height = height * 2 + 1) {
+                std::string damaged = bytes;
+                for (const auto& [at, side] : {std::pair(frame + 5, height), std::pair(frame + 7, width)}) {
+                    damaged[at] = static_cast<char>(side >> 8);
+                    damaged[at + 1] = static_cast<char>(side & 255);
+                }
+                // 32 x 24 pixels are 36 blocks at most; a file cannot have many more.
+                EXPECT_FALSE(is_decoded(damaged) && width > 2000 && height > 2000) << name;
+            }
     }
 }
 

@@ -87,7 +87,8 @@ TEST(Glb, FaceColoursSplitTheVertices) {
     const Scratch scratch;
     MeshExtras extras = full_extras(octahedron());
     extras.vertex_colours.clear();
-    extras.vertex_texture.clear();
+    extras.vertex_values.clear();
+    extras.face_values.clear();
     const auto notes = write_triangles(scratch / "a.glb", octahedron(), extras);
     EXPECT_EQ(notes.size(), 2U);  // split, labels
     const Glb glb(scratch / "a.glb");

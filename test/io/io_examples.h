@@ -3,6 +3,7 @@
 
 #include "ostraka/io/mesh_file.h"
 
+#include <gtest/gtest.h>
 #include <cmath>
 
 namespace ostraka::test {
@@ -40,8 +41,14 @@ inline MeshExtras full_extras(const TriangleSoup& soup) {
         const auto k = static_cast<std::uint8_t>(37 * v);
         extras.vertex_colours.push_back({k, static_cast<std::uint8_t>(k + 1), static_cast<std::uint8_t>(255 - k), 255});
         extras.vertex_labels.push_back(static_cast<std::int32_t>(v) * 1000003 - 7);
-        extras.vertex_texture.push_back({0.1F * static_cast<float>(v), 1.0F / static_cast<float>(v + 3)});
     }
+    for (const char* name : {"quality", "scalar_Intensity"}) {
+        NamedValues& column = extras.vertex_values.emplace_back(NamedValues{name, {}});
+        for (std::size_t v = 0; v < soup.points.size(); ++v)
+            column.values.push_back(static_cast<double>(v) / (column.name == "quality" ? 3 : 4));  // a third is no float
+    }
+    extras.face_values.push_back({"distance", {}});
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) extras.face_values[0].values.push_back(0.5 * static_cast<double>(t));
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
         const auto k = static_cast<std::uint8_t>(11 * t);
         extras.face_colours.push_back({k, 3, static_cast<std::uint8_t>(200 - k), static_cast<std::uint8_t>(100 + k)});
@@ -49,6 +56,31 @@ inline MeshExtras full_extras(const TriangleSoup& soup) {
         for (int c = 0; c < 3; ++c) extras.corner_texture.push_back({0.3F * static_cast<float>(t), static_cast<float>(c) / 7});
     }
     return extras;
+}
+
+/// Texture coordinates of corners that are those of the vertices.
+inline std::vector<TexturePoint> texture_without_seams(const TriangleSoup& soup) {
+    std::vector<TexturePoint> texture;
+    for (const auto& triangle : soup.triangles)
+        for (const Index v : triangle) texture.push_back({0.1F * static_cast<float>(v), 1.0F / static_cast<float>(v + 3)});
+    return texture;
+}
+
+/// The bytes of a PNG image of one pixel, whose colour depends on `shade`.
+inline std::string one_pixel_png(std::uint8_t shade) {
+    return encode({1, 1, {{shade, 100, 50, 255}}}, ImageFormat::png, "pixel.png").bytes;
+}
+
+/// Names, values and types of two lists of values are equal; NaN equals NaN.
+inline void expect_same_values(const std::vector<NamedValues>& actual, const std::vector<NamedValues>& expected) {
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t k = 0; k < actual.size(); ++k) {
+        EXPECT_EQ(actual[k].name, expected[k].name);
+        ASSERT_EQ(actual[k].values.size(), expected[k].values.size());
+        for (std::size_t i = 0; i < actual[k].values.size(); ++i)
+            EXPECT_TRUE(actual[k].values[i] == expected[k].values[i] ||
+                        (std::isnan(actual[k].values[i]) && std::isnan(expected[k].values[i])));
+    }
 }
 
 }  // namespace ostraka::test

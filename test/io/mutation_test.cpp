@@ -3,6 +3,7 @@
 #include "mutate.h"
 #include "ostraka/core/error.h"
 #include "scratch.h"
+#include "three_mf_examples.h"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -43,6 +44,15 @@ std::vector<std::pair<std::string, std::string>> base_files() {
     add_file("binary.stl", Encoding::binary, {});
     add_file("ascii.stl", Encoding::ascii, {});
     files.emplace_back("big.ply", big_endian_ply());
+    files.emplace_back(
+        "images.ply",
+        "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile <this>.jpg\nelement vertex 4\nproperty float X\n"
+        "property float Y\nproperty float Z\nproperty float r\nproperty float g\nproperty float b\nproperty float s\n"
+        "property float t\nproperty short age\nelement face 2\nproperty list uchar int vertex_indices\n"
+        "property list uchar float texcoord\nproperty int texnumber\nproperty double wear\nend_header\n"
+        "0 0 0 255 0 0 0 0 1\n1 0 0 0 9 0 0 1 2\n1 1 0 0 0 7 1 1 3\nnan 9 9 9 9 9 9 9 9\n3 0 1 2 6 0 0 1 0 1 1 0 .5\n"
+        "3 2 1 0 6 1 1 1 0 0 0 1 .25\n");
+    files.emplace_back("model.3mf", zip_of({{"3D/3dmodel.model", coloured_model}}));
     files.emplace_back(
         "strips.ply",
         "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
@@ -94,8 +104,12 @@ TEST(Mutation, ReadersSurviveDamagedFiles) {
                             complete(result.extras.face_colours.size(), triangles));
                 ASSERT_TRUE(complete(result.extras.vertex_labels.size(), vertices) &&
                             complete(result.extras.face_labels.size(), triangles));
-                ASSERT_TRUE(complete(result.extras.vertex_texture.size(), vertices) &&
-                            complete(result.extras.corner_texture.size(), 3 * triangles));
+                ASSERT_TRUE(complete(result.extras.corner_texture.size(), 3 * triangles) &&
+                            complete(result.extras.face_materials.size(), triangles));
+                for (const NamedValues& column : result.extras.vertex_values) ASSERT_EQ(column.values.size(), vertices);
+                for (const NamedValues& column : result.extras.face_values) ASSERT_EQ(column.values.size(), triangles);
+                for (const Index material : result.extras.face_materials)
+                    ASSERT_TRUE(material == no_index || material < result.extras.appearance.materials.size());
             } catch (const Error& error) {
                 ++refused;
                 EXPECT_NE(error.where().find(name), std::string::npos) << error.what();

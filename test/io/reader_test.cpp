@@ -74,6 +74,18 @@ TEST(Obj, ColoursInUnitsOrBytes) {
     EXPECT_TRUE(has_note(read("a.obj", "v 0 0 0 2\nf 1 1 1\n").notes, "weight"));
 }
 
+TEST(Obj, OpacityThatIsNoNumberIsReported) {
+    const auto soup = read("a.obj", "v 0 0 0 1 0 0 0.5\nv 1 0 0 0 1 0 word\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(soup.extras.vertex_colours, (std::vector<Colour>{{255, 0, 0, 128}, {0, 255, 0, 255}, {255, 255, 255, 255}}));
+    EXPECT_TRUE(has_note(soup.notes, "1 vertices have an opacity that is not a number"));
+}
+
+TEST(Obj, ALastFaceWithoutLineEndIsReported) {
+    EXPECT_TRUE(has_note(read("a.obj", obj_square + "f 1 2 3\nf 1 3 4").notes, "cut off in its last face"));
+    EXPECT_FALSE(has_note(read("a.obj", obj_square + "f 1 2 3\nf 1 3 4\n").notes, "cut off"));
+    EXPECT_FALSE(has_note(read("a.obj", obj_square + "f 1 2 3\n# end").notes, "cut off"));
+}
+
 TEST(Obj, RefusalsNameTheLine) {
     EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 0\n"), "line 5"));
     EXPECT_TRUE(has(refusal("a.obj", obj_square + "f 1 2 3\nf 1 2 5\nf 2 3 4\n"), "line 6: a face names vertex 5 of 4"));
@@ -115,7 +127,9 @@ TEST(Ply, PropertiesAndElementsInAnyOrder) {
     EXPECT_EQ(soup.extras.vertex_colours.front(), (Colour{255, 0, 128, 255}));
     EXPECT_TRUE(has_note(soup.notes, "element not kept: camera"));
     EXPECT_TRUE(has_note(soup.notes, "vertex properties not kept: neighbours"));
-    EXPECT_TRUE(has_note(soup.notes, "face properties not kept: quality"));
+    ASSERT_EQ(soup.extras.face_values.size(), 1U);
+    EXPECT_EQ(soup.extras.face_values[0].name, "quality");
+    EXPECT_EQ(soup.extras.face_values[0].values, (std::vector<double>{0.25, 9}));
     EXPECT_TRUE(has_note(soup.notes, "1 labels above"));
 }
 
@@ -198,7 +212,8 @@ TEST(Ply, RefusalsNameLineOrByte) {
     EXPECT_TRUE(has(refusal("a.ply", faces + "3 0 1 2 0\n"), "more values"));
     EXPECT_TRUE(has(refusal("a.ply", faces + "-1\n"), "claims -1"));
     EXPECT_TRUE(has(refusal("a.ply", faces), "ends at face 0 of 1"));
-    EXPECT_TRUE(has(refusal("a.ply", vertices + "end_header\n0 0 0\nnan 0 0\n1 1 1\n"), "line 9: vertex 1"));
+    const std::string nan_vertex = vertices + "element face 1\n" + ply_faces + "end_header\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n";
+    EXPECT_TRUE(has(refusal("a.ply", nan_vertex), "vertex 1 has a coordinate that is not finite, and faces use it"));
     EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 1\nproperty float x\nend_header\n0\n"), "x, y and z"));
     EXPECT_TRUE(has(refusal("a.ply", vertices), "end_header"));
     EXPECT_TRUE(has(refusal("a.ply", "ply\nelement vertex 0\nend_header\n"), "no format"));
@@ -208,7 +223,37 @@ TEST(Ply, RefusalsNameLineOrByte) {
     EXPECT_TRUE(has(refusal("a.ply", start + "wobble\n"), "unknown header line 'wobble'"));
     EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 0\nelement vertex 0\n"), "declared twice"));
     const std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + ply_xyz + "end_header\n";
-    EXPECT_TRUE(has(refusal("a.ply", binary + std::string("\0\0\x80\x7f\0\0\0\0\0\0\0\0", 12)), "byte"));  // an infinity
+    EXPECT_TRUE(has(refusal("a.ply", binary + std::string(11, '\0')), "cut off"));
+}
+
+TEST(Ply, UnusedVerticesWithoutCoordinatesAreDropped) {
+    const std::string header =
+        "ply\nformat ascii 1.0\nelement vertex 5\n" + ply_xyz + "property uchar red\nproperty uchar green\n" +
+        "property uchar blue\nproperty int part_label\nproperty float age\nelement face 1\n" + ply_faces + "end_header\n";
+    const auto soup = read("a.ply", header +
+                                        "nan 0 0 1 1 1 1 1\n0 0 0 2 2 2 2 2\n1 0 0 3 3 3 3 3\n0 inf 0 4 4 4 4 4\n"
+                                        "0 1 0 5 5 5 5 5\n3 1 2 4\n");
+    EXPECT_EQ(soup.points, (Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(soup.corners, (Corners{0, 1, 2}));
+    EXPECT_EQ(soup.vertex_of_file_vertex, (Corners{no_index, 0, 1, no_index, 2}));
+    EXPECT_EQ(soup.extras.vertex_labels, (std::vector<std::int32_t>{2, 3, 5}));
+    EXPECT_EQ(soup.extras.vertex_colours[2], (Colour{5, 5, 5, 255}));
+    EXPECT_EQ(soup.extras.vertex_values[0].values, (std::vector<double>{2, 3, 5}));
+    EXPECT_TRUE(has_note(soup.notes, "2 vertices that no face uses"));
+}
+
+TEST(Text, MayBeginWithAByteOrderMark) {
+    const std::string mark = "\xEF\xBB\xBF";
+    EXPECT_EQ(read("a.ply", mark + "ply\nformat ascii 1.0\nelement vertex 1\n" + ply_xyz + "end_header\n1 2 3\n").points,
+              (Points{{1, 2, 3}}));
+    EXPECT_EQ(read("a.stl", mark + "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                                   "endfacet\nendsolid x\n")
+                  .polygon_count(),
+              1U);
+    EXPECT_EQ(read("a.off", mark + "OFF\n1 0 0\n1 2 3\n").points, (Points{{1, 2, 3}}));
+    const Scratch scratch;
+    write_triangles(scratch / "a.stl", octahedron());
+    EXPECT_EQ(read("b.stl", mark + read_file(scratch / "a.stl")).polygon_count(), 8U);
 }
 
 TEST(Off, HeaderInItsForms) {
@@ -229,8 +274,8 @@ TEST(Off, ColoursNormalsAndTexture) {
                            "0 1 2 0.5 1.0 0\n3 0 2 1 10 20 30 40\n");
     EXPECT_EQ(full.points[2], (std::array<double, 3>{0, 1, 0}));
     EXPECT_EQ(full.extras.vertex_colours, (std::vector<Colour>{{255, 0, 0, 255}, {0, 255, 0, 255}, {7, 8, 9, 255}}));
-    EXPECT_EQ(full.extras.vertex_texture[0], (std::array<float, 2>{0.5F, 0.25F}));
-    EXPECT_EQ(full.extras.vertex_texture[1], (std::array<float, 2>{0, 1}));
+    EXPECT_EQ(full.extras.corner_texture,
+              (std::vector<TexturePoint>{{0.5F, 0.25F}, {0, 1}, {1, 1}, {0.5F, 0.25F}, {1, 1}, {0, 1}}));
     EXPECT_EQ(full.extras.face_colours, (std::vector<Colour>{{128, 255, 0, 255}, {10, 20, 30, 40}}));
     const auto undeclared = read("a.off", "OFF\n3 2 0\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n3 0 2 1 5\n");
     EXPECT_EQ(undeclared.extras.vertex_colours[2], (Colour{7, 8, 9, 255}));
@@ -281,11 +326,54 @@ TEST(Stl, SizeDecidesNotTheFirstWord) {
     EXPECT_EQ(read("a.stl", bytes).polygon_count(), 8U);
     bytes[84 + 48] = 1;
     EXPECT_TRUE(has_note(read("a.stl", bytes).notes, "attribute"));
+    EXPECT_TRUE(read("a.stl", bytes).extras.face_colours.empty());
     EXPECT_TRUE(has_note(read("a.stl", bytes + "tail").notes, "last triangle"));
     EXPECT_TRUE(has(refusal("a.stl", bytes.substr(0, 300)), "room for 4"));
     EXPECT_TRUE(has(refusal("a.stl", bytes.substr(0, 50)), "STL"));
     std::memset(&bytes[84 + 50 + 12], 0xff, 4);
     EXPECT_TRUE(has(refusal("a.stl", bytes), "triangle 1"));
+}
+
+TEST(Stl, CountsThatAreTooSmallAreCorrected) {
+    const Scratch scratch;
+    write_triangles(scratch / "a.stl", octahedron());
+    std::string bytes = read_file(scratch / "a.stl");
+    for (const std::uint32_t count : {0U, 3U, 7U}) {
+        std::memcpy(&bytes[80], &count, 4);
+        const auto soup = read("a.stl", bytes);
+        EXPECT_EQ(soup.polygon_count(), 8U) << count;
+        EXPECT_TRUE(has_note(soup.notes, "but the file has 8"));
+    }
+    // Bytes that are no triangles are not read as such.
+    EXPECT_TRUE(has_note(read("a.stl", bytes.substr(0, 84 + 7 * 50) + std::string(50, '\0')).notes, "50 bytes after"));
+    EXPECT_EQ(read("a.stl", bytes.substr(0, 84 + 7 * 50) + std::string(50, '\xff')).polygon_count(), 7U);
+}
+
+TEST(Stl, ColoursOfTriangles) {
+    const Scratch scratch;
+    write_triangles(scratch / "a.stl", octahedron());
+    const std::string plain = read_file(scratch / "a.stl");
+    const auto set = [](std::string& bytes, std::size_t facet, std::uint16_t attribute) {
+        std::memcpy(&bytes[84 + 50 * facet + 48], &attribute, 2);
+    };
+    std::string marked = plain;  // VisCAM: the highest bit, then red, green, blue
+    set(marked, 0, 0x8000U | (31U << 10) | (16U << 5));
+    set(marked, 1, 0x8000U | 31U);
+    const auto viscam = read("a.stl", marked);
+    ASSERT_EQ(viscam.extras.face_colours.size(), 8U);
+    EXPECT_EQ(viscam.extras.face_colours[0], (Colour{255, 132, 0, 255}));
+    EXPECT_EQ(viscam.extras.face_colours[1], (Colour{0, 0, 255, 255}));
+    EXPECT_EQ(viscam.extras.face_colours[2], (Colour{255, 255, 255, 255}));
+    EXPECT_TRUE(has_note(viscam.notes, "6 triangles have no colour"));
+    std::string magics = plain;  // Magics: the colour of the object in the header, and blue, green, red of the others
+    magics.replace(10, 10, std::string("COLOR=\x0a\x14\x1e\xff", 10));
+    EXPECT_EQ(read("a.stl", magics).extras.face_colours, std::vector<Colour>(8, Colour{10, 20, 30, 255}));
+    set(magics, 0, 31U);
+    set(magics, 1, 0x8000U);
+    const auto coloured = read("a.stl", magics);
+    EXPECT_EQ(coloured.extras.face_colours[0], (Colour{255, 0, 0, 255}));
+    EXPECT_EQ(coloured.extras.face_colours[1], (Colour{10, 20, 30, 255}));
+    EXPECT_EQ(coloured.extras.face_colours[2], (Colour{0, 0, 0, 255}));
 }
 
 TEST(Stl, TextWithSeveralSolids) {

@@ -4,21 +4,14 @@
 #include "scratch.h"
 
 #include <gtest/gtest.h>
+#include <cmath>
+
 using namespace ostraka;
 using namespace ostraka::test;
 
 namespace {
 
 TriangulatedSoup reread(const Path& file) { return triangulate(read_polygons(file)); }
-
-/// Texture coordinates of every corner, per vertex or per corner: if each vertex has one corner the two are equivalent.
-std::vector<std::array<float, 2>> texture_of_corners(const TriangleSoup& soup, const MeshExtras& extras) {
-    if (extras.vertex_texture.empty()) return extras.corner_texture;
-    std::vector<std::array<float, 2>> list;
-    for (const auto& triangle : soup.triangles)
-        for (const Index v : triangle) list.push_back(extras.vertex_texture[v]);
-    return list;
-}
 
 std::vector<TriangleSoup> soups() {
     TriangleSoup triangle;
@@ -50,46 +43,47 @@ TEST(RoundTrip, PlyKeepsEverything) {
             EXPECT_EQ(back.extras.face_colours, extras.face_colours);
             EXPECT_EQ(back.extras.vertex_labels, extras.vertex_labels);
             EXPECT_EQ(back.extras.face_labels, extras.face_labels);
-            EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
             EXPECT_EQ(back.extras.corner_texture, extras.corner_texture);
+            expect_same_values(back.extras.vertex_values, extras.vertex_values);
+            expect_same_values(back.extras.face_values, extras.face_values);
             EXPECT_TRUE(back.notes.empty());
             EXPECT_NE(read_file(scratch / "a.ply").find("comment made by a test\n"), std::string::npos);
         }
 }
 
-TEST(RoundTrip, PlyStoresNamedFaceValuesAndOtherFormatsReportTheLoss) {
+TEST(RoundTrip, PlyStoresValuesAndOtherFormatsReportTheLoss) {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
-    WriteOptions options;
-    options.encoding = Encoding::ascii;
-    options.face_values = {{"distance", std::vector<float>(soup.triangles.size(), 0.25F)},
-                           {"fragment", std::vector<float>(soup.triangles.size(), -1)}};
-    EXPECT_TRUE(write_triangles(scratch / "a.ply", soup, {}, options).empty());
+    const std::size_t count = soup.triangles.size();
+    MeshExtras extras;
+    extras.face_values = {{"distance", std::vector<double>(count, 0.25)},
+                          {"two words", std::vector<double>(count, 0.1)},
+                          {"unknown", std::vector<double>(count, std::nan(""))}};
+    EXPECT_TRUE(write_triangles(scratch / "a.ply", soup, extras, {Encoding::ascii, {}}).empty());
     const std::string text = read_file(scratch / "a.ply");
-    EXPECT_NE(text.find("property float distance\nproperty float fragment\nend_header"), std::string::npos);
-    EXPECT_NE(text.find(" 0.25 -1\n"), std::string::npos);
-    EXPECT_EQ(reread(scratch / "a.ply").soup.triangles, soup.triangles);
-    EXPECT_FALSE(write_triangles(scratch / "a.obj", soup, {}, options).empty());
-    options.face_values[0].values.pop_back();
-    EXPECT_ANY_THROW(write_triangles(scratch / "a.ply", soup, {}, options));
+    EXPECT_NE(text.find("property float distance\nproperty double two_words\nproperty float unknown\nend_header"),
+              std::string::npos);
+    EXPECT_NE(text.find(" 0.25 0.1 nan\n"), std::string::npos);
+    extras.face_values[1].name = "two_words";
+    expect_same_values(reread(scratch / "a.ply").extras.face_values, extras.face_values);
+    EXPECT_EQ(write_triangles(scratch / "a.obj", soup, extras).size(), 1U);
+    extras.face_values[0].values.pop_back();
+    EXPECT_ANY_THROW(write_triangles(scratch / "a.ply", soup, extras));
 }
 
 TEST(RoundTrip, ObjKeepsGeometryColoursAndTexture) {
     const Scratch scratch;
     for (const auto& soup : soups())
-        for (const bool by_vertex : {true, false}) {
+        for (const bool has_seams : {false, true}) {
             MeshExtras extras = full_extras(soup);
-            (by_vertex ? extras.corner_texture : extras.vertex_texture).clear();
+            if (!has_seams) extras.corner_texture = texture_without_seams(soup);
             const auto notes = write_triangles(scratch / "a.obj", soup, extras);
-            EXPECT_EQ(notes.size(), 3U);  // face colours, labels of vertices, labels of faces
+            EXPECT_EQ(notes.size(), 4U);  // face colours, labels of vertices, labels of faces, values
             const auto back = reread(scratch / "a.obj");
             EXPECT_EQ(back.soup.points, soup.points);
             EXPECT_EQ(back.soup.triangles, soup.triangles);
             EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
-            EXPECT_EQ(texture_of_corners(back.soup, back.extras), texture_of_corners(soup, extras));
-            if (by_vertex) {
-                EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
-            }
+            EXPECT_EQ(back.extras.corner_texture, extras.corner_texture);
             EXPECT_TRUE(back.extras.face_labels.empty());
         }
 }
@@ -99,13 +93,15 @@ TEST(RoundTrip, OffKeepsGeometryColoursAndTexture) {
     for (const auto& soup : soups()) {
         MeshExtras extras = full_extras(soup);
         extras.vertex_colours.front()[3] = 17;
-        EXPECT_EQ(write_triangles(scratch / "a.off", soup, extras).size(), 3U);  // labels twice, texture of corners
+        EXPECT_EQ(write_triangles(scratch / "a.off", soup, extras).size(), soup.triangles.size() == 1 ? 3U : 4U);
+        extras.corner_texture = texture_without_seams(soup);
+        EXPECT_EQ(write_triangles(scratch / "a.off", soup, extras).size(), 3U);  // labels twice, values
         const auto back = reread(scratch / "a.off");
         EXPECT_EQ(back.soup.points, soup.points);
         EXPECT_EQ(back.soup.triangles, soup.triangles);
         EXPECT_EQ(back.extras.vertex_colours, extras.vertex_colours);
         EXPECT_EQ(back.extras.face_colours, extras.face_colours);
-        EXPECT_EQ(back.extras.vertex_texture, extras.vertex_texture);
+        EXPECT_EQ(back.extras.corner_texture, extras.corner_texture);
         EXPECT_TRUE(write_triangles(scratch / "plain.off", soup).empty());
         EXPECT_EQ(reread(scratch / "plain.off").soup.points, soup.points);
     }
@@ -120,7 +116,7 @@ TEST(RoundTrip, StlKeepsSinglePrecision) {
         EXPECT_EQ(back.soup.points, soup.points);
         EXPECT_EQ(back.soup.triangles, soup.triangles);
         EXPECT_EQ(write_triangles(scratch / "a.stl", soup, full_extras(soup), {encoding, {}}).size(),
-                  3U);                                                                              // colours, labels, texture
+                  4U);  // colours, labels, texture, values
         EXPECT_EQ(write_triangles(scratch / "b.stl", torus(5, 7), {}, {encoding, {}}).size(), 2U);  // rounded, renumbered
         const auto rounded = reread(scratch / "b.stl");
         EXPECT_EQ(rounded.soup.points.size(), 35U);

@@ -48,6 +48,7 @@ const std::vector<Step>& steps() {
                               "annotations-out": "coarse.ant.json"})"},
         {"mesh refine", R"({"input": "pot.ply", "output": "fine.ply", "vertices": 20000})"},
         {"mesh remesh", R"({"input": "pot.ply", "output": "new.ply", "vertices": 2500})"},
+        {"mesh bake", R"({"target": "new.ply", "source": "pot.ply", "output": "baked.ply", "of": "occlusion"})"},
         {"mesh register", R"({"source": "pot.ply", "target": "other.ply", "output": "registered.ply"})"},
         {"mesh extract", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "spout.ply", "annotation": ["spout"],
                              "closed": true})"},

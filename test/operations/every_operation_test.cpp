@@ -12,10 +12,12 @@
 #include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 
 using namespace ostraka;
 using namespace ostraka::test;
@@ -60,7 +62,13 @@ const std::vector<Step>& steps() {
          R"({"input": "coarse.ply", "output": "cut.ply", "vertices": 2000, "annotations": "coarse.ant.json",
              "annotations-out": "cut.ant.json"})"},
         {"mesh remesh", R"({"input": "coarse.ply", "output": "new.ply", "vertices": 1000})"},
+        {"mesh bake", R"({"target": "new.ply", "source": "seen.ply", "output": "baked.ply", "to": "vertices"})"},
+        {"mesh surface", R"({"cloud": "points.xyz", "output": "points.ply", "method": "poisson", "trim": 3, "outliers": 6})"},
+        {"import", R"({"scan": "pot.ply", "object": "imported", "unit": "mm"})"},
         {"mesh register", R"({"source": "pot.ply", "target": "fine.ply", "output": "registered.ply", "matrix": "matrix.json"})"},
+        {"mesh move",
+         R"({"input": "pot.ply", "output": "placed.ply", "rotate": "z,30", "translate": [1, 2, 3], "transform": "placed.json",
+             "annotations": "pot.ant.json", "annotations-out": "placed.ant.json"})"},
         {"annotation transfer",
          R"({"source": "pot.ply", "annotations": "pot.ant.json", "target": "fine.ply", "output": "fine.ant.json",
              "back": "back.ant.json", "refine": true, "refined-mesh": "refined.ply", "map": "origin.json"})"},
@@ -169,6 +177,12 @@ void furnish(const Scratch& scratch) {
     for (const char* name :
          {"teapot.recipe.json", "teapot-stretch.edit.json", "terracotta.vocabulary.json", "statuette.ply", "statuette.ant.json"})
         write_file(scratch / name, read_file(data / name));
+    std::ostringstream points;  // a coloured ball
+    for (int i = 0; i < 600; ++i) {
+        const double z = 1 - (2 * i + 1) / 600.0, radius = std::sqrt(1 - z * z), angle = 2.399963 * i;
+        points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << z << " 200 " << i % 256 << " 0\n";
+    }
+    write_file(scratch / "points.xyz", points.str());
     write_file(scratch / "raise.edit.json",
                R"({"format": "ostraka-edit", "version": 1, "steps": [{"select": {"all": true}, "translate": [0, 0, 1]}]})");
 }

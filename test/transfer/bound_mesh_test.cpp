@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <cmath>
 #include <set>
 
@@ -51,6 +53,32 @@ void expect_whole(const BoundMesh& bound) {
 }
 
 }  // namespace
+
+TEST(BoundMesh, AProtectedRegionOfTheWholeMeshProtectsTheBorder) {
+    const Mesh mesh = build_mesh(test::patch(24, 24));
+    const auto border = [](const Mesh& surface) {
+        std::set<Point> points;
+        for (const Vertex v : surface.vertices())
+            if (surface.is_border(v)) points.insert(surface.point(v));
+        return points;
+    };
+    AnnotationSet listed, whole;
+    ensure_root(whole, mesh);
+    Annotation all_faces;
+    all_faces.tag = "sheet";
+    for (const Face f : mesh.faces()) all_faces.faces.push_back(f);
+    listed.annotations = {all_faces};
+    SimplifyOptions options;
+    options.vertices = 200;
+    for (const AnnotationSet* set : {&whole, &listed})
+        for (const auto outlines : {SimplifyOptions::Outlines::protect, SimplifyOptions::Outlines::ignore}) {
+            options.outlines = outlines;
+            BoundMesh bound({mesh, {}, {}, {}}, *set);
+            bound.simplify(options);
+            EXPECT_EQ(bound.after.vertices, 200U);
+            EXPECT_EQ(border(bound.mesh) == border(mesh), outlines == SimplifyOptions::Outlines::protect);
+        }
+}
 
 TEST(BoundMesh, EverythingFollowsSuccessiveSteps) {
     MeshFile file = labelled_ball();

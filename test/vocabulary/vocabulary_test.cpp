@@ -77,6 +77,11 @@ TEST(TextMatch, Units) {
     EXPECT_DOUBLE_EQ(*converted(1, "1/mm", "1/m"), 1000);
     EXPECT_DOUBLE_EQ(*converted(1, "in", "mm"), 25.4);
     EXPECT_DOUBLE_EQ(*converted(180, "deg", "rad"), std::acos(-1.0));
+    // Ratios of units of length are rounded once.
+    EXPECT_EQ(*converted(1, "mm", "um"), 1000);
+    EXPECT_EQ(*converted(1, "in", "mm"), 25.4);
+    EXPECT_EQ(*converted(1, "in", "dm"), 0.254);
+    EXPECT_EQ(*converted(1, "ft", "in"), 12);
     EXPECT_EQ(*converted(7, "jars", "jars"), 7);
     EXPECT_FALSE(converted(1, "mm", "mm^2"));
     EXPECT_FALSE(converted(1, "mm", "jars"));

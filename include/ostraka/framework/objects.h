@@ -43,7 +43,8 @@ enum class Kind {
     table,
     report,
     text,
-    folder,  ///< several files, which the page of the operation describes
+    folder,       ///< several files, which the page of the operation describes
+    point_cloud,  ///< points without faces
 };
 std::string to_string(Kind kind);
 /// File extensions of a kind, lower case; empty if any extension is allowed.

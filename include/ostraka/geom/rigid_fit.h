@@ -9,15 +9,30 @@ namespace ostraka {
 
 /// Rigid or similarity motion p -> scale * rotation * p + translation.
 struct Motion {
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< determinant 1
-    Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< applied after rotation and scaling
-    double scale = 1;                                        ///< scale factor; 1 for rigid motions
+    /// Orthogonal; determinant 1, or -1 for a motion that mirrors.
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< applied after rotation and scaling
+    double scale = 1;                                       ///< scale factor; 1 for rigid motions
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
     [[nodiscard]] Motion inverse() const;  ///< the motion that undoes this motion
     /// Composition: first `other`, then this motion.
     [[nodiscard]] Motion after(const Motion& other) const;
+    [[nodiscard]] bool mirrors() const { return rotation.determinant() < 0; }  ///< true: the motion includes a reflection
     bool operator==(const Motion&) const = default;
+};
+
+/// Applies a motion to points; each sum is computed in twice the precision of a double and rounded once. Thus the shape of an
+/// object far from the origin is kept to the rounding of its coordinates, and translations, exchanges of axes, reflections in
+/// coordinate planes and rotations by right angles about coordinate axes are exact if their results are representable.
+class PreciseMotion {
+public:
+    explicit PreciseMotion(const Motion& motion) : matrix_(motion.scale * motion.rotation), translation_(motion.translation) {}
+    [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const;
+
+private:
+    Eigen::Matrix3d matrix_;
+    Eigen::Vector3d translation_;
 };
 
 /// Options of fit_motion.

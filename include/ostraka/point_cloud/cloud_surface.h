@@ -10,7 +10,7 @@ namespace ostraka {
 
 /// Options of `poisson_surface`.
 struct PoissonOptions {
-    double edge = 1.5;                    ///< bound of the triangles' circumradius, in multiples of the point spacing
+    double edge = 0.7;                    ///< bound of the triangles' circumradius, in multiples of the point spacing
     double deviation = 0.25;              ///< distance between triangles and Poisson surface, in multiples of the spacing
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

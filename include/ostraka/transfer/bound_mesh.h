@@ -20,7 +20,8 @@ public:
     explicit BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated = {});
 
     /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as parts to be preserved; with
-    /// `options.outlines` = protect, the pins of measures are marked as well. Throws as ostraka::simplify does.
+    /// `options.outlines` = protect, the pins of measures are marked as well, and so is the border if a region covers the whole
+    /// mesh. Throws as ostraka::simplify does.
     SimplifyResult simplify(const SimplifyOptions& options);
     /// Refines the mesh. A new vertex gets the mean of the colours and values of the two vertices between which it lies, and the
     /// label of one of the two; a new corner gets the mean of the texture coordinates. Throws as ostraka::refine does.
@@ -63,8 +64,9 @@ private:
     AnnotationTable attach();
     /// Reads back the annotations attached by `attach`; `vertex_map`: for each vertex of the mesh at that time, its vertex now.
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
-    /// Elements to be preserved; `pins`: true to mark the pins of measures as well.
-    [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
+    /// Elements to be preserved; `protects`: true to mark the pins of measures as well, and the border if a region is the whole
+    /// mesh.
+    [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool protects) const;
     [[nodiscard]] Size size_of(const Annotation& annotation) const;  ///< current size of an annotation
 
     /// The object before a step, kept if some annotations are free: their curves are projected onto the resulting mesh.

@@ -1,4 +1,5 @@
 // mesh remesh
+#include "operations/mesh/baking.h"
 #include "operations/mesh/resizing.h"
 #include "operations/operations.h"
 
@@ -15,6 +16,12 @@ struct MeshRemesh final : MeshResize {
         describe_meshes(p);
         options.list_options(p.options);
         p.options.find("vertices")->required();
+        p.options("texture", texture,
+                  "colours of the new mesh, baked from the input if the input has an image or colours: a new image, colours of the "
+                  "vertices, or none",
+                  Choices{"image", "vertices", "none"});
+        baking.list_texel(p.options);
+        Baking::declare_report(p.report);
         p.report.values(boolean("reached"), number("target_edge_length", "", "length"), integer("vertices_before_adjustment"),
                         number("deviation", "", "length"));
     }
@@ -22,9 +29,9 @@ struct MeshRemesh final : MeshResize {
     void run(Context&, Report& report) override {
         const Mesh& mesh = input->mesh;
         const MeshExtras& extras = input->extras;
-        if (!extras.vertex_colours.empty() || !extras.face_colours.empty() || !extras.vertex_labels.empty() ||
-            !extras.face_labels.empty() || !extras.corner_texture.empty())
-            report.note("colours, labels and texture coordinates belong to the old mesh and are left out");
+        if (!extras.vertex_labels.empty() || !extras.face_labels.empty() || !extras.vertex_values.empty() ||
+            !extras.face_values.empty())
+            report.note("labels and values belong to the old mesh and are left out");
         const Stopwatch stopwatch;
         RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });
         report.run("seconds", stopwatch.seconds());
@@ -39,10 +46,31 @@ struct MeshRemesh final : MeshResize {
                             result.mesh.number_of_vertices()));
             report.answer_no();
         }
-        output.write(std::move(result.mesh));
+        MeshExtras baked = baked_extras(result.mesh, report);
+        output.write(std::move(result.mesh), std::move(baked));
     }
 
+    /// The texture or the vertex colours of the new mesh.
+    MeshExtras baked_extras(const Mesh& mesh, Report& report) const {
+        MeshExtras baked;
+        if (!has_colours(input->extras)) return baked;
+        const bool image = texture == Texture::image && keeps_texture(output);
+        if (texture == Texture::none) {
+            report.note("colours and texture belong to the old mesh and are left out");
+        } else if (image) {
+            baking.to_image(mesh, baked, *input, input.file(), output.file(), nullptr, report);
+        } else {
+            if (texture == Texture::image)
+                report.note(fmt::format("a {} file keeps no image: colours are baked to the vertices", extension(output.file())));
+            baking.to_vertices(mesh, baked, *input, input.file(), report);
+        }
+        return baked;
+    }
+
+    enum class Texture { image, vertices, none };
     RemeshOptions options;
+    Baking baking;
+    Texture texture = Texture::image;
 };
 
 }  // namespace
