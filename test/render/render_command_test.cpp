@@ -238,7 +238,8 @@ TEST_F(RenderCommand, ColoursOfTheFileAreShownOrANoteSaysThatTheyAreNot) {
 TEST_F(RenderCommand, TexturesAreShownExactlyInFlatLight) {
     Pixels pixels{2, 2, {{250, 10, 20, 255}, {30, 240, 50, 255}, {60, 70, 230, 255}, {80, 90, 100, 255}}};
     write_file(scratch / "pot.png", encode(pixels, ImageFormat::png, "pot.png").bytes);
-    scratch.file("pot.mtl", "newmtl body\nKd 1 1 1\nmap_Kd pot.png\n");
+    const Path material = scratch.file("pot.mtl", "newmtl body\nKd 1 1 1\nmap_Kd pot.png\n");
+    ASSERT_TRUE(file_exists(material));
     const Path file = scratch.file("pot.obj",
                                    "mtllib pot.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                    "usemtl body\nf 1/1 2/2 3/3 4/4\n");

@@ -1,4 +1,5 @@
 // Contents of the page: displaying them, opening them from an index, and restoring them from the address.
+import { effect } from "@preact/signals";
 import * as THREE from "three";
 import { readEntry, type Blobs, type Content, type PageObject, type Shown } from "./data";
 import { DrawnObject, dotMaterial, flatMaterial, readShape, type Shape } from "./geometry";
@@ -108,11 +109,16 @@ export async function showContent(content: Content, keepsCamera = false) {
   forget(content.data.objects);
   state.setContent(content);
   document.title = content.data.title;
-  // After the first picture.
   const refineLooks = async () => {
     for (const one of objects) if (await refine(one.shape.look)) view?.draw();
   };
-  requestAnimationFrame(() => setTimeout(() => void refineLooks(), 50));
+  const stop = effect(() => {
+    if (!state.ready.value) return; // after the first picture
+    setTimeout(() => {
+      stop();
+      void refineLooks();
+    });
+  });
 }
 
 export async function openEntry(entry: number) {

@@ -37,7 +37,7 @@ function texturesOf(materials: SurfaceMaterial[], images: ImageBitmap[]): THREE.
   return materials.map((material) => {
     const texture = new THREE.Texture();
     if (material.image === undefined) return texture;
-    texture.source = new THREE.Source(images[material.image]);
+    texture.source = new THREE.TextureSource(images[material.image]);
     texture.flipY = false;
     texture.colorSpace = THREE.SRGBColorSpace;
     texture.anisotropy = 8;
@@ -115,7 +115,7 @@ export function lookOf(
     made.texture.refine = async () => {
       for (const [number, image] of texture.images.entries()) {
         if (!image.preview) continue;
-        const source = new THREE.Source(await decodeImage(blobs.get(image.blob), image.type));
+        const source = new THREE.TextureSource(await decodeImage(blobs.get(image.blob), image.type));
         materials.forEach((material, i) => {
           if (material.image !== number) return;
           textures[i].dispose();
