@@ -63,8 +63,6 @@ struct Import final : Operation {
                                 fmt::format("{} vertices", repaired.after.vertices),
                                 counted(repaired.after.triangles, "triangle"),
                                 sound ? "closed, oriented and free of intersections" : joined(repaired.after.defects())));
-        JsonValue record = json_object(report.allocator(), "raw", scan.file_name(), "mesh", name + ".ply", "sound", sound);
-        object.write("import.json", document_of("import", record, context.provenance()));
     }
 
     /// The image that a person names for a mesh whose file names none.
