@@ -4,6 +4,7 @@
 #include "ostraka/core/text.h"
 #include "scratch.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 using namespace ostraka;

@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "scratch.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 using namespace ostraka;
