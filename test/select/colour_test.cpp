@@ -1,7 +1,7 @@
 // Selections by the colours and the values of the mesh file.
 #include "meshes.h"
+#include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
-#include "ostraka/measure/measure.h"
 #include "ostraka/select/recipe.h"
 
 #include <gtest/gtest.h>
