@@ -125,8 +125,8 @@ struct Import final : Operation {
         for (const Path& file : raw_files) {
             Path inside = file.lexically_relative(folder.empty() ? Path(".") : folder);
             if (inside.empty() || *inside.begin() == "..") inside = file.filename();
+            make_folder((object.path() / "raw" / inside).parent_path());
             const Path copy = object.in((Path("raw") / inside).string());
-            make_folder(copy.parent_path());
             write_file(copy, read_file(file));
             names.push_back((Path("raw") / inside).string());
         }
