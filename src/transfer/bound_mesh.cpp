@@ -39,15 +39,19 @@ void from_map(Mesh& mesh, const std::string& name, std::size_t count, std::vecto
 /// Names of the property maps of further values.
 std::string name_of_values(const char* element, std::size_t index) { return fmt::format("{}:file-value-{}", element, index); }
 
-/// Carries data through edge collapses: unites the annotation sets of merged edges and vertices, and moves texture coordinates.
+/// Carries data through edge collapses: unites the annotation sets of merged edges and vertices,
+/// moves texture coordinates and interpolates values.
 class BoundData final : public CollapseVisitor {
 public:
-    BoundData(Mesh& mesh, AnnotationTable& table, bool annotated, bool textured) : table_(table), annotated_(annotated) {
+    BoundData(Mesh& mesh, AnnotationTable& table, bool annotated, const MeshExtras& extras)
+        : table_(table), annotated_(annotated) {
         if (annotated) {
             vertices_ = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first;
             edges_ = mesh.property_map<Edge, std::uint32_t>(edge_annotations).first;
         }
-        if (textured) texture_.emplace(mesh);
+        if (!extras.corner_texture.empty()) texture_.emplace(mesh);
+        for (std::size_t i = 0; i < extras.vertex_values.size(); ++i)
+            values_.push_back(mesh.property_map<Vertex, double>(name_of_values("v", i)).first);
     }
     void merge_vertices(Mesh&, Vertex kept, Vertex removed) override {
         if (annotated_) vertices_[kept] = unite(vertices_[kept], vertices_[removed]);
@@ -57,6 +61,14 @@ public:
     }
     void place_vertex(Mesh& mesh, Halfedge h, const Point& position) override {
         if (texture_) texture_->place_vertex(mesh, h, position);
+        if (values_.empty()) return;
+        const Point &source = mesh.point(mesh.source(h)), &target = mesh.point(mesh.target(h));
+        const double length = CGAL::squared_distance(source, target);
+        const double share = length > 0 ? std::clamp((position - source) * (target - source) / length, 0.0, 1.0) : 1;
+        for (auto& values : values_) {
+            double& value = values[mesh.target(h)];
+            if (share < 1) value = (1 - share) * values[mesh.source(h)] + share * value;
+        }
     }
     void replace_halfedge(Mesh&, Halfedge kept, Halfedge replaced) override {
         if (texture_) texture_->replace_halfedge(kept, replaced);
@@ -76,6 +88,7 @@ private:
     Mesh::Property_map<Vertex, std::uint32_t> vertices_;
     Mesh::Property_map<Edge, std::uint32_t> edges_;
     std::optional<CornerTexture> texture_;
+    std::vector<Mesh::Property_map<Vertex, double>> values_;  ///< interpolated along the collapsed edge
 };
 
 /// Texture coordinates of a refined mesh: those of old vertices, and the means of those of the parents of new vertices, in the
@@ -123,11 +136,10 @@ BoundMesh::BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated)
 SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
     keep_curved();
     AnnotationTable table = attach();
-    const bool textured = !extras.corner_texture.empty();
-    BoundData data(mesh, table, annotations.has_value(), textured);
+    BoundData data(mesh, table, annotations.has_value(), extras);
     MarkedParts parts = marked(table, options.outlines == SimplifyOptions::Outlines::protect);
-    if (textured || !extras.face_materials.empty()) parts.seams = texture_seams(mesh, extras);
-    SimplifyResult result = ostraka::simplify(mesh, options, parts, annotations || textured ? &data : nullptr);
+    if (!extras.corner_texture.empty() || !extras.face_materials.empty()) parts.seams = texture_seams(mesh, extras);
+    SimplifyResult result = ostraka::simplify(mesh, options, parts, &data);
     detach(table, result.vertex_map);
     return result;
 }

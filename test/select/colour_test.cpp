@@ -1,6 +1,6 @@
 // Selections by the colours and the values of the mesh file.
 #include "meshes.h"
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/select/recipe.h"
 
