@@ -157,7 +157,7 @@ TEST(ConvertCommand, FailuresExitWithOneAndLeaveNoFiles) {
 
 TEST(ConvertCommand, AFullDiskLeavesTheEarlierFile) {
     const Scratch scratch;
-    write_triangles(scratch / "a.ply", torus(60, 60));
+    write_triangles(scratch / "a.ply", uneven_torus(60, 60));
     const Path earlier = scratch.file("earlier.obj", "what stood here");
     const auto result = run_command(words(scratch / "a.ply", earlier), "ulimit -f 40;");
     EXPECT_EQ(result.code, 1) << result.err;

@@ -17,7 +17,7 @@ inline TriangleSoup octahedron() {
 }
 
 /// A torus of `around` x `along` quadrilaterals cut into triangles, whose coordinates need full precision.
-inline TriangleSoup torus(Index around, Index along) {
+inline TriangleSoup uneven_torus(Index around, Index along) {
     TriangleSoup soup;
     for (Index i = 0; i < around; ++i)
         for (Index j = 0; j < along; ++j) {

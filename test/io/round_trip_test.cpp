@@ -24,7 +24,7 @@ std::vector<TriangleSoup> soups() {
     for (auto& [a, b, c] : awkward.triangles) std::swap(a, b), std::swap(b, c);
     TriangleSoup fans = octahedron();  // not a manifold
     fans.triangles.push_back({0, 3, 2});
-    return {triangle, octahedron(), torus(20, 31), awkward, fans};
+    return {triangle, octahedron(), uneven_torus(20, 31), awkward, fans};
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ TEST(RoundTrip, StlKeepsSinglePrecision) {
         EXPECT_EQ(back.soup.triangles, soup.triangles);
         EXPECT_EQ(write_triangles(scratch / "a.stl", soup, full_extras(soup), {encoding, {}}).size(),
                   4U);  // colours, labels, texture, values
-        EXPECT_EQ(write_triangles(scratch / "b.stl", torus(5, 7), {}, {encoding, {}}).size(), 2U);  // rounded, renumbered
+        EXPECT_EQ(write_triangles(scratch / "b.stl", uneven_torus(5, 7), {}, {encoding, {}}).size(), 2U);  // rounded, renumbered
         const auto rounded = reread(scratch / "b.stl");
         EXPECT_EQ(rounded.soup.points.size(), 35U);
         EXPECT_EQ(rounded.soup.triangles.size(), 70U);
@@ -126,7 +126,7 @@ TEST(RoundTrip, StlKeepsSinglePrecision) {
 
 TEST(RoundTrip, EveryFormatGivesTheSameChecksum) {
     const Scratch scratch;
-    const TriangleSoup soup = torus(12, 9);
+    const TriangleSoup soup = uneven_torus(12, 9);
     const std::string checksum = mesh_checksum(build_mesh(soup));
     for (const char* name : {"a.ply", "a.obj", "a.off"}) {
         const Mesh mesh = build_mesh(soup);
@@ -137,7 +137,7 @@ TEST(RoundTrip, EveryFormatGivesTheSameChecksum) {
 
 TEST(RoundTrip, WritingTwiceGivesTheSameBytes) {
     const Scratch scratch;
-    const TriangleSoup soup = torus(12, 9);
+    const TriangleSoup soup = uneven_torus(12, 9);
     for (const char* ending : {".ply", ".obj", ".off", ".stl", ".glb"}) {
         write_triangles(scratch / ("a" + std::string(ending)), soup, full_extras(soup));
         write_triangles(scratch / ("b" + std::string(ending)), soup, full_extras(soup));

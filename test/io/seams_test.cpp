@@ -80,7 +80,7 @@ TEST(Seams, TexturedVerticesAreTheDistinctPairs) {
     soup.points.push_back({5, 5, 5});  // without a face
     std::vector<TexturePoint> texture;
     for (const auto& triangle : soup.triangles)
-        for (const Index v : triangle) texture.push_back({v == 0 ? static_cast<float>(texture.size() % 2) : 0.5F, 0});
+        for (const Index v : triangle) texture.push_back({v == 0 ? static_cast<float>(texture.size() / 3 % 2) : 0.5F, 0});
     const io::TexturedVertices pairs = io::textured_vertices(soup, texture);
     EXPECT_EQ(pairs.vertex.size(), soup.points.size() + 1);
     for (std::size_t corner = 0; corner < texture.size(); ++corner) {
