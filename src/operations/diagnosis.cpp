@@ -154,4 +154,25 @@ void declare_diagnosis(ReportLayout& layout) {
                   any("self_intersection_examples"), any("components"), any("border_loops"), any("size"));
 }
 
+std::vector<std::string> attributes_in_words(const MeshExtras& extras) {
+    std::vector<std::string> names;
+    if (!extras.vertex_colours.empty()) names.emplace_back("vertex colours");
+    if (!extras.face_colours.empty()) names.emplace_back("face colours");
+    if (!extras.vertex_labels.empty()) names.emplace_back("vertex labels");
+    if (!extras.face_labels.empty()) names.emplace_back("face labels");
+    if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates");
+    if (!extras.appearance.materials.empty()) names.push_back(counted(extras.appearance.materials.size(), "material"));
+    for (const SharedImage& image : extras.appearance.images) {
+        if (!image) names.emplace_back("an image that is missing");
+        else
+            names.push_back(fmt::format("{} of {} x {}", image->name.empty() ? "an image" : "image " + printable(image->name, 60),
+                                        image->width, image->height));
+    }
+    for (const NamedValues& column : extras.vertex_values)
+        names.push_back(fmt::format("values '{}' of vertices", printable(column.name, 60)));
+    for (const NamedValues& column : extras.face_values)
+        names.push_back(fmt::format("values '{}' of faces", printable(column.name, 60)));
+    return names;
+}
+
 }  // namespace ostraka

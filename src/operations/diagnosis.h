@@ -3,6 +3,7 @@
 
 #include "ostraka/framework/report.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
 
@@ -15,5 +16,8 @@ JsonValue to_json(const MeshDiagnosis& diagnosis, JsonAllocator& allocator);
 
 /// Pairs of quantity and value for the printed report of a diagnosis.
 std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& diagnosis);
+
+/// What a mesh file holds beside the geometry: colours, labels, texture, materials, images, values.
+std::vector<std::string> attributes_in_words(const MeshExtras& extras);
 
 }  // namespace ostraka

@@ -85,16 +85,9 @@ struct Import final : Operation {
     }
 
     static std::string state_in_words(const PolygonSoup& polygons) {
-        const MeshExtras& extras = polygons.extras;
         std::vector<std::string> parts{fmt::format("{} vertices", polygons.points.size()),
                                        counted(polygons.polygon_count(), "face")};
-        if (!extras.vertex_colours.empty()) parts.emplace_back("colours of vertices");
-        if (!extras.face_colours.empty()) parts.emplace_back("colours of faces");
-        if (!extras.corner_texture.empty()) parts.emplace_back("texture coordinates");
-        if (!extras.appearance.empty()) parts.push_back(counted(extras.appearance.materials.size(), "material"));
-        for (const SharedImage& shared : extras.appearance.images)
-            if (shared)
-                parts.push_back(fmt::format("image {} of {} x {}", printable(shared->name, 60), shared->width, shared->height));
+        for (std::string& text : attributes_in_words(polygons.extras)) parts.push_back(std::move(text));
         return "read: " + joined(parts);
     }
 

@@ -10,25 +10,6 @@ namespace ostraka {
 
 namespace {
 
-/// Names of the data in the file other than geometry.
-std::vector<std::string> names_of(const MeshExtras& extras) {
-    std::vector<std::string> names;
-    if (!extras.vertex_colours.empty()) names.emplace_back("vertex colours");
-    if (!extras.face_colours.empty()) names.emplace_back("face colours");
-    if (!extras.vertex_labels.empty()) names.emplace_back("vertex labels");
-    if (!extras.face_labels.empty()) names.emplace_back("face labels");
-    if (!extras.corner_texture.empty()) names.emplace_back("texture coordinates");
-    if (!extras.appearance.materials.empty()) names.push_back(counted(extras.appearance.materials.size(), "material"));
-    for (const SharedImage& image : extras.appearance.images)
-        names.push_back(image ? fmt::format("image {} of {} x {}", printable(image->name, 60), image->width, image->height)
-                              : std::string("an image that is missing"));
-    for (const NamedValues& column : extras.vertex_values)
-        names.push_back(fmt::format("values '{}' of vertices", printable(column.name, 60)));
-    for (const NamedValues& column : extras.face_values)
-        names.push_back(fmt::format("values '{}' of faces", printable(column.name, 60)));
-    return names;
-}
-
 /// Number of polygons with fewer than three distinct corners, which give no triangle.
 std::size_t count_degenerate(const PolygonSoup& soup) {
     std::size_t count = 0;
@@ -59,7 +40,7 @@ struct MeshInfo final : Operation {
         PolygonSoup polygons = input.take_polygons();
         lap("read");
         const std::size_t polygon_count = polygons.polygon_count(), degenerate = count_degenerate(polygons);
-        const std::vector<std::string> extras = names_of(polygons.extras);
+        const std::vector<std::string> extras = attributes_in_words(polygons.extras);
         const TriangulatedSoup triangles = triangulate(std::move(polygons));
         lap("triangulate");
         const MeshDiagnosis diagnosis = in_file(input.file(), [&] { return diagnose(triangles.soup, options); });
