@@ -78,7 +78,7 @@ public:
         std::vector<Triple> triangles;
         std::vector<Index> ring(n);
         for (Index i = 0; i < n; ++i) ring[i] = i;
-        constexpr std::size_t maximum = 100;
+        constexpr std::size_t maximum = 1100;  // 190 million steps and 58 MB at most
         if (n > maximum && !cut_corners(ring, maximum, triangles)) return {};
         if (!best_triangulation(ring, triangles)) return {};
         return triangles;
@@ -160,7 +160,9 @@ private:
                 if (!closing && is_edge(ring[i], ring[k])) continue;
                 for (std::size_t m = i + 1; m < k; ++m) {
                     const Weight &left = weight[i * n + m], &right = weight[m * n + k];
-                    if (left.bend == never || right.bend == never) continue;
+                    if (left.bend == never || right.bend == never ||
+                        std::max(left.bend, right.bend) > weight[i * n + k].bend)  // the candidate bends at least as much
+                        continue;
                     const Vector filling = filling_normal(ring[i], ring[m], ring[k]);
                     const double length = std::sqrt(filling.squared_length());
                     const Vector direction = length > 0 ? filling / length : filling;
@@ -197,8 +199,10 @@ private:
     std::vector<Vector> outside_;  ///< unit normal of the triangle at the side from each position to the next
 };
 
-/// Diameter of a disc with the area of the triangle fan from the centroid of the border; near 0 for a slit.
-double width(const TriangleSoup& soup, const Hole& hole) {
+double diameter_of_disc(double area) { return 2 * std::sqrt(area / pi); }
+
+/// Diameter of a disc with the area of the triangle fan from the centroid of the border; near 0 for a straight slit.
+double fan_width(const TriangleSoup& soup, const Hole& hole) {
     Vector middle(0, 0, 0);
     const Point base = point(soup, origin(soup, hole.front()));
     for (const Index h : hole) middle += (point(soup, origin(soup, h)) - base) / static_cast<double>(hole.size());
@@ -207,7 +211,18 @@ double width(const TriangleSoup& soup, const Hole& hole) {
         const Vector a = point(soup, origin(soup, h)) - base - middle, b = point(soup, target(soup, h)) - base - middle;
         area += std::sqrt(CGAL::cross_product(a, b).squared_length()) / 2;
     }
-    return 2 * std::sqrt(area / pi);
+    return diameter_of_disc(area);
+}
+
+/// Diameter of a disc with the area of a filling; near 0 also for a curved slit.
+double filling_width(const TriangleSoup& soup, const Hole& hole, const std::vector<Triple>& filling) {
+    double area = 0;
+    for (const auto& [a, b, c] : filling) {
+        const Point p = point(soup, origin(soup, hole[a])), q = point(soup, origin(soup, hole[b])),
+                    r = point(soup, origin(soup, hole[c]));
+        area += std::sqrt(CGAL::cross_product(q - p, r - p).squared_length()) / 2;
+    }
+    return diameter_of_disc(area);
 }
 
 }  // namespace
@@ -233,12 +248,27 @@ Counts fill_once(RepairSoup& work, const HoleLimits& limits, const std::vector<I
         if (limits.only_touched && 2 * touched < hole.size()) continue;
         if (std::binary_search(skip.begin(), skip.end(), hole.front())) continue;
         if (hole.size() > limits.edges) ++too_long;
-        else if (width(soup, hole) > limits.share * diagonal(boxes[sets.find(origin(soup, hole[0]))])) ++too_wide;
         else chosen.push_back(&hole);
     }
     std::vector<std::vector<Triple>> fillings(chosen.size());
-    parallel_for(chosen.size(), 1, [&](std::size_t i) { fillings[i] = HoleFiller(soup, opposite, *chosen[i]).run(); });
+    std::vector<std::uint8_t> is_wide(chosen.size(), 0);
+    std::vector<Index> component;
+    for (const Hole* hole : chosen) component.push_back(sets.find(origin(soup, hole->front())));
+    parallel_for(chosen.size(), 1, [&](std::size_t i) {
+        const Hole& hole = *chosen[i];
+        const double widest = limits.share * diagonal(boxes[component[i]]);
+        const bool wide_fan = fan_width(soup, hole) > widest;
+        fillings[i] = HoleFiller(soup, opposite, hole).run();
+        if (wide_fan && (fillings[i].empty() || filling_width(soup, hole, fillings[i]) > widest)) {
+            is_wide[i] = 1;
+            fillings[i].clear();
+        }
+    });
     for (std::size_t i = 0; i < chosen.size(); ++i) {
+        if (is_wide[i] != 0) {
+            ++too_wide;
+            continue;
+        }
         const Hole& hole = *chosen[i];
         if (fillings[i].empty()) {
             ++refused;
@@ -273,7 +303,7 @@ Counts fill_once(RepairSoup& work, const HoleLimits& limits, const std::vector<I
         separate_nonmanifold(work);  // needed if two merged copies were neighbours of the same vertex
         work.drop_isolated(true);
     }
-    return {{"holes", limits.only_touched ? chosen.size() + too_long + too_wide : holes.size()},
+    return {{"holes", limits.only_touched ? chosen.size() + too_long : holes.size()},
             {"filled", filled},
             {"triangles added", triangles},
             {"copies of vertices rejoined", rejoined},
