@@ -26,8 +26,9 @@ FeatureFile::FeatureFile(const std::string& bytes, const std::string& where) : f
 }
 
 void FeatureFile::refuse_unsupported() const {
+    constexpr std::array supported{"EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_webp"};
     for (const auto& name : list_in(file.document(), "extensionsRequired"))
-        if (!name.IsString() || (text_of(name) != "EXT_mesh_features" && text_of(name) != "EXT_structural_metadata"))
+        if (!name.IsString() || std::find(supported.begin(), supported.end(), text_of(name)) == supported.end())
             file.fail("/extensionsRequired", "requires an unsupported extension");
     const auto nodes = list_in(file.document(), "nodes");
     for (rapidjson::SizeType i = 0; i < nodes.Size(); ++i) {

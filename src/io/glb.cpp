@@ -95,7 +95,7 @@ void Builder::mark_normalised(int accessor) {
 
 std::string Builder::head(const std::string& where, const std::string& remedy) {
     size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
-    if (!binary_.empty()) binary_.resize(size_, '\0');
+    binary_.resize((binary_.size() + alignment_ - 1) / alignment_ * alignment_, '\0');  // views that were only announced follow
     JsonValue buffers = json_list_of(json_object(allocator(), "byteLength", size_), allocator());
     if (decoded_size_ > 0) {
         JsonValue none = json_object(allocator(), meshopt_extension, json_object(allocator(), "fallback", true));
