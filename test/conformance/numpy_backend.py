@@ -69,6 +69,11 @@ def read_header(data, file):
     return kind, elements, end + len(b"end_header\n")
 
 
+def list_fields(words):
+    """A list property of triangles as fields of a row: three vertices, or the texture coordinates of three corners."""
+    return [("count " + words[-1], "<" + TYPES[words[1]]), (words[-1], "<" + TYPES[words[2]], 6 if words[-1] == "texcoord" else 3)]
+
+
 def read_ply(file):
     """Points (n x 3) and triangles (m x 3); polygons are not read."""
     data = read_bytes(file)
@@ -85,7 +90,7 @@ def read_ply(file):
             fields = []
             for p in properties:
                 if p[0] == "list":
-                    fields += [("count " + p[-1], "<" + TYPES[p[1]]), (p[-1], "<" + TYPES[p[2]], 3)]
+                    fields += list_fields(p)
                 else:
                     fields.append((p[-1], "<" + TYPES[p[0]]))
             tables[name] = np.frombuffer(data, np.dtype(fields), count, at)

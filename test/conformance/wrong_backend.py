@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-from numpy_backend import TYPES, read_header
+from numpy_backend import TYPES, list_fields, read_header
 
 
 def files_named(words):
@@ -57,13 +57,13 @@ def reverse_order(file):
         for name, count, properties in elements:
             fields = []
             for p in properties:
-                fields += [("count", "<" + TYPES[p[1]]), ("list", "<" + TYPES[p[2]], 3)] if p[0] == "list" else [(p[-1], "<" + TYPES[p[0]])]
+                fields += list_fields(p) if p[0] == "list" else [(p[-1], "<" + TYPES[p[0]])]
             rows = np.frombuffer(body, np.dtype(fields), count, start).copy()
             start += rows.nbytes
             if name == "vertex":
                 rows = rows[::-1]
             elif name == "face":
-                rows["list"] = n - 1 - rows["list"]
+                rows["vertex_indices"] = n - 1 - rows["vertex_indices"]
             parts.append(rows.tobytes())
         body = b"".join(parts)
     with open(file, "wb") as stream:
