@@ -49,8 +49,8 @@ struct Render final : Operation {
         p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");
         p.options("colour", colouring,
                   "colours of the surface: the texture, own colours or labels in the file, annotations, values (a map) or "
-                  "clay; auto: values or annotations if they are given, otherwise the first of texture, labels and own colours "
-                  "in the file, otherwise clay",
+                  "clay; auto: values or annotations of parts if they are given, otherwise the first of texture, labels and own "
+                  "colours in the file, otherwise clay",
                   colouring_names());
         p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
         options.list_options(p.options);
@@ -167,9 +167,11 @@ struct Render final : Operation {
             fail_input(meshes.file(k), no_property(extras), "leave out --property");
         // Of several meshes, those that do not have the colours show what they have.
         const bool has_colours = is_available(colouring, extras, has_values, annotations.has(k));
-        const SurfaceColouring colours =
-            chosen_colouring(has_colours || meshes.size() == 1 ? colouring : SurfaceColouring::automatic, extras, has_values,
-                             annotations.has(k), meshes.file(k));
+        const SurfaceColouring wanted = has_colours || meshes.size() == 1 ? colouring : SurfaceColouring::automatic;
+        const bool automatic = wanted == SurfaceColouring::automatic;
+        SurfaceColouring colours =
+            chosen_colouring(wanted, extras, has_values, automatic ? has_parts(k) : annotations.has(k), meshes.file(k));
+        if (automatic && colours == SurfaceColouring::plain && annotations.has(k)) colours = SurfaceColouring::annotations;
         const bool coloured =
             render_options.drawing == RenderOptions::Drawing::surface || render_options.drawing == RenderOptions::Drawing::points;
         if (coloured) {
@@ -195,6 +197,13 @@ struct Render final : Operation {
         if (!unit.empty()) scene.unit = unit;
         scene.unit_metres = converted(1, scene.unit, "m").value_or(0);
         return scene;
+    }
+
+    /// True if the k-th object has annotations of parts, not only of the whole object.
+    [[nodiscard]] bool has_parts(std::size_t k) const {
+        if (!annotations.has(k)) return false;
+        const auto& list = annotations.on(meshes.get(k).mesh, k).annotations;
+        return std::any_of(list.begin(), list.end(), [](const Annotation& annotation) { return !annotation.all; });
     }
 
     static void colour_by_labels(Scene& scene, const MeshExtras& extras) {

@@ -160,7 +160,7 @@ export interface PageObject extends Shown {
   size: [number, number, number];
   up: [number, number, number];
   annotations: Annotation[];
-  /** Colours shown first; undefined: annotations if there are any, otherwise texture or own colours. */
+  /** Colours shown first; undefined: annotations of parts if there are any, otherwise texture or own colours. */
   colouring?: Colouring | "values";
   maps: ValueMap[];
   cage?: Shown & { vertices: number; origin: [number, number, number] };

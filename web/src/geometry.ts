@@ -614,12 +614,18 @@ export class DrawnObject {
     return [...list, "clay"];
   }
 
-  /** The colouring shown for a wanted one; "auto": annotations if there are any, otherwise texture or own colours. */
+  /** Whether there are annotations of parts, not only of the whole object. */
+  private get hasParts(): boolean {
+    const all = this.shape.triangles.length / 3;
+    return this.about.annotations.some((one) => (one.faces ? one.faces.count < all : true));
+  }
+
+  /** The colouring shown for a wanted one; "auto": annotations of parts if there are any, otherwise texture or own colours. */
   colouring(wanted: Colouring | "auto"): Colouring {
     const { colourings } = this;
     const first = wanted === "auto" && this.about.colouring !== "values" ? this.about.colouring : wanted;
     if (first && first !== "auto" && colourings.includes(first)) return first;
-    return colourings.includes("annotations") ? "annotations" : colourings[0];
+    return this.hasParts && colourings.includes("annotations") ? "annotations" : colourings[0];
   }
 
   /** Writes the colour of each drawn vertex, and shows the texture or not. `colour` writes red, green, blue and, with a texture, how far
