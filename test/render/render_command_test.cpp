@@ -252,9 +252,9 @@ TEST_F(RenderCommand, TexturesAreShownExactlyInFlatLight) {
         const std::uint32_t seen = picture().at(column, row);
         const auto light = [](std::uint32_t channel) { return linear_from_srgb(static_cast<std::uint8_t>(channel & 255U)); };
         const float half_pixel = 0.5F / 184;
-        EXPECT_NEAR(light(seen >> 16U), light(expected.red), 1.1F * half_pixel + 0.003F);
-        EXPECT_NEAR(light(seen >> 8U), light(expected.green), 1.1F * half_pixel + 0.003F);
-        EXPECT_NEAR(light(seen), light(expected.blue), 1.1F * half_pixel + 0.003F);
+        EXPECT_NEAR(light(seen >> 16U), light(expected.red), 2 * half_pixel + 0.0065F);
+        EXPECT_NEAR(light(seen >> 8U), light(expected.green), 2 * half_pixel + 0.0065F);
+        EXPECT_NEAR(light(seen), light(expected.blue), 2 * half_pixel + 0.0065F);
     };
     expect_near(108, 108, {250, 10, 20});
     expect_near(292, 108, {30, 240, 50});
