@@ -261,7 +261,7 @@ TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
     refuse("--tag x --all --grow 1 --shrink 1", 2, "both --grow and --shrink");
     refuse("--tag x --all --id 0", 1, "the id 0 is taken");
     refuse("--tag x --all --id 0", 1, "free is 1");
-    refuse("--tag x --threshold height --above 1", 2, "gaussian-curvature, thickness, distance or a file");
+    refuse("--tag x --threshold height --above 1", 2, "gaussian-curvature, thickness, distance, colour, values:NAME");
     refuse("--action delete --id 5", 1, "no annotation has the id 5");
     refuse("--action delete", 2, "needs the annotation's --id");
     refuse("--tag x --all --colour 1,2", 2, "--colour");
