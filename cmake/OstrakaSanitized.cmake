@@ -2,6 +2,10 @@
 # and their tests are compiled once more; the other modules come from the library. scripts/test --deep selects a tenth of the modules
 # for each commit; the preset "asan" (scripts/test --sanitize) covers all of them.
 set(OSTRAKA_SANITIZED_MODULES "" CACHE STRING "Modules whose tests are also run with sanitizers")
+if(OSTRAKA_SANITIZED_MODULES)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
 foreach(module IN LISTS OSTRAKA_SANITIZED_MODULES)
   file(GLOB sources CONFIGURE_DEPENDS src/${module}/*.cpp src/${module}/*/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS test/${module}/*_test.cpp)
