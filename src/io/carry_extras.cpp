@@ -1,5 +1,6 @@
 #include "ostraka/io/carry_extras.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace ostraka {
@@ -22,15 +23,6 @@ std::vector<NamedValues> picked(const std::vector<NamedValues>& columns, const s
     return result;
 }
 
-/// Barycentric coordinates of the projection of `p` to the plane of a triangle; {1, 0, 0} for a degenerate triangle.
-std::array<double, 3> projected_barycentric(const Point& a, const Point& b, const Point& c, const Point& p) {
-    const Vector u = b - a, v = c - a, w = p - a;
-    const double uu = u * u, uv = u * v, vv = v * v, wu = w * u, wv = w * v, determinant = uu * vv - uv * uv;
-    if (!(determinant > 0)) return {1, 0, 0};
-    const double second = (vv * wu - uv * wv) / determinant, third = (uu * wv - uv * wu) / determinant;
-    return {1 - second - third, second, third};
-}
-
 }  // namespace
 
 MeshExtras carried(const MeshExtras& extras, const ElementSources& sources) {
@@ -48,30 +40,24 @@ MeshExtras carried(const MeshExtras& extras, const ElementSources& sources) {
     return result;
 }
 
-std::vector<TexturePoint> texture_at_positions(const Mesh& mesh, const std::vector<Index>& origin, const Mesh& other,
-                                               const std::vector<TexturePoint>& texture) {
-    std::vector<TexturePoint> result;
-    if (texture.empty()) return result;
-    result.reserve(3 * mesh.number_of_faces());
-    for (const Face face : mesh.faces()) {
-        const Index source = origin[face];
-        for (const Vertex vertex : corners(mesh, face)) {
-            if (source == no_index) {
-                result.push_back({0, 0});
-                continue;
-            }
-            const auto [a, b, c] = corners(other, Face(source));
-            const auto weights = projected_barycentric(other.point(a), other.point(b), other.point(c), mesh.point(vertex));
-            TexturePoint coordinates{};
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                double sum = 0;
-                for (std::size_t k = 0; k < 3; ++k) sum += weights[k] * static_cast<double>(texture[3 * source + k][axis]);
-                coordinates[axis] = static_cast<float>(sum);
-            }
-            result.push_back(coordinates);
+std::vector<Index> corner_sources(const Mesh& part, const std::vector<Index>& vertices, const std::vector<Index>& faces,
+                                  const Mesh& whole) {
+    std::vector<Index> sources;
+    sources.reserve(3 * faces.size());
+    for (const Face face : part.faces()) {
+        const Index source = faces[face];
+        if (source == no_index) {
+            sources.insert(sources.end(), 3, no_index);
+            continue;
+        }
+        const auto whole_corners = corners(whole, Face(source));
+        for (const Vertex v : corners(part, face)) {
+            const auto place = std::find(whole_corners.begin(), whole_corners.end(), Vertex(vertices[v]));
+            sources.push_back(place == whole_corners.end() ? no_index
+                                                           : 3 * source + static_cast<Index>(place - whole_corners.begin()));
         }
     }
-    return result;
+    return sources;
 }
 
 std::vector<bool> texture_seams(const Mesh& mesh, const MeshExtras& extras) {

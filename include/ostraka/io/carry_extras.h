@@ -17,13 +17,12 @@ struct ElementSources {
 /// get white, label 0, texture coordinates (0, 0), no material and NaN. Tetrahedra are not carried. Takes linear time.
 MeshExtras carried(const MeshExtras& extras, const ElementSources& sources);
 
-/// Texture coordinates of a mesh each of whose faces lies in a face of another mesh: for each corner, those of its position in
-/// the triangle `origin[face]`; no_index: (0, 0). `texture`: three texture coordinates for each face of `other`, as in
-/// MeshExtras::corner_texture. Takes linear time.
-std::vector<TexturePoint> texture_at_positions(const Mesh& mesh, const std::vector<Index>& origin, const Mesh& other,
-                                               const std::vector<TexturePoint>& texture);
+/// For each corner of a part of a mesh, the corner of the whole mesh: that of the same vertex in the same face. `vertices`,
+/// `faces`: for each vertex and face of the part, that of the whole; no_index: none. Takes linear time.
+std::vector<Index> corner_sources(const Mesh& part, const std::vector<Index>& vertices, const std::vector<Index>& faces,
+                                  const Mesh& whole);
 
-/// Number of edges whose two faces have different texture coordinates or materials: the seams. For each edge, whether it is one.
+/// For each edge, whether it is a seam: its two faces have different texture coordinates or materials.
 std::vector<bool> texture_seams(const Mesh& mesh, const MeshExtras& extras);
 
 }  // namespace ostraka

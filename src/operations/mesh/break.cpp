@@ -52,23 +52,9 @@ struct MeshBreak final : Operation {
             piece_annotations.up.reset();
             annotations_out.write(std::move(piece_annotations), piece.mesh, output.file_name());
         }
-        const std::vector<Index> piece_corners = corners_in(surface, piece);
+        const std::vector<Index> piece_corners = corner_sources(piece.mesh, piece.vertices, piece.faces, surface);
         MeshExtras extras = carried(input->extras, {&piece.vertices, &piece.faces, &piece_corners});
         output.write(std::move(piece.mesh), std::move(extras));
-    }
-
-    /// For each corner of the piece, its corner of the whole surface.
-    static std::vector<Index> corners_in(const Mesh& surface, const SyntheticFragment& piece) {
-        std::vector<Index> indices;
-        indices.reserve(3 * piece.faces.size());
-        for (const Face face : piece.mesh.faces()) {
-            const auto whole_corners = corners(surface, Face(piece.faces[face]));
-            for (const Vertex v : corners(piece.mesh, face)) {
-                const auto place = std::find(whole_corners.begin(), whole_corners.end(), Vertex(piece.vertices[v]));
-                indices.push_back(3 * piece.faces[face] + static_cast<Index>(place - whole_corners.begin()));
-            }
-        }
-        return indices;
     }
 
     [[nodiscard]] Point centre(const Mesh& mesh, const AnnotationSet* set) const {

@@ -1,13 +1,12 @@
 // mesh extract: cuts annotated parts out of an object.
 #include "operations/operations.h"
 
+#include "ostraka/annotation/cut_extras.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/annotation/part.h"
 #include "ostraka/io/carry_extras.h"
 
 #include <fmt/core.h>
-
-#include <cmath>
 
 namespace ostraka {
 
@@ -60,50 +59,25 @@ struct MeshExtract final : AnnotatedMeshOperation {
             report.note(fmt::format(
                 "{} cuts could not be closed by triangles between their vertices; try 'ostraka mesh repair --fill-holes'",
                 part.cuts - part.closed));
-        MeshExtras extras = extras_of(part, report);
+        MeshExtras extras = extras_of(part);
         if (labels) extras.face_labels = face_labels(part).of_face;
         if (annotations_out) annotations_out.write(std::move(part.annotations), part.mesh, output.file_name());
         output.write(std::move(part.mesh), std::move(extras));
     }
 
-    /// Carries the attributes of the whole to the part. Vertex colours, values and texture coordinates on the cuts are
-    /// interpolated; faces that close cuts have no label, no material and a neutral colour.
-    [[nodiscard]] MeshExtras extras_of(const CutPart& part, Report& report) const {
-        const MeshExtras& source = mesh->extras;
-        std::vector<Index> faces;
-        for (const Index face : part.faces)
-            faces.push_back(face == no_index ? no_index : part.whole ? part.whole->face_origin[face] : face);
-        MeshExtras kept = source;
-        if (part.whole) {  // values of vertices are interpolated on the cuts
-            kept.vertex_labels.clear();
-            for (NamedValues& column : kept.vertex_values) column.values = part.whole->vertex_values(mesh->mesh, column.values);
-            kept.vertex_colours = colours_on_cut(*part.whole);
-            if (!source.vertex_labels.empty()) report.note("labels of vertices are not carried to the part");
-        }
-        kept.corner_texture.clear();
-        MeshExtras extras = carried(kept, {&part.vertices, &faces, nullptr});
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-            if (faces[f] != no_index) continue;
+    /// Carries the attributes of the whole to the part, interpolated where it was cut. Faces that close cuts have no label, no
+    /// material and a neutral colour.
+    [[nodiscard]] MeshExtras extras_of(const CutPart& part) const {
+        const Mesh& whole = part.whole ? part.whole->mesh : mesh->mesh;
+        const MeshExtras attributes = part.whole ? cut_extras(*part.whole, mesh->mesh, mesh->extras) : mesh->extras;
+        const std::vector<Index> part_corners = corner_sources(part.mesh, part.vertices, part.faces, whole);
+        MeshExtras extras = carried(attributes, {&part.vertices, &part.faces, &part_corners});
+        for (std::size_t f = 0; f < part.faces.size(); ++f) {
+            if (part.faces[f] != no_index) continue;
             if (!extras.face_labels.empty()) extras.face_labels[f] = no_label;
             if (!extras.face_colours.empty()) extras.face_colours[f] = Colour{190, 190, 190, 255};
         }
-        extras.corner_texture = texture_at_positions(part.mesh, faces, mesh->mesh, source.corner_texture);
         return extras;
-    }
-
-    /// Vertex colours of the cut mesh, interpolated at the new vertices.
-    [[nodiscard]] std::vector<Colour> colours_on_cut(const CutMesh& cut) const {
-        const std::vector<Colour>& source = mesh->extras.vertex_colours;
-        if (source.empty()) return {};
-        std::vector<Colour> colours(cut.mesh.number_of_vertices());
-        for (std::size_t channel = 0; channel < 4; ++channel) {
-            std::vector<double> values;
-            for (const Colour& colour : source) values.push_back(colour[channel]);
-            values = cut.vertex_values(mesh->mesh, values);
-            for (std::size_t v = 0; v < colours.size(); ++v)
-                colours[v][channel] = static_cast<std::uint8_t>(std::lround(values[v]));
-        }
-        return colours;
     }
 
     MeshOutput output;
