@@ -13,7 +13,7 @@ struct SurvivalOptions {
     TransferOptions transfer;             ///< options for the transfer to each resolution
     double ratio = 0.7;                   ///< number of vertices of each resolution relative to the previous one
     double area_error = 0.25;             ///< max relative change of the area of a region that survives
-    std::uint64_t minimum = 20;           ///< min number of vertices tried
+    std::uint64_t min_vertices = 20;      ///< min number of vertices tried
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
