@@ -160,6 +160,10 @@ export const shared = {
   patterns: { value: 0 },
   /** 1: colours without light and shade. */
   flatLight: { value: 0 },
+  /** Unit vector towards the lamp, in the frame of the camera. */
+  lamp: { value: new THREE.Vector3(0.263, 0.473, 0.841) },
+  /** How much ridges are brightened and hollows darkened. */
+  relief: { value: 0 },
   clip: { value: new THREE.Vector4(0, 0, 0, 1) },
   /** While handles follow one affine map x -> A x + t: A - I, and t. */
   bend: { value: new THREE.Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0) },
@@ -209,7 +213,8 @@ const surface = new THREE.RawShaderMaterial({
   fragmentShader: `
     precision highp float;
     ${clipping}
-    uniform float patterns, flatLight;
+    uniform float patterns, flatLight, relief;
+    uniform vec3 lamp;
     in vec3 facing;
     in vec4 tint; // with a texture: the colour that multiplies it, or the colour that covers it in part
     flat in float kind;
@@ -248,8 +253,15 @@ const surface = new THREE.RawShaderMaterial({
                   : length(mod(at, period) - 0.5 * period) < 1.8;
         if (mark) colour *= 0.45;
       }
-      float key = max(0.0, dot(n, vec3(0.263, 0.473, 0.841)));
-      float light = mix(0.36 + 0.1 * n.y + 0.72 * key, 1.0, flatLight);
+      // A low lamp (raking light) leaves less light from around, so that its shades are deep.
+      float low = clamp(1.0 - lamp.z / 0.841, 0.0, 1.0);
+      float light = 0.36 - 0.28 * low + 0.1 * n.y + (0.72 + 0.4 * low) * max(0.0, dot(n, lamp));
+      if (relief > 0.0) {
+        // How fast the normal turns across the picture: positive on ridges, negative in hollows.
+        float turn = dFdx(n.x) + dFdy(n.y);
+        light *= clamp(1.0 + relief * 10.0 * turn, 1.0 - 0.75 * relief, 1.0 + 0.75 * relief);
+      }
+      light = mix(light, 1.0, flatLight);
       pixel = vec4(sqrt(min(vec3(1.0), colour * light)), 1.0);
     }`,
 });

@@ -14,6 +14,7 @@ import { text, type Key } from "./words";
 
 export type Tool =
   | "look"
+  | "base"
   | "rectangle"
   | "lasso"
   | "path"
@@ -32,7 +33,7 @@ export const tool = signal<Tool>("look");
 export const radius = signal(0);
 
 export const groups: [Key, Tool[]][] = [
-  ["look", ["look"]],
+  ["look", ["look", "base"]],
   ["select", ["rectangle", "lasso", "closed", "brush", "path", "points"]],
   ["measure", ["ruler", "tape", "bounding"]],
   ["deform", ["handles", "move", "rotate", "scale", "stretch"]],
@@ -50,6 +51,44 @@ export const clicked = signal<{ x: number; y: number; list: number[] } | undefin
 interface Place {
   x: number;
   y: number;
+}
+
+/** Direction of the surface around a place: the mean of the normals of faces nearby that face the same way as the picked one. */
+function directionAround(of: DrawnObject, face: number, place: THREE.Vector3): THREE.Vector3 {
+  const { triangles } = of.shape;
+  const corner = (f: number, k: number) => of.vertex(triangles[3 * f + k]);
+  const areaNormal = (f: number) => {
+    const a = corner(f, 0);
+    return corner(f, 1).sub(a).cross(corner(f, 2).sub(a));
+  };
+  const first = areaNormal(face).normalize();
+  const radius = 0.06 * Math.hypot(...of.about.size);
+  const sum = new THREE.Vector3();
+  for (let f = 0; 3 * f < triangles.length; ++f) {
+    if (corner(f, 0).distanceTo(place) > radius) continue;
+    const one = areaNormal(f);
+    if (one.dot(first) > 0.5 * one.length()) sum.add(one);
+  }
+  return (sum.lengthSq() > 0 ? sum : first).normalize();
+}
+
+/** Stands the object on the surface at a position of the picture: with annotations by their upward direction, otherwise by a moved copy. */
+async function standOn(at: Place) {
+  const hit = view?.pick(at.x, at.y);
+  const of = hit && drawn[hit.object];
+  if (!hit || !of) return;
+  const up = directionAround(of, hit.face, hit.point).negate();
+  const list = (numbers: number[]) => numbers.map((x) => Number(x.toFixed(9))).join(",");
+  choose("look");
+  if (has("annotations")) {
+    const given = { mesh: part("mesh"), annotations: part("annotations"), "set-up": list(up.toArray()) };
+    await run({ operation: "annotation edit", title: text("base"), with: given, keep: ["output"] });
+  } else {
+    const turn = new THREE.Quaternion().setFromUnitVectors(up, new THREE.Vector3(0, 0, 1));
+    const given = { input: part("mesh"), quaternion: list([turn.w, turn.x, turn.y, turn.z]), about: "box" };
+    await run({ operation: "mesh move", title: text("base"), with: given });
+  }
+  view?.home();
 }
 
 /** Path of the pointer since it was pressed, and the surface points picked so far. */
@@ -227,6 +266,8 @@ export function attach(canvas: HTMLCanvasElement): () => void {
       void deform.release(end);
     } else if (drags.includes(t)) {
       void drawnBy(t, way.length > 1 ? [...way, end] : [start]);
+    } else if (t === "base") {
+      if (!moved) void standOn(start);
     } else if (!moved) {
       const one = pickAt(start);
       if (!one) return;
