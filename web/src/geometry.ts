@@ -266,13 +266,20 @@ const surface = new THREE.RawShaderMaterial({
     }`,
 });
 
-/** Material for lines, points and bands of one colour. */
-export function flatMaterial(colour: [number, number, number], dot = 0, through = false): THREE.RawShaderMaterial {
+/** Material for lines, points and bands of one colour; an opacity below 1 lets the shaded surface below show through. */
+export function flatMaterial(colour: [number, number, number], dot = 0, through = false, opacity = 1): THREE.RawShaderMaterial {
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     side: THREE.DoubleSide,
     depthTest: !through,
-    uniforms: { clip: shared.clip, colour: { value: new THREE.Vector3(...colour).divideScalar(255) }, size: { value: dot } },
+    depthWrite: opacity === 1,
+    transparent: opacity < 1,
+    uniforms: {
+      clip: shared.clip,
+      colour: { value: new THREE.Vector3(...colour).divideScalar(255) },
+      size: { value: dot },
+      opacity: { value: opacity },
+    },
     vertexShader: `
       precision highp float;
       uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -289,12 +296,12 @@ export function flatMaterial(colour: [number, number, number], dot = 0, through 
       precision highp float;
       ${clipping}
       uniform vec3 colour;
-      uniform float size;
+      uniform float size, opacity;
       out vec4 pixel;
       void main() {
         if (dot(vec4(place, 1.0), clip) < 0.0) discard;
         if (size > 0.0 && length(gl_PointCoord - 0.5) > 0.5) discard;
-        pixel = vec4(colour, 1.0);
+        pixel = vec4(colour, opacity);
       }`,
   });
 }

@@ -169,7 +169,7 @@ try {
     await useTool(page, "rectangle");
     const size = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
     const [w, h] = size;
-    await drag(page, [0.35 * w, 0.05 * h], [0.65 * w, 0.35 * h]);
+    await drag(page, [0.35 * w, 0.09 * h], [0.65 * w, 0.35 * h]);
     await selected(page);
     await page.locator(".annotate input").first().fill("lid");
     await page.locator(".annotate button[type=submit]").first().click();

@@ -95,6 +95,8 @@ async function standOn(at: Place) {
 const trail = signal<Place[]>([]);
 const picks = signal<Pick[]>([]);
 const over = signal<DrawnObject | undefined>(undefined);
+/** The pointer over the picture while the brush is chosen. */
+const brushAt = signal<Place | undefined>(undefined);
 
 const drags: Tool[] = ["rectangle", "lasso", "brush", "move", "rotate", "scale", "stretch", "handles", "bounding"];
 const deforms = (t: Tool) => ["handles", "move", "rotate", "scale", "stretch"].includes(t);
@@ -245,8 +247,9 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     }
   };
   const onMove = (event: PointerEvent) => {
-    if (!down) return;
     const place = at(event);
+    brushAt.value = tool.value === "brush" ? place : undefined;
+    if (!down) return;
     moved = moved || Math.hypot(place.x - down.x, place.y - down.y) > 3;
     if (trail.value.length === 0) return;
     const last = trail.value[trail.value.length - 1];
@@ -254,6 +257,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     trail.value = [...trail.value, place];
     if (deforms(tool.value) && tool.value !== "handles") deform.drag(place);
   };
+  const onLeave = () => (brushAt.value = undefined);
   const onUp = (event: PointerEvent) => {
     if (!down) return;
     const [start, end, t] = [down, at(event), tool.value];
@@ -294,6 +298,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
   canvas.addEventListener("pointerdown", onDown);
   canvas.addEventListener("pointermove", onMove);
   canvas.addEventListener("pointerup", onUp);
+  canvas.addEventListener("pointerleave", onLeave);
   canvas.addEventListener("keydown", onKey);
   canvas.addEventListener("dblclick", onDouble);
   choose(tool.value);
@@ -302,6 +307,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     canvas.removeEventListener("pointerdown", onDown);
     canvas.removeEventListener("pointermove", onMove);
     canvas.removeEventListener("pointerup", onUp);
+    canvas.removeEventListener("pointerleave", onLeave);
     canvas.removeEventListener("keydown", onKey);
     canvas.removeEventListener("dblclick", onDouble);
   };
@@ -322,6 +328,8 @@ export function Drawing() {
   const t = tool.value;
   const [a, b] = [way[0], way[way.length - 1]];
   const of = over.value;
+  const brush = brushAt.value;
+  const brushed = drawn[page.object.value];
   const points = of ? picks.value.map((one) => view!.place(of, one.point)).filter((one) => one !== undefined) : [];
   return (
     <svg class="drawing-now" aria-hidden="true">
@@ -330,6 +338,9 @@ export function Drawing() {
       )}
       {(t === "lasso" || t === "brush") && way.length > 1 && (
         <path class={t} d={`M${way.map((one) => `${one.x} ${one.y}`).join("L")}${t === "lasso" ? "Z" : ""}`} />
+      )}
+      {brush && brushed && (
+        <circle class="brush-size" cx={brush.x} cy={brush.y} r={(radius.value || brushRadius(brushed)) * view!.pixelsPerUnit(brushed)} />
       )}
       {t === "bounding" && way.length > 1 && <path d={`M${a.x} ${a.y}L${b.x} ${b.y}`} />}
       {points.length > 1 && <path class="picks" d={`M${points.map((one) => `${one.x} ${one.y}`).join("L")}`} />}
