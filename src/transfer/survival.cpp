@@ -22,8 +22,9 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
     for (const Annotation& annotation : object.annotations.annotations)
         survivals.push_back({annotation.id, annotation.tag, object.mesh.number_of_vertices(), ""});
     Mesh coarse = object.mesh;
-    const double steps = std::log(static_cast<double>(options.min_vertices) / static_cast<double>(object.mesh.number_of_vertices())) /
-                         std::log(options.ratio);
+    const double steps =
+        std::log(static_cast<double>(options.min_vertices) / static_cast<double>(object.mesh.number_of_vertices())) /
+        std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
     bool tried = false;
