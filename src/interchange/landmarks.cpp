@@ -241,8 +241,8 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
 
 void LandmarkFileOptions::list_options(OptionList& list) {
     list("mesh-space", mesh_space,
-         "space of the mesh's coordinates, for file formats that state their space: LPS (x to the left, y to the back; 3D "
-         "Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
+         "anatomical coordinate system of the mesh, for file formats that state their coordinate system: LPS (x to the left, y "
+         "to the back; 3D Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
          Choices{"LPS", "RAS"});
     list("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
 }

@@ -323,7 +323,7 @@ void PriorOptions::list_options(OptionList& list) {
     list("class-limit", maximum, "maximum deviation of a mode of variation from the class mean, in standard deviations",
          Range{0, 100});
     list("class-samples", samples,
-         "minimum number of independent samples that the observed surface counts for, relative to the prior of the class",
+         "minimum weight of the observed surface relative to the prior of the class, as a number of independent samples",
          Range{1, 1e9});
 }
 
