@@ -229,7 +229,8 @@ LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format) {
     }
     if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files store no regions");
     if (polylines > 0) result.notes.push_back(counted(polylines, "poly-line") + points_only);
-    if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files store none");
+    if (attributes > 0)
+        result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files cannot store attributes");
     return result;
 }
 

@@ -31,7 +31,7 @@ void ShapePrior::check(std::size_t vertices) const {
         fail_input("class", "its modes do not fit its mean", "learn it again");
     if (!modes.allFinite() ||
         std::any_of(deviations.begin(), deviations.end(), [](double d) { return !(d > 0) || !std::isfinite(d); }))
-        fail_input("class", "has a mode that is not finite or does not vary", "learn it again");
+        fail_input("class", "has a mode that is not finite or has zero variance", "learn it again");
 }
 
 namespace {

@@ -87,7 +87,7 @@ const Measure& ConstraintMembers::measure(const MeasureName& name, std::size_t i
     }
     if (match == nullptr)
         fail(fmt::format("annotation {} has no measure that {} names", annotation.id, name.parameter),
-             fmt::format("take one with 'measure take', or mend {}", name.parameter));
+             fmt::format("take one with 'measure take', or correct {}", name.parameter));
     return *match;
 }
 

@@ -56,12 +56,12 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
         fail_usage(std::string(option) + " " + printable(text, 60) + ": " + what, remedy);
     };
     const std::size_t equals = text.rfind('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
-    if (equals == std::string::npos || equals == 0) fail("says no amount", "give PART=NUMBER, like back=1.2");
+    if (equals == std::string::npos || equals == 0) fail("contains no amount", "give PART=NUMBER, like back=1.2");
     Amount amount;
     amount.parts = text.substr(0, equals);
     const auto number = number_of(text.substr(equals + 1, comma == std::string::npos ? comma : comma - equals - 1));
     if (!number || !std::isfinite(*number))
-        fail("the amount is no number", "give PART=NUMBER without a unit (a length is in the mesh's own), like back=1.2");
+        fail("the amount is not a number", "give PART=NUMBER without a unit (a length is in the mesh's own), like back=1.2");
     amount.number = *number;
     const std::string axis = comma == std::string::npos ? "up" : text.substr(comma + 1);
     if (axis == "up") {

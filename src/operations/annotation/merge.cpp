@@ -14,7 +14,7 @@ struct AnnotationMerge final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh to which all three sets of annotations belong");
         p.input("base", Kind::annotations, base,
-                "common base: common base: set of annotations from which both changed sets were made (.ant.json)");
+                "common base: set of annotations from which both changed sets were made (.ant.json)");
         p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
         p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
