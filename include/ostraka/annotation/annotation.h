@@ -26,7 +26,7 @@ struct Measure {
     bool stale = false;  ///< true: the mesh or the pins changed and the value was not recomputed
     /// Tape only: true if the tape follows the exact geodesic across faces ("geodesic": "exact"), false if it follows edges.
     bool exact = false;
-    /// Repeated pickings of the pins, each with one vertex per entry of `points`.
+    /// Repeated pickings of the end points of the measure; each picking has one vertex per entry of `points`.
     std::vector<std::vector<Index>> repeats = {};
     /// Standard deviation of `value` over the pickings, in `unit`; none if unknown.
     std::optional<double> uncertainty = std::nullopt;

@@ -42,8 +42,8 @@ UnifiedMeasures unify_units(const MeasureTable& table);
 
 /// Options of a synthetic population of measures with known proportions, for testing the study. The logarithm of measure j of
 /// object i is the sum of three normally distributed terms: the mean of measure j, the size of object i, and the deviation of
-/// measure j in object i. The measures of one group have the same deviation in an object, except for a small variation of their
-/// fixed ratio.
+/// measure j in object i. Within an object, all measures of one group have the same deviation, apart from small random
+/// differences.
 struct SyntheticMeasuresOptions {
     int objects = 40;                 ///< number of objects
     int measures = 8;                 ///< number of measures

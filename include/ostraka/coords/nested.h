@@ -24,13 +24,13 @@ std::vector<CageLevel> cage_levels(const Mesh& cage);
 /// moves the level. The matrix of level 0, which has no parent, is empty.
 std::vector<WeightMatrix> carrying_weights(const std::vector<CageLevel>& levels);
 
-/// Coordinates of the vertices of a mesh in all levels together. Let x be the position of a vertex after the deformation by the
-/// parent, h the influence of the level at the vertex, w the weights of the vertex in the level, c the positions of the level's
-/// vertices and c' the positions to which the parent moves them. The level then yields x + h w (c - c'). The influence h is 0
-/// outside the level and in all pieces of the mesh inside the level except the largest piece; in the largest piece h rises from 0
-/// where the mesh enters the level to 1 at a distance of `fade` times the level's diagonal. Written in terms of all vertices of
-/// the cage mesh, this position is a combination with one row of weights; the row sums to one and reproduces the vertex from
-/// the undeformed cage. Throws Error (usage) for kinds with a normal term, otherwise as compute_coordinates.
+/// Coordinates of the vertices of a mesh with respect to all levels of nested cages. Let x be the position of a vertex after the
+/// deformation by the parent, h the influence of the level at the vertex, w the weights of the vertex in the level, c the
+/// positions of the level's vertices and c' the positions to which the parent moves them. The level then yields x + h w (c - c').
+/// The influence h is 0 outside the level and in all pieces of the mesh inside the level except the largest piece; in the largest
+/// piece h rises from 0 where the mesh enters the level to 1 at a distance of `fade` times the level's diagonal. Written in terms
+/// of all vertices of the cage mesh, this position is a combination with one row of weights; the row sums to one and reproduces
+/// the vertex from the undeformed cage. Throws Error (usage) for kinds with a normal term, otherwise as compute_coordinates.
 Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLevel>& levels, const Mesh& mesh,
                                const CoordinateOptions& options);
 

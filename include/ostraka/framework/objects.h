@@ -68,7 +68,7 @@ public:
     [[nodiscard]] std::shared_ptr<const T> as() const {
         return type_ == typeid(T) ? std::static_pointer_cast<const T>(data_) : nullptr;
     }
-    /// True if there are data.
+    /// True if the object holds data.
     explicit operator bool() const { return data_ != nullptr; }
 
     std::string name;  ///< the file name used in reports and in files that refer to the object

@@ -102,7 +102,7 @@ struct PageObject {
     std::array<double, 3> up = {0, 0, 1};  ///< upward direction, used if the annotations state none
     /// Size of the original object, if it has more vertices than the shown mesh.
     struct Whole {
-        std::size_t vertices = 0, faces = 0;  ///< numbers of the original object
+        std::size_t vertices = 0, faces = 0;  ///< numbers of vertices and faces of the original object
         double deviation = 0;                 ///< max distance of the original vertices from the shown mesh
     };
     /// Empty if the shown mesh is the original object.

@@ -72,8 +72,8 @@ public:
     /// Solver::set_weight, which also updates the solver's matrices.
     void set_weight(double weight);
 
-    /// Computes the closest admissible rows; rows are unweighted. The result is never NaN for finite rows. Both arguments have
-    /// map().rows columns and must not overlap.
+    /// Projects `rows` (the rows of B x, not multiplied by the weight) to the closest rows that satisfy the constraint. The
+    /// result is never NaN for finite rows. Both arguments have map().rows columns and must not overlap.
     virtual void project(const RowsIn& rows, RowsOut projected) const = 0;
 
     /// Prescribed components of rows: the components along `directions` (orthonormal rows) are equal to `values`, which has one

@@ -11,7 +11,7 @@ namespace ostraka {
 /// Value (negative inside) and gradient of an implicit function at a point.
 struct Sample {
     double value = 0;                                    ///< negative inside, zero on the surface
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< gradient of the value
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< gradient of the implicit function
 };
 
 /// A closed solid given by a function with Lipschitz constant 1 that is zero on the surface of the solid.

@@ -49,8 +49,8 @@ struct AnnotationFacets final : Operation {
         report("shell", facets.shell);
         if (facets.shell) report("thickness", facets.thickness);
         report("confidence", facets.confidence);
-        report.line(!facets.shell ? std::string("a solid: no wall with two sides")
-                                  : fmt::format("a wall {}{} thick", number(facets.thickness, 3),
+        report.line(!facets.shell ? std::string("the fragment is solid: it has no wall with two sides")
+                                  : fmt::format("the fragment has a wall {}{} thick", number(facets.thickness, 3),
                                                 set.unit.empty() ? "" : " " + printable(set.unit, 60)));
         if (facets.area(Facet::fracture) > 0) {
             update_facet_annotations(set, facets);

@@ -31,9 +31,9 @@ struct MeshBake final : Operation {
             fail_usage(fmt::format("a {} file does not keep an image", extension(output.file())),
                        "write .obj, .ply or .glb, or bake --to vertices");
         if (to == BakeTarget::vertices && layout == Layout::own)
-            fail_usage("--layout with --to vertices", "leave out --layout, which applies to images only");
+            fail_usage("--layout cannot be used with --to vertices", "leave out --layout, which applies to images only");
         if (layout == Layout::own && baking.texel > 0)
-            fail_usage("--texel with --layout own", "leave out --texel: the target's image has its size");
+            fail_usage("--texel cannot be used with --layout own", "leave out --texel: the target's image has its size");
     }
 
     void run(Context&, Report& report) override {

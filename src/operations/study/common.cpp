@@ -93,7 +93,7 @@ KnownAnswers::KnownAnswers(const std::vector<std::string>& labels) : objects(lab
 void KnownAnswers::report_result(Report& report) const {
     if (labelled == 0) return;
     std::string text = fmt::format("answers are known for {} of {} objects", labelled, objects);
-    if (!scorable()) text += labelled < 2 ? ": too few for scores" : ", all of one kind: no scores are possible";
+    if (!scorable()) text += labelled < 2 ? ": too few for scores" : ", all of which are the same: no scores are possible";
     report.line(text);
 }
 
