@@ -65,13 +65,14 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
     amount.number = *number;
     const std::string axis = comma == std::string::npos ? "up" : text.substr(comma + 1);
     if (axis == "up") {
-        if (!set.up) fail("no direction is up", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
+        if (!set.up)
+            fail("no upward direction is given", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
         amount.axis = {(*set.up)[0], (*set.up)[1], (*set.up)[2]};
         return amount;
     }
     const std::size_t k = axis.empty() ? std::string::npos : std::string("xyz").find(axis.back());
     if (k == std::string::npos || (axis.size() == 2 ? axis[0] != '-' : axis.size() != 1))
-        fail("'" + printable(axis, 20) + "' is no axis", "use up, x, y, z, -x, -y or -z");
+        fail("'" + printable(axis, 20) + "' is not an axis", "use up, x, y, z, -x, -y or -z");
     amount.axis.setZero();
     amount.axis[static_cast<Eigen::Index>(k)] = axis.size() == 2 ? -1 : 1;
     return amount;

@@ -25,9 +25,10 @@ using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 struct Coordinates {
     std::string kind;     ///< "mean-value", "green" ...
     WeightMatrix vertex;  ///< weight of each cage vertex (column) for each point (row)
-    /// Weight of each cage face normal (column) for each point (row), in units of length; 0 x 0 for kinds without a normal term.
+    /// Weight of each cage face normal (column) for each point (row), in units of length; for kinds without a normal term a
+    /// matrix of size 0 x 0.
     WeightMatrix normal;
-    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for other kinds.
+    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; for other kinds a matrix of size 0 x 0.
     SparseWeights sparse = {};
     /// For kinds computed on tetrahedra: name and seconds of each phase (tetrahedralisation, weights at the nodes, weights of the
     /// points).

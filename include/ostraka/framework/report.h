@@ -169,12 +169,12 @@ public:
         std::size_t table_, row_;
     };
     Row row(const std::string& table);  ///< adds an empty row to a table
-    /// Adds a complete row to a table for people only, one cell per column.
+    /// Adds a complete row, one cell per column, to a table that is shown to people only (not in the JSON).
     void row(const std::string& table, std::initializer_list<ReportText> cells);
     /// Adds a table that has no rows; `shown`: true if its header is shown to people.
     void empty_table(const std::string& table, bool shown = true);
 
-    /// Adds a value for people only, below the previous values.
+    /// Adds a value that is shown to people only (not in the JSON), below the previous values.
     void people(const std::string& title, const std::string& text);
     /// Adds a table for people only, which the operation also writes to files.
     void table(const TextTable& table);

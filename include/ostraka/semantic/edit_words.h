@@ -22,7 +22,8 @@ struct EditWords {
 /// The annotations that a text refers to, in the order of the set. For one word: the annotation with this id; otherwise the
 /// annotations with this tag; otherwise the annotations whose tag ends in the word, or in the word without a plural "s" (for
 /// "legs": "front left leg" and "leg 2"); among these only the regions, or if there are no regions only the lines. Words
-/// separated by commas refer to the annotations of each word. Throws Error (input), naming the nearest tag, if there are none.
+/// separated by commas refer to the annotations of each word. Throws Error (input), naming the nearest tag, if a word refers to
+/// no annotation.
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words);
 
 /// An edit with one step for each text. The parts named in one text are treated as one object: it is stretched along the axis

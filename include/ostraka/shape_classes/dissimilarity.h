@@ -31,8 +31,8 @@ bool counts_for_dissimilarity(const ClassQuantity& quantity);
 /// `without`: index of an excluded member.
 SampleMoments dissimilarity_moments(const LearntRange& range, std::optional<std::size_t> without = {});
 
-/// Dependence of the quantities that count for the dissimilarity, within classes that are compared together: cross products of
-/// the members' deviations from the means of their classes.
+/// Statistical dependence between the quantities that are used for the dissimilarity. `classes`: classes that are compared
+/// together. The result contains the cross products of the members' deviations from the means of their classes.
 Dependence dependence_of(const std::vector<ShapeClass>& classes);
 
 /// Name of the range that holds the members' own dissimilarities, computed leave-one-out.

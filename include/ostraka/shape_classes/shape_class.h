@@ -122,7 +122,7 @@ LearntMember measure_member(const ClassTemplate& class_template, const WholeObje
 ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members,
                        const LearnOptions& options = {}, const std::vector<LearntMember>& out_of_class = {});
 
-/// Computes the thresholds of all ranges: whether a range can reject, its share of the rate `reject`, and its bounds. The
+/// Computes for each range: whether the range can reject an object, its share of the rate `reject`, and its bounds. The
 /// bounds are the prediction interval (`predict`) of the values or their logarithms, one-sided for residuals. The rate is
 /// divided among the kinds of quantities present, and then among the quantities of each kind (Bonferroni), so that the total
 /// rate is valid for any dependence between quantities. Quantities of single parts, and quantities used for the dissimilarity

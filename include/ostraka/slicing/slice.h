@@ -1,10 +1,10 @@
 // Slices of a mesh by parallel planes: nested, oriented contours.
 //
-// Vertices on a plane follow one rule: each vertex has a single signed height per frame. A vertex is ON a plane if its distance
-// from the plane is at most 1e-9 of the mesh's bounding box diagonal; contours then pass through the vertex itself. ON is
-// treated as above the plane, so that a slice equals the slice by an infinitesimally lower plane. If the plane passes through
-// the lowest point of the cut faces, ON is treated as below, so that the slice of an object on a flat base is the outline of
-// the base. Contours that degenerate (to a point, or a curve traversed back and forth) are removed.
+// Vertices on a plane are treated consistently, because the signed height of each vertex is computed once. A vertex is ON a plane
+// if its distance from the plane is at most 1e-9 of the mesh's bounding box diagonal; contours then pass through the vertex
+// itself. ON is treated as above the plane, so that a slice equals the slice by an infinitesimally lower plane. If the plane
+// passes through the lowest point of the cut faces, ON is treated as below, so that the slice of an object on a flat base is the
+// outline of the base. Contours that degenerate (to a point, or a curve traversed back and forth) are removed.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"

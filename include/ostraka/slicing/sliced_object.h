@@ -55,7 +55,8 @@ SlicedObject slice_parallel(const Mesh& mesh, const SliceFrame& frame, const std
 /// Slices an object across a curve at `count` places and computes the descriptors. Throws the errors of slice_along.
 SlicedObject slice_across(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces = {});
 
-/// Computes the medial axes of all slices, in parallel; `residues` as in medial_axis, in any order.
+/// Computes the medial axes of all slices, in parallel. `residues`: thresholds for pruning the axis (see medial_axis.h), in any
+/// order.
 void add_medial_axes(SlicedObject& cut, std::vector<double> residues);
 
 /// True if an object is hollow: in at least a quarter of 24 slices perpendicular to `up`, holes take up at least half of the

@@ -33,7 +33,7 @@ struct CastOptions {
 struct HeadCast {
     Mesh mesh;  ///< closed except at the neck, where the head was broken off from its body, and at a missing piece
     std::vector<std::int32_t> face_labels;  ///< for each face, index of its part in head_part_names()
-    double wear = 0, shrinkage = 0;         ///< wear and shrinkage as drawn for this cast
+    double wear = 0, shrinkage = 0;         ///< random wear and shrinkage of this cast
     bool beard = false, chunk = false;      ///< true: the cast has a beard; a piece is missing
     std::array<double, 3> up{0, 0, 1};      ///< upward direction of the cast in its pose
 };

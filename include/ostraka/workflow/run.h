@@ -39,12 +39,11 @@ void check_run_folder(const StudyPlan& plan, const Path& run_folder);
 
 /// Runs the instances of a plan in `folder`, with at most as many instances in parallel as there are threads. The files and the
 /// record of an instance get their final names when the instance is complete. A failed instance stops only the instances that
-/// depend on it. The watch of this thread receives the running instances, the number of finished instances, and the estimated
-/// remaining time if known; instances run in parallel only while the watch's memory limit permits.
-/// If an input changes during the run, the instances that use it fail. Several processes may run studies in one folder: each
-/// instance is run by one process, and the other processes wait and use its result. Throws Error (input), before anything runs,
-/// if the folder holds names or links that lead out of it, and Error (cancelled) if the watch is cancelled; completed instances
-/// are kept.
+/// depend on it. The progress watch of the current thread receives the running instances, the number of finished instances, and
+/// the estimated remaining time if known; instances run in parallel only while the watch's memory limit permits. If an input
+/// changes during the run, the instances that use it fail. Several processes may run studies in one folder: each instance is run
+/// by one process, and the other processes wait and use its result. Throws Error (input), before anything runs, if the folder
+/// holds names or links that lead out of it, and Error (cancelled) if the watch is cancelled; completed instances are kept.
 std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options);
 
 }  // namespace ostraka
