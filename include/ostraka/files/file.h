@@ -112,9 +112,10 @@ private:
 /// changed after they were written, stay. Throws std::logic_error if no transaction is open.
 void replace_outputs(const Path& folder, const std::string& owner);
 
-/// Removes the temporary files of AtomicFile that a killed process left in `folder`. These are regular files with the names of
-/// temporary files that no running process has locked; on file systems without locks, temporary files that were not modified
-/// for a day. AtomicFile calls this function when its process first writes to a folder. Returns the number of files removed.
+/// Removes the temporary files of AtomicFile that a killed process left in `folder`. A regular file with the name of a
+/// temporary file is removed if no running process has locked it; on file systems without locks, if it was not modified for a
+/// day. AtomicFile calls this function when its process first writes to a folder. Returns the number of files
+/// removed.
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.

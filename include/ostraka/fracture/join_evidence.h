@@ -38,7 +38,7 @@ struct JoinEvidence {
     double depth = 0;   ///< largest depth of a point of one fragment inside the other fragment
     double widths = 0;  ///< absolute logarithm of the ratio of the widths of the two fracture surfaces
     // The next members compare the intact surfaces of both fragments beside the rims; wear changes these surfaces less than the
-    // fracture surfaces. They are measured along the part of the rim where the fragments are close.
+    // fracture surfaces. The comparison is made along the part of the rim where the fragments are close.
     double side_turn = 1;  ///< root mean square sine of the angle between the normals of the two intact surfaces
     /// Root mean square offset of each intact surface from the plane of the other one, divided by the distance between their
     /// centroids.

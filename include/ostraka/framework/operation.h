@@ -85,8 +85,8 @@ struct OperationEntry {
     const char* name;                      ///< name of the operation, such as "annotation transfer"
     const char* help;                      ///< help text
     std::unique_ptr<Operation> (*make)();  ///< creates an instance
-    /// Version of the results. It is increased when the operation gives different results for the same inputs, so that stored
-    /// results are computed again.
+    /// Version of the results. The version is increased when the operation gives different results for the same inputs, so that
+    /// stored results are computed again.
     int version = 1;
     /// True if the operation runs other operations or programs named in files; such operations are refused as steps of studies
     /// and sessions.

@@ -17,7 +17,8 @@ namespace ostraka::glb {
 // Constants of glTF 2.0 (Khronos, sections 3.6, 3.7, 5.1, 5.11).
 inline constexpr int signed_byte = 5120, byte = 5121, signed_short = 5122, short_word = 5123, word = 5125, single = 5126;
 inline constexpr int array_buffer = 34962, element_array_buffer = 34963;  ///< targets of buffer views
-/// Name of a member in the extras of a node. It marks nodes whose only purpose is to display the mesh upright and in metres.
+/// Name of a member in the extras of a node. The member marks nodes whose only purpose is to display the mesh upright and in
+/// metres.
 inline constexpr const char* display_only = "ostraka-display";
 inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;  ///< modes of primitives
 inline constexpr int strip_mode = 5, fan_mode = 6;                         ///< modes of primitives: triangle strip, triangle fan

@@ -18,8 +18,8 @@ double rigid_scale(const std::vector<Eigen::Vector3d>& from, const std::vector<E
 
 /// Relative deviation (a weighted median) of the distances between neighbouring landmarks from the distances that `rigid_scale`
 /// predicts. The result is 0 for the same shape in another posture if most pairs of neighbouring landmarks lie on a common
-/// rigid part. It is empty for fewer than six landmarks or six distances: distinguishing posture from shape needs two parts of
-/// three landmarks each. Throws Error (usage) for lists of different lengths.
+/// rigid part. The result is empty for fewer than six landmarks or six distances: distinguishing posture from shape needs two
+/// parts of three landmarks each. Throws Error (usage) for lists of different lengths.
 std::optional<double> rigid_strain(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to);
 
 }  // namespace ostraka

@@ -38,8 +38,8 @@ struct MarkedParts {
     std::vector<bool> seams = {};
 };
 
-/// Callbacks for every merge of two vertices or edges. They are called while both elements still exist, so that values of these
-/// elements can be merged. Faces need no callback: a face either keeps its values in all property maps, or is removed.
+/// Callbacks for every merge of two vertices or edges. The callbacks are called while both elements still exist, so that values
+/// of these elements can be merged. Faces need no callback: a face either keeps its values in all property maps, or is removed.
 class CollapseVisitor {
 public:
     virtual ~CollapseVisitor() = default;

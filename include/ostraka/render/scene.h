@@ -66,7 +66,7 @@ struct Scene {
     std::vector<Rgb> vertex_colours;    ///< one colour per point, interpolated; or empty
     /// Colours of triangles with several colours, ascending by triangle; they replace the other colours of these triangles.
     std::vector<ScenePatch> patches;
-    /// Reads the colours of the materials; null: no texture. It may be shared by several scenes and pictures.
+    /// Reads the colours of the materials; null: no texture. The object may be shared by several scenes and pictures.
     std::shared_ptr<const TextureSampler> texture;
     std::vector<TexturePoint> corner_texture;  ///< texture coordinates, three per triangle; empty: images are not shown
     /// Index of each triangle's material, or no_index: a triangle without texture; empty: the first material on all triangles.

@@ -30,7 +30,7 @@ struct ClassQuantity {
     [[nodiscard]] std::string text() const;
 };
 
-/// The template of a class. It stores references to its mesh, annotations and graph, which must outlive it.
+/// The template of a class. A template stores references to its mesh, annotations and graph, which must outlive it.
 struct ClassTemplate : AnnotatedMeshView {
     const RelationGraph& graph;  ///< relationships between the annotations
 };

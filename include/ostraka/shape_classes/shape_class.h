@@ -88,8 +88,8 @@ struct ShapeClass {
     std::vector<std::string> notes;           ///< messages about properties that could not be learnt
 
     [[nodiscard]] const LearntRange* find(const std::string& key) const;  ///< range of the quantity with this key; null: none
-    /// True if thresholds were learnt. This needs at least three members, because the standard deviation of two members is too
-    /// uncertain (Student's distribution with one degree of freedom has no mean).
+    /// True if thresholds were learnt. Thresholds need at least three members, because the standard deviation of two members is
+    /// too uncertain (Student's distribution with one degree of freedom has no mean).
     [[nodiscard]] bool has_thresholds() const { return members.size() >= min_members; }
     static constexpr std::size_t min_members = 3;  ///< min number of members for thresholds
 };

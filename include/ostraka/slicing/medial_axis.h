@@ -24,7 +24,7 @@ struct MedialAxis {
 };
 
 /// Computes the medial axis of a slice. The axis consists of the Voronoi edges, within the material, of samples along the
-/// closed contours (at most 1 / `samples` of a contour's length apart, corners included). It is pruned by the chord residue
+/// closed contours (at most 1 / `samples` of a contour's length apart, corners included). The axis is pruned by the chord residue
 /// (Ogniewicz and Kuebler 1995), which is defined at a point of the axis by its two nearest samples: the contour length between
 /// the two samples minus their distance, divided by the length of the contour. The residue is dimensionless, 0 at the tips of
 /// branches, and increases towards the centre (a disc: up to 0.18), so that pruning keeps the axis connected. If the two

@@ -82,7 +82,7 @@ struct MirrorSymmetry {
 };
 
 /// Each point is the mirror image of a partner that lies within a triangle. Ids: for each group, the point and the three
-/// corners of its partner's triangle. Rows: the point and its partner.
+/// corners of its partner's triangle. The rows of a group are the point and its partner.
 struct MirrorInTriangles {
     static constexpr KindInfo kind{"MirrorInTriangles", 4};  ///< name of the kind, and min number of points
     MirrorPlane plane;                                       ///< plane of reflection

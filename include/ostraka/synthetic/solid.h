@@ -63,8 +63,8 @@ SolidPointer make_tube(const std::vector<Bead>& beads);
 std::vector<double> chord_lengths(const std::vector<Bead>& beads);
 
 /// A solid of revolution around the vertical axis. The profile is the cubic spline through points (distance from the axis,
-/// height). It starts on the axis at the bottom, runs upwards along the outside and ends on the axis, and it meets the axis at
-/// right angles. Value of the function: true signed distance.
+/// height). The profile starts on the axis at the bottom, runs upwards along the outside and ends on the axis, and it meets the
+/// axis at right angles. Value of the function: true signed distance.
 SolidPointer make_revolved(const SolidPose& pose, const std::vector<Eigen::Vector2d>& profile);
 /// For each point of a profile, the chord length from the first point.
 std::vector<double> chord_lengths(const std::vector<Eigen::Vector2d>& profile);

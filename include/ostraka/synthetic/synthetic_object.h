@@ -37,7 +37,7 @@ struct Relief {
 /// Changes the part `from` to the part `to` where the function `side` is negative.
 struct Cut {
     int from, to;                                        ///< indices of the parts
-    std::function<double(const Eigen::Vector3d&)> side;  ///< negative where the part changes
+    std::function<double(const Eigen::Vector3d&)> side;  ///< negative where the part `from` becomes the part `to`
 };
 
 /// An object composed of implicit solids, with its ground truth.

@@ -29,8 +29,9 @@ struct Survival {
 
 /// For each annotation, the smallest resolution at which it survives: simplifies the mesh step by step and transfers the
 /// annotations from the full mesh to each step. An annotation survives while it keeps its type, none of its outlines or points
-/// vanishes and, for a region, the change of its area stays within the bound. The result is exact up to one factor `ratio`. The
-/// cost is about 1 / (1 - ratio) times the cost of one simplification and one transfer.
+/// vanishes and, for a region, the change of its area stays within the bound. Successive resolutions differ by the factor
+/// `ratio`, so that the result is exact up to this factor. The cost is about 1 / (1 - ratio) times the cost of one simplification
+/// and one transfer.
 std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const SurvivalOptions& options = {});
 
 }  // namespace ostraka
