@@ -38,12 +38,13 @@ struct Deform final : Operation {
         words.list_options(p.options);
         options.list_options(p.options);
         tolerances.list_options(p.options);
-        p.report.values(boolean("acceptable"), texts("objections"),
-                        number("followed.share", "", "fraction of the edit's displacement"), integer("followed.vertices"),
-                        number("followed.mean", "", "length"), number("followed.largest", "", "length"),
-                        integer("selfIntersections"), integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"),
-                        integer("folds"), integer("kinks"), integer("iterations"), integer("rounds"), text("stopped"),
-                        integer("passes"), text("space"), numbers("seated"));
+        p.report.values(
+            boolean("acceptable"), texts("objections"),
+            number("followed.share", "", "how closely the result follows the edit, as a fraction of the edit's displacement"),
+            integer("followed.vertices"), number("followed.mean", "", "length"), number("followed.largest", "", "length"),
+            integer("selfIntersections"), integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"),
+            integer("kinks"), integer("iterations"), integer("rounds"), text("stopped"), integer("passes"), text("space"),
+            numbers("seated"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
                        text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),

@@ -99,9 +99,10 @@ struct PinnedMeasure {
 
 /// The measure of a part, or its ratio to a second measure, is in a range (section 5.3.2). The projection stretches the current
 /// part along the direction of its measure, about the mean of the part (rows: the centred points of the part) or about the mean
-/// of its anchors (rows: the points). The second measure is an additional row without weight. If `shape` is given, the part
-/// becomes a rotated copy of this shape, stretched along the measure or scaled uniformly. The set of these copies does not
-/// depend on the current points, so that conflicting constraints cannot degrade the shape over the iterations.
+/// of its anchors (rows: the points). The second measure enters as an additional row, which has no weight in the objective. If
+/// `shape` is given, the part becomes a rotated copy of this shape, stretched along the measure or scaled uniformly. The set of
+/// these copies does not depend on the current points, so that conflicting constraints cannot degrade the shape over the
+/// iterations.
 struct Proportion {
     static constexpr KindInfo kind{"Proportion", 2};  ///< name of the kind, and min number of points
     Interval range;  ///< range of the ratio measure / second or, without a second measure, of the measure in the points' unit
