@@ -57,7 +57,8 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
 void SurvivalOptions::list_options(OptionList& list) {
     list("ratio", ratio, "ratio of the number of vertices of each resolution to that of the previous resolution",
          Range{0.1, 0.95});
-    list("area-error", area_error, "relative change of area at which a region counts as lost", Range{0.001, 1});
+    list("area-error", area_error, "a region counts as lost if its area changes by more than this relative amount",
+         Range{0.001, 1});
     list("min-vertices", min_vertices, "minimum number of vertices of the resolutions that are tried", Range{4, 1e9});
 }
 
