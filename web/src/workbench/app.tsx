@@ -6,6 +6,7 @@ import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
 import { sixViews } from "../view";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
+import { Arriving, ChooseFiles } from "./drop";
 import * as model from "./model";
 import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
@@ -49,6 +50,7 @@ function Header() {
           ))}
         </select>
       </label>
+      <ChooseFiles />
       <button type="button" disabled={place.value === 0} onClick={() => void model.undo()}>
         {text("undo")}
       </button>
@@ -445,6 +447,7 @@ export function App() {
             {view && <Picture key={turn} />}
             {view && <Drawing key={-turn} />}
             <Chooser />
+            <Arriving />
           </div>
           <Layers />
           {heard.value && <p class="quiet">{text("heard", heard.value)}</p>}
