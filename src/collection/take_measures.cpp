@@ -4,6 +4,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/interchange/landmarks.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/mesh/limits.h"
@@ -277,6 +278,8 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
     }
     ObjectMeasures result = measure_object(file ? &file->mesh : nullptr, set ? &*set : nullptr, landmarks ? &*landmarks : nullptr,
                                            definitions, words);
+    if (file)
+        for (std::string& note : manifold_notes(*file)) result.notes.push_back(std::move(note));
     result.unit = !object.unit.empty() ? object.unit : set && !set->unit.empty() ? set->unit : landmarks ? landmarks->unit : "";
     if (std::none_of(result.values.begin(), result.values.end(), [](const auto& value) { return value.has_value(); }))
         fail_input(object.name, "no measure could be taken: " + result.notes.front(),

@@ -1,6 +1,7 @@
 #include "framework/polygons.h"
 
 #include "ostraka/files/json_build.h"
+#include "ostraka/framework/input_path.h"
 #include "ostraka/framework/inputs.h"
 #include "ostraka/framework/object_files.h"
 #include "ostraka/framework/operation.h"
@@ -227,13 +228,15 @@ const Template& TemplateInput::operator*() const {
         [&](const Template&) { return unknown_checksum(*this); });
 }
 
-Path FileInput::path(std::size_t i) const {
-    const Source& source = sources.at(i);
+Path path_of(const Slot& slot, std::size_t i) {
+    const Source& source = slot.sources.at(i);
     if (!source.object) return source.file;
-    Path file = in_memory(*context, source.object, name);
-    if (source.object.sha256.empty() && file_exists(file)) context->record_object(*this, i, sha256_of_file(file));
+    Path file = in_memory(*slot.context, source.object, slot.name);
+    if (source.object.sha256.empty() && file_exists(file)) slot.context->record_object(slot, i, sha256_of_file(file));
     return file;
 }
+
+Path FileInput::path(std::size_t i) const { return path_of(*this, i); }
 
 std::shared_ptr<const AnnotationSet> FileInput::annotations_on(const Mesh& mesh) const {
     auto set = sources.at(0).object.as<AnnotationSet>();

@@ -250,7 +250,7 @@ Path FolderOutput::in(const std::string& file, std::size_t i) const {
 void FolderOutput::write(const std::string& file_in_folder, const Mesh& mesh, const MeshExtras& extras,
                          WriteOptions options) const {
     options.comment = context->provenance().to_line();
-    write_mesh(in(file_in_folder), mesh, extras, options);
+    context->notes({}, write_mesh(in(file_in_folder), mesh, extras, options));
 }
 void FolderOutput::write(const std::string& file_in_folder, AnnotatedMeshView object, const std::string& mesh_name) const {
     write_annotations(in(file_in_folder), object, mesh_name, context->provenance());

@@ -1,12 +1,16 @@
 #include "io/formats.h"
+#include "io/repair_steps.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/carry_extras.h"
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/mesh/limits.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace ostraka {
 
@@ -43,6 +47,38 @@ std::string name_of(Format format) {
     return names[static_cast<int>(format)];
 }
 
+/// A format that is not read, and a program of the field that converts it.
+struct OtherFormat {
+    const char *ending, *name, *converter;
+};
+constexpr const char* by_assimp = "convert it, for example: assimp export {} NAME.glb";
+constexpr const char* by_blender = "convert it to GLB, for example with Blender (File, Export, glTF 2.0)";
+constexpr std::array other_formats{
+    OtherFormat{".dae", "COLLADA", by_assimp},
+    OtherFormat{".x3d", "X3D", by_assimp},
+    OtherFormat{".x3db", "binary X3D", by_assimp},
+    OtherFormat{".fbx", "FBX", by_assimp},
+    OtherFormat{".3ds", "3D Studio", by_assimp},
+    OtherFormat{".lwo", "LightWave", by_assimp},
+    OtherFormat{".ac", "AC3D", by_assimp},
+    OtherFormat{".wrl", "VRML", "convert it to PLY or OBJ, for example with MeshLab (File, Export Mesh As)"},
+    OtherFormat{".vrml", "VRML", "convert it to PLY or OBJ, for example with MeshLab (File, Export Mesh As)"},
+    OtherFormat{".blend", "a scene of Blender", by_blender},
+    OtherFormat{".usd", "USD", by_blender},
+    OtherFormat{".usda", "USD", by_blender},
+    OtherFormat{".usdc", "USD", by_blender},
+    OtherFormat{".usdz", "USD", by_blender},
+    OtherFormat{".abc", "Alembic", by_blender},
+    OtherFormat{".step", "STEP", "convert it to STL, for example with FreeCAD (File, Export)"},
+    OtherFormat{".stp", "STEP", "convert it to STL, for example with FreeCAD (File, Export)"},
+    OtherFormat{".iges", "IGES", "convert it to STL, for example with FreeCAD (File, Export)"},
+    OtherFormat{".igs", "IGES", "convert it to STL, for example with FreeCAD (File, Export)"},
+    OtherFormat{".vtk", "legacy VTK", "convert it to PLY, for example with ParaView (File, Save Data)"},
+    OtherFormat{".vtp", "VTK PolyData", "convert it to PLY, for example with ParaView (File, Save Data)"},
+    OtherFormat{".drc", "Draco without glTF", "convert it, for example: draco_decoder -i {} -o NAME.ply"},
+    OtherFormat{".zip", "an archive", "unpack it, for example: unzip {}"},
+};
+
 Format format_of_extension(const Path& file) {
     const std::string ending = extension(file);
     if (ending == ".obj") return Format::obj;
@@ -53,6 +89,10 @@ Format format_of_extension(const Path& file) {
     if (ending == ".3mf") return Format::three_mf;
     if (ending == ".mesh") return Format::medit;
     if (ending == ".vtu") return Format::vtu;
+    for (const OtherFormat& other : other_formats)
+        if (ending == other.ending)
+            throw Error(ErrorKind::usage, file.string(), fmt::format("is {}, which is not read", other.name),
+                        fmt::format(fmt::runtime(other.converter), file.string()));
     throw Error(ErrorKind::usage, file.string(), "does not have the extension of a readable mesh format",
                 "use .obj, .ply, .glb, .gltf, .stl, .off or .3mf, or .mesh or .vtu for tetrahedra");
 }
@@ -95,6 +135,32 @@ std::string defects_in_words(const ManifoldDefects& defects) {
     return fmt::format("{}; the first at triangle {}", text, defects.example_triangle);
 }
 
+constexpr const char* no_manifold = "is not an oriented manifold";
+
+/// Makes the triangles an oriented manifold without removing or adding any: turns triangles over, and cuts the surface along
+/// edges and at vertices where it is none. Vertices and triangles keep their indices.
+void make_manifold(TriangulatedSoup& triangles, const ManifoldDefects& defects) {
+    const std::size_t vertex_count = triangles.soup.points.size();
+    detail::RepairSoup work(triangles.soup);
+    detail::orient_patches(work);
+    const std::size_t copies = detail::cut_apart(work);
+    std::vector<Index> corners;
+    if (!triangles.extras.corner_texture.empty())
+        for (const auto& corner : work.corner_like) corners.insert(corners.end(), corner.begin(), corner.end());
+    MeshExtras extras = carried(triangles.extras, {&work.vertex_like, nullptr, &corners});
+    extras.tetrahedra = std::move(triangles.extras.tetrahedra);
+    triangles.extras = std::move(extras);
+    triangles.soup = std::move(work.soup);
+    const auto flipped = std::count(work.flipped.begin(), work.flipped.end(), std::uint8_t{1});
+    std::string changes = flipped > 0 ? fmt::format("{} triangles were turned over", flipped) : std::string();
+    if (triangles.soup.points.size() > vertex_count)
+        changes += fmt::format("{}the surface was cut there, with {} copies of vertices after those of the file",
+                               changes.empty() ? "" : " and ", copies);
+    triangles.notes.push_back(
+        fmt::format("{}: {}; for this operation {} (ostraka mesh repair and ostraka import make a sound mesh)", no_manifold,
+                    defects_in_words(defects), changes.empty() ? "nothing was changed" : changes));
+}
+
 }  // namespace
 
 }  // namespace io
@@ -128,6 +194,13 @@ PolygonSoup read_polygons(const Path& file) {
 
 MeshFile read_mesh(const Path& file) { return mesh_of_polygons(read_polygons(file), file.string()); }
 
+std::vector<std::string> manifold_notes(const MeshFile& mesh) {
+    std::vector<std::string> notes;
+    std::copy_if(mesh.notes.begin(), mesh.notes.end(), std::back_inserter(notes),
+                 [](const std::string& note) { return note.starts_with(io::no_manifold); });
+    return notes;
+}
+
 MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     MeshFile result;
     if (polygons.polygon_count() == 0)
@@ -135,9 +208,10 @@ MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     TriangulatedSoup triangles = triangulate(std::move(polygons));
     if (triangles.soup.triangles.empty())
         fail_input(name, "has no face with three distinct corners", "use a file with a surface");
-    const ManifoldDefects defects = try_build_mesh(triangles.soup, result.mesh);
-    if (defects.any())
-        fail_input(name, "is not an oriented manifold: " + io::defects_in_words(defects), "run: ostraka mesh repair " + name);
+    if (const ManifoldDefects defects = try_build_mesh(triangles.soup, result.mesh); defects.any()) {
+        io::make_manifold(triangles, defects);
+        if (try_build_mesh(triangles.soup, result.mesh).any()) throw std::logic_error("read_mesh: the surface was not cut apart");
+    }
     const CGAL::Bbox_3 box = bounding_box(result.mesh);
     if (!(box.x_span() > 0 || box.y_span() > 0 || box.z_span() > 0))
         fail_input(name, "has no extent: all its faces are at one point", "use a file with a surface");

@@ -55,6 +55,9 @@ Counts drop_invalid_triangles(RepairSoup& work);  ///< triangles with a repeated
 Counts orient_patches(RepairSoup& work);          ///< orients triangles consistently across manifold edges
 /// Joins triangles at edges in pairs and gives each fan of triangles its own vertex.
 Counts separate_nonmanifold(RepairSoup& work);
+/// Gives each fan of triangles its own vertex, without new triangles: triangles that cannot be joined to others in this way get
+/// three vertices of their own. Vertices and triangles keep their indices; copies of vertices are appended. Returns their number.
+std::size_t cut_apart(RepairSoup& work);
 /// Drops components with a smaller fraction of the area, or all but the largest component.
 Counts drop_components(RepairSoup& work, bool only_largest, double smallest_share);
 Counts flip_degenerate(RepairSoup& work);  ///< removes degenerate triangles by edge flips

@@ -203,24 +203,67 @@ std::size_t separate_edges(Joints& joints) {
     return split;
 }
 
-}  // namespace
+/// What was done at edges when triangles were joined in pairs.
+struct EdgeCounts {
+    std::size_t nonmanifold = 0;  ///< edges with more than two triangles
+    std::size_t cut = 0;          ///< sides of triangles that were left unjoined
+};
 
-Counts separate_nonmanifold(RepairSoup& work) {
-    const SoupEdges edges = group_edges(work.soup);
-    Joints joints{work, std::vector<Index>(3 * work.soup.triangles.size(), no_index)};
-    std::size_t nonmanifold = 0, cut = 0;
+/// Joins triangles at edges in pairs; triangles whose flag in `detached` is set are joined to none.
+EdgeCounts join_in_pairs(Joints& joints, const std::vector<std::uint8_t>& detached = {}) {
+    const TriangleSoup& soup = joints.work.soup;
+    const SoupEdges edges = group_edges(soup);
+    EdgeCounts counts;
+    std::vector<Index> sides;
     for (std::size_t e = 0; e < edges.count(); ++e) {
-        const Index* h = edges.first(e);
-        const Index valence = edges.valence(e);
+        sides.assign(edges.first(e), edges.first(e) + edges.valence(e));
+        if (!detached.empty()) std::erase_if(sides, [&](Index h) { return detached[h / 3] != 0; });
+        const auto valence = static_cast<Index>(sides.size());
         if (valence == 2) {
-            if (origin(work.soup, h[0]) != origin(work.soup, h[1])) joints.join(h[0], h[1]);
-            else ++cut;
+            if (origin(soup, sides[0]) != origin(soup, sides[1])) joints.join(sides[0], sides[1]);
+            else ++counts.cut;
         } else if (valence > 2) {
-            ++nonmanifold;
-            const std::size_t joined = pair_around(work.soup, h, valence, joints.opposite);
-            cut += valence - 2 * joined;
+            ++counts.nonmanifold;
+            counts.cut += valence - 2 * pair_around(soup, sides.data(), valence, joints.opposite);
         }
     }
+    return counts;
+}
+
+/// Flags the triangles with a side between the same two vertices as another side that is not joined to it, except those of the
+/// first side. Returns their number.
+std::size_t detach_parallel(const Joints& joints, std::vector<std::uint8_t>& detached) {
+    const SoupEdges edges = group_edges(joints.work.soup);
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < edges.count(); ++e) {
+        const Index* h = edges.first(e);
+        for (Index i = 1; i < edges.valence(e); ++i) {
+            if (joints.opposite[h[0]] == h[i] || detached[h[i] / 3] != 0) continue;
+            detached[h[i] / 3] = 1;
+            ++count;
+        }
+    }
+    return count;
+}
+
+}  // namespace
+
+std::size_t cut_apart(RepairSoup& work) {
+    std::vector<std::uint8_t> detached(work.soup.triangles.size(), 0);
+    for (;;) {  // rarely more than once; a detached triangle has no parallel sides
+        RepairSoup trial = work;
+        Joints joints{trial, std::vector<Index>(3 * trial.soup.triangles.size(), no_index)};
+        join_in_pairs(joints, detached);
+        const std::size_t copies = separate_fans(joints);
+        if (detach_parallel(joints, detached) > 0) continue;
+        work = std::move(trial);
+        return copies;
+    }
+}
+
+Counts separate_nonmanifold(RepairSoup& work) {
+    Joints joints{work, std::vector<Index>(3 * work.soup.triangles.size(), no_index)};
+    const auto [nonmanifold, cut] = join_in_pairs(joints);
     const std::size_t copies = separate_fans(joints);
     std::size_t split = 0;
     while (const std::size_t newly_split = separate_edges(joints)) split += newly_split;

@@ -1,23 +1,46 @@
 #include "io/formats.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/mesh/disjoint_sets.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace ostraka::io {
 
 namespace {
 
-/// For each vertex, the first vertex with the same coordinates.
+/// A number from the coordinates of a point, the same for 0 and -0.
+std::uint64_t hash_of(const std::array<double, 3>& point) {
+    std::uint64_t hash = 0;
+    for (const double x : point) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 + 0 is 0
+        hash ^= hash >> 32U;
+    }
+    return hash;
+}
+
+/// For each vertex, the first vertex with the same coordinates. Points are put into buckets by a hash of their coordinates, and
+/// sorted within each bucket.
 std::vector<Index> first_at_place(const std::vector<std::array<double, 3>>& points) {
-    std::vector<Index> order(points.size()), first(points.size());
-    std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; });
-    for (std::size_t i = 0; i < order.size(); ++i)
-        first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
+    const std::size_t count = points.size();
+    const auto bits = static_cast<unsigned>(std::bit_width(std::max<std::size_t>(count, 2)));
+    std::vector<std::uint32_t> bucket_of(count);
+    parallel_for(count, [&](std::size_t v) {
+        bucket_of[v] = static_cast<std::uint32_t>(hash_of(points[v]) * 0x9E3779B97F4A7C15U >> (64 - bits));
+    });
+    std::vector<Index> begin((std::size_t{1} << bits) + 1, 0), order(count), first(count);
+    for (const std::uint32_t bucket : bucket_of) ++begin[bucket + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (std::size_t v = 0; v < count; ++v) order[begin[bucket_of[v]]++] = static_cast<Index>(v);  // begin becomes the ends
+    parallel_for(begin.size() - 1, [&](std::size_t bucket) {
+        const auto from = order.begin() + (bucket == 0 ? 0 : begin[bucket - 1]), to = order.begin() + begin[bucket];
+        if (to - from > 1)
+            std::sort(from, to, [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; });
+        for (auto i = from; i != to; ++i) first[*i] = i != from && points[*i] == points[*(i - 1)] ? first[*(i - 1)] : *i;
+    });
     return first;
 }
 
@@ -27,30 +50,42 @@ struct BorderEdge {
     Index from_place, to_place;  ///< the first vertices at the same places
 };
 
-/// The edges that only one polygon traverses, in whichever direction.
+/// The edges that only one polygon traverses, in whichever direction, and of which at least one end point is doubled. Sides of
+/// polygons are put into one bucket per smaller end point, and sorted within each bucket.
 std::vector<BorderEdge> border_edges(const PolygonSoup& soup, const std::vector<Index>& place) {
-    struct Side {
-        Index low, high;
-        bool forward;
-    };
-    std::vector<Side> sides;
-    sides.reserve(soup.corners.size());
-    for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
-        const Index begin = soup.polygon_begin[i], end = soup.polygon_begin[i + 1];
-        for (Index k = begin; k < end; ++k) {
-            const Index a = soup.corners[k], b = soup.corners[k + 1 < end ? k + 1 : begin];
-            if (place[a] != place[b]) sides.push_back({std::min(a, b), std::max(a, b), a < b});
+    std::vector<std::uint8_t> doubled(place.size(), 0);
+    for (std::size_t v = 0; v < place.size(); ++v)
+        if (place[v] != v) doubled[v] = doubled[place[v]] = 1;
+    const auto for_each_side = [&](const auto& visit) {
+        for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
+            const Index first = soup.polygon_begin[i], last = soup.polygon_begin[i + 1];
+            for (Index k = first; k < last; ++k) {
+                const Index a = soup.corners[k], b = soup.corners[k + 1 < last ? k + 1 : first];
+                if ((doubled[a] | doubled[b]) != 0 && place[a] != place[b]) visit(a, b);
+            }
         }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return std::tie(a.low, a.high, a.forward) < std::tie(b.low, b.high, b.forward);
-    });
+    };
+    struct Side {
+        Index high;
+        bool forward;  ///< from the smaller to the larger end point
+    };
+    std::vector<std::size_t> end(place.size() + 1, 0);
+    for_each_side([&](Index a, Index b) { ++end[std::min(a, b) + 1]; });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Side> sides(end.back());
+    for_each_side([&](Index a, Index b) { sides[end[std::min(a, b)]++] = {std::max(a, b), a < b}; });
     std::vector<BorderEdge> borders;
-    for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
-        while (next < sides.size() && sides[next].low == sides[i].low && sides[next].high == sides[i].high) ++next;
-        if (next - i > 1) continue;
-        const Index from = sides[i].forward ? sides[i].low : sides[i].high, to = sides[i].forward ? sides[i].high : sides[i].low;
-        borders.push_back({from, to, place[from], place[to]});
+    for (std::size_t low = 0; low < place.size(); ++low) {
+        const std::size_t from = low == 0 ? 0 : end[low - 1], to = end[low];
+        std::sort(sides.begin() + static_cast<std::ptrdiff_t>(from), sides.begin() + static_cast<std::ptrdiff_t>(to),
+                  [](const Side& a, const Side& b) { return a.high < b.high; });
+        for (std::size_t i = from, next = from; i < to; i = next) {
+            while (next < to && sides[next].high == sides[i].high) ++next;
+            if (next - i > 1) continue;
+            const auto v = static_cast<Index>(low);
+            const Index start = sides[i].forward ? v : sides[i].high, target = sides[i].forward ? sides[i].high : v;
+            borders.push_back({start, target, place[start], place[target]});
+        }
     }
     return borders;
 }

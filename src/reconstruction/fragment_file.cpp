@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/measure/descriptors.h"
 
 #include <fmt/core.h>
@@ -44,6 +45,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         fragment.mesh = std::move(surface.mesh);
     } else {
         MeshFile mesh = read_mesh(file);
+        for (std::string& note : manifold_notes(mesh)) result.notes.push_back(std::move(note));
         fragment.mesh = std::move(mesh.mesh);
     }
     using FacetSource = FragmentFileOptions::FacetSource;

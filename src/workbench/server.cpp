@@ -16,9 +16,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <fstream>
 #include <list>
 #include <optional>
 #include <random>
@@ -322,9 +324,12 @@ public:
         : stream_(std::move(socket)), state_(std::move(state)), list_(&state_->unauthenticated) {
         place_ = list_->insert(list_->end(), this);
         parser_.header_limit(static_cast<std::uint32_t>(state_->limits.header));
-        parser_.body_limit(0);
+        parser_.body_limit(UploadLimits().file_bytes);
     }
-    ~Visit() { leave(); }
+    ~Visit() {
+        leave();
+        discard_upload();
+    }
     Visit(const Visit&) = delete;
     Visit& operator=(const Visit&) = delete;
 
@@ -347,13 +352,16 @@ private:
         if (!stream_.socket().is_open()) return;
         if (error == http::error::header_limit)
             return answer(http::status::request_header_fields_too_large, "the request head is too long\n");
-        if (error == http::error::body_limit) return answer(http::status::method_not_allowed, "only GET\n");
+        if (error == http::error::body_limit) return answer(http::status::payload_too_large, "the file is too large\n");
         if (error == http::error::end_of_stream || error == beast::error::timeout) return;
         if (error) return answer(http::status::bad_request, "not understood\n");
         const auto& head = parser_.get();
         const std::string_view target = view_of(head.target()), host = view_of(head[http::field::host]);
         if (!state_->is_own_host(host)) return answer(http::status::misdirected_request, "this is another host\n");
-        if (head.method() != http::verb::get) return answer(http::status::method_not_allowed, "only GET\n");
+        const bool is_upload = head.method() == http::verb::post && target.starts_with("/upload?");
+        const bool has_body = parser_.chunked() || parser_.content_length().value_or(0) > 0;
+        if (!is_upload && (head.method() != http::verb::get || has_body))
+            return answer(http::status::method_not_allowed, "only GET\n");
         const auto origin = head.find(http::field::origin);
         if (origin != head.end() && !state_->is_own_origin(view_of(origin->value())))
             return answer(http::status::forbidden, "requested by another page\n");
@@ -363,11 +371,13 @@ private:
         if (path.find("..") != std::string_view::npos || path.find('%') != std::string_view::npos ||
             path.find('\\') != std::string_view::npos)
             return answer(http::status::bad_request, "not understood\n");
-        if (path != "/" && path != "/messages") return answer(http::status::not_found, "there is nothing here\n");
+        if (path != "/" && path != "/messages" && !is_upload) return answer(http::status::not_found, "there is nothing here\n");
         if (!same_secret(value_in(query, "token"), state_->token))
             return answer(http::status::forbidden, "open the address that 'ostraka workbench' shows: it holds a token\n");
         if (state_->is_full()) return answer(http::status::service_unavailable, "too many pages are open\n");
         if (path == "/") return serve();
+        if (is_upload && origin == head.end()) return answer(http::status::forbidden, "not requested by a page\n");
+        if (is_upload) return receive(value_in(query, "batch"), value_in(query, "file"));
         if (!websocket::is_upgrade(head)) return answer(http::status::upgrade_required, "for messages only\n");
         if (origin == head.end()) return answer(http::status::forbidden, "not requested by a page\n");
         start_messages();
@@ -383,6 +393,58 @@ private:
         upgrade.base() = parser_.get().base();
         stream_.expires_never();
         std::make_shared<Peer>(stream_.release_socket(), state_)->begin(upgrade);
+    }
+
+    /// Receives a file that was announced as number `file` of a batch.
+    void receive(std::string_view batch, std::string_view file) {
+        std::size_t index = 0;
+        const auto [end, code] = std::from_chars(file.data(), file.data() + file.size(), index);
+        const bool is_number = code == std::errc() && end == file.data() + file.size() && !file.empty();
+        const auto announced = is_number ? state_->workbench.uploads().begin(batch, index) : std::nullopt;
+        if (!announced) return answer(http::status::not_found, "this file was not announced\n");
+        if (parser_.chunked() || parser_.content_length().value_or(0) != announced->size)
+            return answer(http::status::bad_request, "the size is not the announced one\n");
+        state_->served.splice(state_->served.end(), *list_, place_);
+        list_ = &state_->served;
+        upload_path_ = announced->path;
+        upload_.open(part_of_upload(), std::ios::binary | std::ios::trunc);
+        if (!upload_) return answer(http::status::internal_server_error, "the file cannot be written\n");
+        body_.emplace(std::move(parser_));
+        body_->body_limit(announced->size);
+        read_body();
+    }
+    void read_body() {
+        chunk_.resize(1U << 18U);
+        body_->get().body().data = chunk_.data();
+        body_->get().body().size = chunk_.size();
+        stream_.expires_after(milliseconds(state_->limits.stalled));
+        http::async_read(stream_, buffer_, *body_,
+                         [self = shared_from_this()](error_code error, std::size_t) { self->handle_body(error); });
+    }
+    void handle_body(error_code error) {
+        if (error == http::error::need_buffer) error = {};
+        if (error || !stream_.socket().is_open()) return discard_upload();
+        upload_.write(chunk_.data(), static_cast<std::streamsize>(chunk_.size() - body_->get().body().size));
+        if (!upload_) {
+            discard_upload();
+            return answer(http::status::insufficient_storage, "the file cannot be written: the disk may be full\n");
+        }
+        if (!body_->is_done()) return read_body();
+        upload_.close();
+        std::error_code code;
+        std::filesystem::rename(part_of_upload(), upload_path_, code);
+        if (code) return answer(http::status::internal_server_error, "the file cannot be written\n");
+        upload_path_.clear();
+        answer(http::status::ok, "received\n");
+    }
+    [[nodiscard]] Path part_of_upload() const { return upload_path_.string() + ".part"; }
+    /// Removes what was received of a file that did not arrive completely.
+    void discard_upload() {
+        if (upload_path_.empty()) return;
+        upload_.close();
+        std::error_code ignored;
+        std::filesystem::remove(part_of_upload(), ignored);
+        upload_path_.clear();
     }
 
     /// `text` must outlive the response.
@@ -412,6 +474,10 @@ private:
     std::list<Visit*>::iterator place_;
     beast::flat_buffer buffer_{65536};
     http::request_parser<http::empty_body> parser_;
+    std::optional<http::request_parser<http::buffer_body>> body_;  ///< of a file that is received
+    std::vector<char> chunk_;
+    std::ofstream upload_;
+    Path upload_path_;  ///< the file that is received; empty: none
     http::response<http::span_body<const char>> response_;
 };
 

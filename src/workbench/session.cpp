@@ -8,6 +8,7 @@
 #include "ostraka/files/safe_path.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/template_package/template.h"
+#include "ostraka/workbench/uploads.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -166,11 +167,11 @@ void Session::check_file(const std::string& file) const {
 
 /// Checks that nothing that will be written or emptied leads out of the folder.
 void Session::check_folders() const {
-    for (const char* name : {file_name, "session.study.json", "steps", "documents"})
+    for (const char* name : {file_name, "session.study.json", "steps", "documents", "uploads"})
         require_writable_inside(folder_ / name, folder_);
 }
 
-/// Removes files of steps whose process was killed before they were recorded.
+/// Removes files of steps whose process was killed before they were recorded, and uploads that no step reads.
 void Session::sweep() const {
     for (const char* part : {"steps", "documents"}) {
         std::error_code code;
@@ -185,6 +186,15 @@ void Session::sweep() const {
         }
         for (const Path& path : removable) std::filesystem::remove_all(path, code);
     }
+    std::string settings;
+    for (const SessionStep& step : steps_) settings += to_compact_text(step.with);
+    std::error_code code;
+    std::vector<Path> unused;
+    for (std::filesystem::directory_iterator entry(folder_ / "uploads", code), end; !code && entry != end; entry.increment(code))
+        if (const std::string name = entry->path().filename().string();
+            Uploads::is_batch(name) && settings.find(fmt::format("uploads/{}/", name)) == std::string::npos)
+            unused.push_back(entry->path());
+    for (const Path& path : unused) std::filesystem::remove_all(path, code);
 }
 
 void Session::write() const {
@@ -293,7 +303,9 @@ std::vector<std::string> Session::openable() const {
         for (const std::string& name : files_in(folder)) {
             if (!is_inside(folder / name, root_)) continue;
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
-            if (is_mesh_name(name) || name.ends_with(".template.json")) names.push_back(prefix + name);
+            const std::string ending = extension(name);
+            const bool is_other_mesh = ending == ".glb" || ending == ".gltf" || ending == ".3mf";
+            if (is_mesh_name(name) || is_other_mesh || name.ends_with(".template.json")) names.push_back(prefix + name);
         }
     };
     add_openable(root_, "");

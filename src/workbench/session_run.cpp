@@ -3,6 +3,7 @@
 
 #include "ostraka/files/json_build.h"
 #include "ostraka/files/safe_path.h"
+#include "ostraka/workbench/uploads.h"
 
 #include <fmt/core.h>
 
@@ -58,6 +59,8 @@ Path Session::resolved(const JsonValue& value, const Slot& input, const std::str
         return file;
     }
     if (find_member(value, "file") != nullptr) return path_of(text_in(value, "file"));
+    if (find_member(value, "upload") != nullptr)
+        return Uploads::path_of(folder_, text_in(value, "upload"), text_in(value, "name"));
     const SessionState& current = state();
     const auto index = static_cast<std::size_t>(number_or(value, "object", static_cast<double>(current.active)));
     if (index >= current.objects.size()) fail_request("no object is open", "open a mesh or a template");

@@ -67,7 +67,10 @@ struct Workbench::Deformation {
 };
 
 Workbench::Workbench(Path folder, Path root, double memory_limit)
-    : session_(std::move(folder), std::move(root)), memory_limit_(memory_limit), context_(fresh_context()) {}
+    : session_(std::move(folder), std::move(root)),
+      uploads_(session_.folder()),
+      memory_limit_(memory_limit),
+      context_(fresh_context()) {}
 
 std::unique_ptr<Context> Workbench::fresh_context() {
     auto fresh = std::make_unique<Context>();
@@ -102,7 +105,7 @@ const std::map<std::string, Workbench::Answer>& Workbench::answers() {
         {"grab", &Workbench::grab},           {"drag", &Workbench::drag},
         {"influence", &Workbench::influence}, {"file", &Workbench::file},
         {"handles", &Workbench::handles},     {"parts", &Workbench::parts},
-        {"reach", &Workbench::reach},
+        {"reach", &Workbench::reach},         {"upload", &Workbench::upload},
     };
     return handlers;
 }
@@ -134,8 +137,9 @@ Workbench::Reply Workbench::answer(std::string_view text) {
             (this->*handler->second)(request, result, reply.bytes);
         } else if (action == "open") {
             const JsonValue* name = find_member(request, "name");
-            session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string(),
-                          [this](const SessionObject& object) { static_cast<void>(shape_of(object, false)); });
+            session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string(), [&](const SessionObject& object) {
+                add_members(result, result.GetAllocator(), "notes", shape_of(object, false)->mesh->notes);
+            });
         } else if (action == "go") {
             const JsonValue* target_place = find_member(request, "place");
             if (target_place == nullptr || !target_place->IsUint()) fail_request("no place is given", "load the page again");
@@ -328,6 +332,21 @@ void Workbench::file(const JsonValue& request, Json& result, std::string& bytes)
     if (is_folder(path)) fail_request(path.filename().string() + " is a folder", "look into " + path.string());
     bytes = read_file(path);
     add_members(result, result.GetAllocator(), "name", path.filename().string());
+}
+
+void Workbench::upload(const JsonValue& request, Json& result, std::string& /*bytes*/) {
+    std::vector<AnnouncedFile> files;
+    for (const JsonValue& file : list_in(request, "files")) {
+        const double size = file.IsObject() ? number_or(file, "size", -1) : -1;
+        if (!(size >= 0)) fail_request("a file is sent without its size", "load the page again");
+        files.push_back({text_in(file, "name"), static_cast<std::uintmax_t>(std::min(size, 1e18))});
+    }
+    const std::vector<std::size_t> scans = scans_among(files);
+    if (scans.empty())
+        fail_request("none of the files is a scan",
+                     "drop meshes (OBJ with its MTL file and images, GLB, PLY, STL, OFF, 3MF) or "
+                     "point clouds (E57, LAS, PTS, PTX, PCD, XYZ)");
+    add_members(result, result.GetAllocator(), "batch", uploads_.announce(files), "scans", scans);
 }
 
 // ---- deformation ----

@@ -1,6 +1,7 @@
 // Meshes, clouds and exchange formats as subjects.
 #include "subjects.h"
 
+#include "../io/three_mf_examples.h"
 #include "../point_cloud/e57_writer.h"
 #include "ostraka/image/image.h"
 
@@ -63,6 +64,12 @@ std::string decode_image(const Path& file) {
     return std::to_string(pixels.rgba.size()) + " pixels";
 }
 
+/// Packs the model model.xml into a 3MF file, whose checksum is then right, and reads it.
+std::string read_packed_model(Stopper& stopper) {
+    write_file("out/model.3mf", test::zip_of({{"3D/3dmodel.model", read_file("model.xml")}}));
+    return call_operation("mesh info", R"({"input":"out/model.3mf"})", stopper);
+}
+
 void add_call(std::vector<Subject>& subjects, const std::string& name, std::vector<SubjectFile> files, Target target,
               const std::string& call) {
     Subject subject;
@@ -90,6 +97,63 @@ void make_images() {
     write_file("images/image.webp", encode(pixels, ImageFormat::webp, {}).bytes);
     write_file("images/lossless.webp", encode(pixels, ImageFormat::webp, {}, 100).bytes);
     write_file("images/image.gif", gif);
+}
+
+constexpr const char* mtl = R"(# two materials
+newmtl clay
+Ka 0.2 0.2 0.2
+Kd 0.8 0.5 0.25
+Ks 0 0 0
+d 0.9
+Tr 0.1
+illum 2
+map_Kd -s 2 2 1 -o 0.5 0.25 0 -clamp on image.png
+map_Bump -bm 0.5 IMAGE.png
+newmtl paint
+Kd 1 1 1
+map_Kd .\\folder\\image.png
+norm image.png
+)";
+
+/// A quadrilateral and a triangle with texture coordinates and two materials.
+constexpr const char* textured = R"(mtllib textured.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 2 2 1
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0.25 0.75
+usemtl clay
+f 1/1 2/2 3/3 4/4
+usemtl paint
+f 3/1 4/2 5/3
+)";
+
+/// Meshes with materials: the files that they name are mutated too.
+void add_materials(const Path& seeds, std::vector<Subject>& subjects) {
+    const SubjectFile obj{"textured.obj", {}, textured}, materials{"textured.mtl", {}, mtl};
+    const SubjectFile image{"image.png", seeds / "images" / "image.png"};
+    const std::string file = R"({"input":"textured.obj")";
+    for (const char* target : {"textured.mtl", "textured.obj"}) {
+        const std::string kind = extension(target).substr(1);
+        add_call(subjects, "info of " + kind + " with materials", {obj, materials, image}, {kind, target},
+                 call_text("mesh info", file + "}"));
+        for (const char* output : {"out.obj", "out.glb", "out.ply"})
+            add_call(subjects, "convert " + kind + " with materials to " + output, {obj, materials, image}, {kind, target},
+                     call_text("mesh convert", file + R"(,"output":"out/)" + output + "\"}"));
+        add_call(subjects, "import " + kind + " with materials", {obj, materials, image}, {kind, target},
+                 call_text("import", R"({"scan":["textured.obj"],"object":"out/object"})"));
+    }
+    Subject model;
+    model.name = "model of 3MF";
+    model.files = {{"model.xml", {}, test::coloured_model}};
+    model.folders = {"out"};
+    model.targets = {{"3mf", "model.xml"}};
+    model.act = read_packed_model;
+    subjects.push_back(std::move(model));
 }
 
 /// Recipes of the project, on the existing meshes.
@@ -123,6 +187,7 @@ void make_formats(const Path& project) {
     write_mesh("meshes/box-text.stl", box.mesh, {}, ascii);
     write_mesh("meshes/sphere.ply", sphere.mesh, sphere.extras);
     write_file("meshes/two.mesh", medit);
+    write_file("meshes/tetrahedron.3mf", test::zip_of({{"3D/3dmodel.model", test::coloured_model}}));
     write_file("meshes/two.vtu", vtu);
     write_file("meshes/quads.obj", read_file(inputs / "box-of-quads.obj"));
     make_folder("clouds");
@@ -190,6 +255,7 @@ void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& s
                 subjects, "import " + name, {seed, {"box.ply", inputs / "box.ply"}}, {"exchange", name},
                 call_text("annotation import", R"({"mesh":"box.ply","input":")" + name + R"(","output":"out/out.ant.json"})"));
     }
+    add_materials(seeds, subjects);
     add_recipes(project, subjects);
 }
 

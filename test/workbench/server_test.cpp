@@ -260,6 +260,59 @@ TEST(WorkbenchServer, RefusesUnauthorisedClients) {
     EXPECT_TRUE(answers(served));
 }
 
+TEST(WorkbenchServer, ReceivesAnnouncedFilesOnly) {
+    const Served served;
+    const std::string token = served.server->token(), origin = "http://" + served.host(), content = "ply of a page";
+    const auto wire = page(served);
+    wire->say(R"({"id":1,"do":"upload","files":[{"name":"scans/a.ply","size":)" + std::to_string(content.size()) +
+              R"(},{"name":"scans/b.jpg","size":1000000}]})");
+    const std::string announced = wire->answer();
+    EXPECT_NE(announced.find(R"("batch":"u001","scans":[0])"), std::string::npos) << announced;
+    const auto post = [&](const std::string& query, const std::string& body, const std::string& more, std::size_t claimed) {
+        return "POST /upload?" + query + " HTTP/1.1\r\nHost: " + served.host() + "\r\n" + more +
+               "Content-Length: " + std::to_string(claimed) + "\r\n\r\n" + body;
+    };
+    const std::string ours = "Origin: " + origin + "\r\n", first = "token=" + token + "&batch=u001&file=0";
+    const std::size_t size = content.size();
+    for (const auto& [request, expected] : std::vector<std::pair<std::string, int>>{
+             {post("batch=u001&file=0", content, ours, size), 403},
+             {post(first, content, "", size), 403},
+             {post(first, content, "Origin: http://evil.example\r\n", size), 403},
+             {post("token=" + token + "&batch=u001&file=2", content, ours, size), 404},
+             {post("token=" + token + "&batch=u001&file=-1", content, ours, size), 404},
+             {post("token=" + token + "&batch=u001&file=0x0", content, ours, size), 404},
+             {post("token=" + token + "&batch=../u001&file=0", content, ours, size), 404},
+             {post("token=" + token + "&batch=u002&file=0", content, ours, size), 404},
+             {post("token=" + token, content, ours, size), 404},
+             {post(first, "", ours, 5'000'000'000), 413},
+             {"GET /upload?" + first + " HTTP/1.1\r\nHost: " + served.host() + "\r\n\r\n", 404},
+             {post(first, content, ours, size), 200},
+             {post(first, content, ours, size), 404},
+         })
+        EXPECT_EQ(ask(served, request), expected) << request.substr(0, 200);
+    const Path folder = served.scratch / "session" / "uploads" / "u001" / "scans";
+    EXPECT_EQ(read_file(folder / "a.ply"), content);
+    {  // a page that goes in the middle of a file leaves nothing of it
+        Wire broken(served.server->port());
+        broken.send(post("token=" + token + "&batch=u001&file=1", std::string(5000, 'x'), ours, 1000000));
+    }
+    for (int i = 0; i < 100 && count_files(folder) > 1; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_EQ(count_files(folder), 1U);
+    // Names that leave the folder, files without a scan, too many and too large files.
+    for (const char* files :
+         {R"([{"name":"../a.ply","size":1}])", R"([{"name":"/a.ply","size":1}])", R"([{"name":"","size":1}])",
+          R"([{"name":"a//b.ply","size":1}])", R"([{"name":".a.ply","size":1}])", R"([{"name":"a\\b.ply","size":1}])",
+          R"([{"name":"a.ply","size":5e9}])", R"([{"name":"a.ply"}])", R"([{"name":"a.ply","size":1},{"name":"a.ply","size":1}])",
+          R"([{"name":"a.jpg","size":1}])", "[]"}) {
+        wire->say(R"({"id":2,"do":"upload","files":)" + std::string(files) + "}");
+        EXPECT_NE(wire->answer().find("\"ok\":false"), std::string::npos) << files;
+    }
+    // A file that was not sent is no input.
+    wire->say(R"({"id":3,"do":"run","operation":"import","with":{"scan":[{"upload":"u001","name":"scans/b.jpg"}]}})");
+    EXPECT_NE(wire->answer().find("was not sent completely"), std::string::npos);
+    EXPECT_TRUE(answers(served));
+}
+
 TEST(WorkbenchServer, SurvivesGarbageAndDisconnectedWriters) {
     ServerLimits limits;
     limits.seconds = 1;  // for who does not answer that it is let go

@@ -894,6 +894,109 @@ try {
     await close();
     await server.stop();
   });
+
+  await test("scans dropped onto the page are sent, imported and opened; what cannot be read is said there", async () => {
+    mkdirSync(at("empty"));
+    mkdirSync(at("scan with parts"));
+    // A textured box whose faces have corners of their own on the image, a mesh of points, and one whose edge has three faces.
+    const corner = (k) => [k & 1, (k >> 1) & 1, (k >> 2) & 1].join(" ");
+    const sides = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    const faces = sides.map(
+      (side) =>
+        `f ${side
+          .split(" ")
+          .map((v, k) => `${v}/${k + 1}`)
+          .join(" ")}`,
+    );
+    const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${corner(k)}`);
+    writeFileSync(
+      at("scan with parts/Box.obj"),
+      ["mtllib box.MTL", ...points, "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", "usemtl m", ...faces, ""].join("\n"),
+    );
+    writeFileSync(at("scan with parts/box.mtl"), "newmtl m\nmap_Kd my image.png\n");
+    copyFileSync(join(project, "doc/images/vase-profile.png"), at("scan with parts/my image.png"));
+    writeFileSync(at("scan with parts/notes.doc"), "of the dig");
+    writeFileSync(at("fan.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+    writeFileSync(at("broken.ply"), "ply\nformat ascii 1.0\nelement vertex 3\n");
+    writeFileSync(at("old.dae"), "<COLLADA/>");
+    ostraka("mesh", "convert", at("pot.ply"), at("pot.glb"));
+    writeFileSync(
+      at("cloud.xyz"),
+      Array.from({ length: 2000 }, (_, i) => {
+        const z = 1 - (2 * i + 1) / 2000;
+        const turn = i * Math.PI * (3 - Math.sqrt(5));
+        return [Math.sqrt(1 - z * z) * Math.cos(turn), Math.sqrt(1 - z * z) * Math.sin(turn), z].join(" ");
+      }).join("\n"),
+    );
+    const server = serve(at("empty"));
+    const { page, told, close } = await open(await server.address);
+    const screen = await page.context().newCDPSession(page);
+    const drop = async (...files) => {
+      const data = { items: [], files: files.map(at), dragOperationsMask: 1 };
+      for (const type of ["dragEnter", "dragOver"]) await screen.send("Input.dispatchDragEvent", { type, x: 500, y: 400, data });
+      await page.locator(".dropping").waitFor();
+      await screen.send("Input.dispatchDragEvent", { type: "drop", x: 500, y: 400, data });
+      await page.waitForFunction(() => /done|failed/.test(ostraka.drop.arrival.value?.phase), undefined, { timeout: patience });
+      return page.evaluate(() => {
+        const { phase, rows, problem } = ostraka.drop.arrival.value;
+        return { phase, problem, rows: Object.fromEntries(rows.map((one) => [one.name, one.state])) };
+      });
+    };
+    // A folder.
+    const folderDrop = await drop("scan with parts");
+    assert.deepEqual(folderDrop, {
+      phase: "done",
+      problem: undefined,
+      rows: {
+        "scan with parts/Box.obj": "sound",
+        "scan with parts/box.mtl": "sent",
+        "scan with parts/my image.png": "sent",
+      },
+    });
+    await steps(page, 1);
+    assert.ok(
+      await page.evaluate(() => ostraka.page.page.objects[0].texture ?? ostraka.page.page.objects[0].shape?.texture),
+      "it has its image",
+    );
+    assert.deepEqual(await page.evaluate(() => ostraka.model.objects.value.map((one) => one.name)), ["Box"]);
+    // Several files: one that cannot be read stops no other.
+    const several = await drop("pot.glb", "fan.obj", "cloud.xyz", "broken.ply");
+    assert.equal(several.phase, "done", JSON.stringify(several));
+    assert.equal(several.rows["broken.ply"], "refused");
+    assert.equal(several.rows["cloud.xyz"], "sound");
+    assert.match(several.rows["fan.obj"], /sound|open/);
+    await steps(page, 2);
+    assert.deepEqual((await page.evaluate(() => ostraka.model.objects.value.map((one) => one.name))).sort(), [
+      "Box",
+      "cloud",
+      "fan",
+      "pot",
+    ]);
+    assert.match(await page.locator(".arriving").innerText(), /broken\.ply.*(cut off|ends)/);
+    await picture(page, "workbench-dropped.png");
+    await page.locator(".arriving button").click();
+    // Nothing that can be read: said in place, and nothing changes.
+    const nothing = await drop("old.dae");
+    assert.equal(nothing.phase, "failed");
+    assert.match(await page.locator(".arriving [role=alert]").innerText(), /Blender|MeshLab/);
+    const broken = await drop("broken.ply");
+    assert.equal(broken.phase, "failed");
+    assert.match(broken.problem.problem + broken.problem.where, /broken\.ply|cut off|ends/);
+    await steps(page, 2);
+    // Chosen by the button.
+    await page.locator("header input[type=file]").setInputFiles(at("pot.glb"));
+    await page.waitForFunction(() => ostraka.drop.arrival.value?.phase === "done", undefined, { timeout: patience });
+    await steps(page, 3);
+    assert.ok(await page.evaluate(() => ostraka.model.objects.value.some((one) => one.name === "pot-2")));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+    // The session repeats as a study, from the files that were sent.
+    ostraka("run", at("empty/session/session.study.json"), "--reads", at("empty/session"), "--output", at("again"));
+    const again = tree(at("again"));
+    for (const [name, sum] of tree(at("empty/session/steps")))
+      if (name.endsWith(".ply")) assert.ok([...again.values()].includes(sum), name);
+  });
 } finally {
   for (const child of servers) child.kill("SIGKILL");
   await browser.close();

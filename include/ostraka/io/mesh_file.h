@@ -73,7 +73,7 @@ struct TriangulatedSoup {
 /// fewer than three distinct corners give no triangles.
 TriangulatedSoup triangulate(PolygonSoup&& polygons);
 
-/// A mesh file read as an oriented manifold triangle mesh (open or closed). Vertex i of the mesh is vertex i of the file.
+/// A mesh file read as an oriented manifold (open or closed). Vertex i of the mesh is vertex i of the file; copies may follow.
 struct MeshFile {
     Mesh mesh;          ///< the triangle mesh
     MeshExtras extras;  ///< attributes per vertex and per triangle
@@ -82,8 +82,8 @@ struct MeshFile {
     std::vector<std::string> notes;  ///< messages about content of the file that was not kept
 };
 
-/// Reads a mesh file as a manifold (read_polygons, triangulate, build_mesh). Throws Error (input), with the remedy "run: ostraka
-/// mesh repair", if the mesh in the file is not an oriented manifold or has no faces.
+/// Reads a mesh file as an oriented manifold. Where the surface is none, triangles are turned over and the surface is cut, with
+/// a note; vertices and triangles keep their indices (doc/mesh-files.md). Throws Error (input) without faces or extent.
 MeshFile read_mesh(const Path& file);
 
 /// Encoding of PLY and STL files.

@@ -76,9 +76,10 @@ public:
 
     /// Runs an operation as a new step. Request: {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as":
     /// "deformed"}. The value of an input is {"part": PART, "object": INDEX} (default: the active object), {"file": FILE of the
-    /// state}, {"document": JSON} or a list of such values. Outputs that the operation requires, and outputs in "keep", become
-    /// parts of their object, new objects, or files. With "as": "deformed" a resulting mesh is the deformed state of the object,
-    /// not a new object. Returns the report of the operation. If the operation fails, the session is unchanged.
+    /// state}, {"document": JSON}, {"upload": FOLDER of uploads, "name": FILE in it} or a list of such values. Outputs that the
+    /// operation requires, and outputs in "keep", become parts of their object, new objects, or files. With "as": "deformed" a
+    /// resulting mesh is the deformed state of the object, not a new object. Returns the report of the operation. If the
+    /// operation fails, the session is unchanged.
     Report run(const JsonValue& request, Context& context);
 
     /// Adds a choice as a new step: {"do": "activate" or "close", "object": INDEX}; {"do": "accept" or "withdraw"} for a
@@ -126,7 +127,7 @@ private:
     void check_file(const std::string& file) const;
     /// Throws Error (input) if a file or folder to be written leads out of the session's folder.
     void check_folders() const;
-    /// Removes files of steps that were not recorded because the process was killed.
+    /// Removes uploads that no step reads, and files of steps that were not recorded because the process was killed.
     void sweep() const;
     void lock();  ///< locks the folder; throws Error (input) if another process uses it
 

@@ -4,6 +4,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/semantic/live.h"
 #include "ostraka/workbench/session.h"
+#include "ostraka/workbench/uploads.h"
 
 #include <memory>
 #include <mutex>
@@ -36,6 +37,8 @@ public:
     void prepare();
 
     [[nodiscard]] const Session& session() const { return session_; }
+    /// Files that the page sends; may be used from any thread.
+    Uploads& uploads() { return uploads_; }
 
 private:
     struct Shape;
@@ -61,6 +64,8 @@ private:
     /// Surface for the current positions of the dragged vertices.
     void drag(const JsonValue& request, Json& result, std::string& bytes);
     void file(const JsonValue& request, Json& result, std::string& bytes);  ///< content of a file of the session
+    /// Announces files that the page will send: {"files": [{"name", "size"}, ...]}.
+    void upload(const JsonValue& request, Json& result, std::string& bytes);
 
     [[nodiscard]] JsonValue words(JsonAllocator& allocator) const;  ///< labels of the concepts of all vocabularies, by language
     void add_session(Json& result) const;                           ///< adds the state of the session to a result
@@ -71,6 +76,7 @@ private:
     Deformation& deformation();                                        ///< data for deforming the active object
 
     Session session_;
+    Uploads uploads_;
     double memory_limit_;
     std::mutex mutex_;  ///< guards context_, which is replaced after a cancelled request
     std::unique_ptr<Context> context_;

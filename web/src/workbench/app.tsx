@@ -5,6 +5,7 @@ import { ColouringChoice } from "../colouring";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
+import { Arriving, ChooseFiles } from "./drop";
 import { Gizmo } from "./gizmo";
 import { Icon, type IconName } from "./icons";
 import { Light } from "../light";
@@ -73,6 +74,7 @@ function Header() {
           ))}
         </select>
       </label>
+      <ChooseFiles />
       <span class="group">
         <IconButton
           icon="undo"
@@ -422,6 +424,9 @@ function Start() {
   return (
     <section class="start" aria-labelledby="start-title">
       <h2 id="start-title">{text("startTitle")}</h2>
+      <p>
+        {text("startDrop")} <ChooseFiles />
+      </p>
       <p>{text(model.openable.value.length > 0 ? "startHelp" : "startEmpty")}</p>
       <ul>
         {model.openable.value.map((one) => (
@@ -559,6 +564,7 @@ export function App() {
             </div>
           )}
           <Chooser />
+          <Arriving />
           {heard.value && <p class="quiet heard">{text("heard", heard.value)}</p>}
           <Notices key={`notices ${turn}`} />
         </div>

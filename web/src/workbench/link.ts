@@ -81,6 +81,13 @@ export class Link {
     });
   }
 
+  /** Where an announced file is sent. */
+  uploadAddress(batch: string, file: number): URL {
+    const address = new URL("upload", location.href);
+    address.search = new URLSearchParams({ token, batch, file: String(file) }).toString();
+    return address;
+  }
+
   /** Cancels the request in progress. */
   cancel() {
     this.socket?.send('{"do":"cancel"}');

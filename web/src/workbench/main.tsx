@@ -9,6 +9,7 @@ import { App } from "./app";
 import * as camera from "./camera";
 import * as commands from "./commands";
 import * as deform from "./deform";
+import * as drop from "./drop";
 import * as model from "./model";
 import * as selection from "./selection";
 import * as tools from "./tools";
@@ -39,6 +40,7 @@ model.link.onEvent = (event) => {
 page.allMeasures.value = true;
 model.link.connect();
 commands.attachKeys();
+drop.attachDrop();
 render(<App />, document.getElementById("app")!);
 
 let follows = false;
@@ -63,6 +65,7 @@ Object.defineProperty(window, "ostraka", {
     tools,
     deform,
     commands,
+    drop,
     xr,
     shared,
     get view() {

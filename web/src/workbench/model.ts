@@ -165,9 +165,10 @@ export function run(request: Run): Promise<boolean> {
 /** Changes the session without an operation. */
 export const change = (title: Key, what: string, more: object = {}) =>
   attempt(text(title), async () => {
-    await link.ask(what, more);
+    const { result } = await link.ask(what, more);
     outcome.value = undefined;
     await refresh();
+    if (result.notes?.length > 0) page.message.value = result.notes.join("; ");
   });
 
 export const goTo = (step: number) => change("undo", "go", { place: step });
