@@ -91,8 +91,8 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     const std::string rest = R"(, "isConstraint": false})", head = R"({"id": 0, "type": )";
     expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0, 9])" + rest,
                    "annotation 9, which does not exist");
-    expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0])" + rest, "is said of 1 annotation");
-    expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0, 1, 2])" + rest, "is said of 3 annotations");
+    expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0])" + rest, "relates 1 annotation");
+    expect_refused(head + R"("adjacency", "isDirected": false, "annotations": [0, 1, 2])" + rest, "relates 3 annotations");
     expect_refused(head + R"("adjacency", "isDirected": true, "annotations": [0, 1])" + rest, "has no direction");
     expect_refused(head + R"("containment", "isDirected": false, "annotations": [0, 1])" + rest, "has a direction");
     expect_refused(head + R"("my own", "isDirected": false, "annotations": [1, 1])" + rest, "twice");
