@@ -17,10 +17,10 @@ namespace ostraka {
 namespace {
 
 /// A cluster is summed as a whole where its radius is below this share of its distance.
-constexpr double opening = 0.15;
+constexpr double max_cluster_ratio = 0.15;
 /// Faces farther away than this multiple of their radius are summed as points.
-constexpr double far_face = 5;
-constexpr std::uint32_t leaf_size = 4;
+constexpr double far_face_ratio = 5;
+constexpr std::uint32_t cluster_leaf_size = 4;
 
 /// Faces summed as one: a face, or a node of the tree.
 struct FaceCluster {
@@ -98,7 +98,7 @@ public:
             const double squared = arm.squaredNorm(), reach = farthest + node.cluster.radius;
             if (squared > reach * reach) {
                 at = node.next;
-            } else if (node.cluster.radius * node.cluster.radius < opening * opening * squared) {
+            } else if (node.cluster.radius * node.cluster.radius < max_cluster_ratio * max_cluster_ratio * squared) {
                 add_point(node.cluster, arm, squared, shells);
                 at = node.next;
             } else {
@@ -120,7 +120,7 @@ private:
         nodes_.emplace_back();
         nodes_[number].begin = begin;
         nodes_[number].end = end;
-        nodes_[number].is_leaf = end - begin <= leaf_size;
+        nodes_[number].is_leaf = end - begin <= cluster_leaf_size;
         nodes_[number].cluster = joined_cluster(begin, end);
         if (!nodes_[number].is_leaf) {
             Eigen::AlignedBox3d box;
@@ -167,7 +167,7 @@ private:
         const FaceCluster& face = triangle.cluster;
         const Vector3d arm = face.centre - p;
         const double squared = arm.squaredNorm();
-        if (squared > far_face * far_face * face.radius * face.radius) return add_point(face, arm, squared, shells);
+        if (squared > far_face_ratio * far_face_ratio * face.radius * face.radius) return add_point(face, arm, squared, shells);
         const Vector3d a = triangle.corners[0] - p, b = triangle.corners[1] - p, c = triangle.corners[2] - p;
         const double la = a.norm(), lb = b.norm(), lc = c.norm();
         if (!(la > 0 && lb > 0 && lc > 0)) return;  // the face lies in a plane through the vertex

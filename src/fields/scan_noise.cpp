@@ -16,13 +16,13 @@ namespace ostraka {
 
 namespace {
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t min_vertices = 9, unknowns = 6;
+constexpr double no_estimate = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t fit_min_vertices = 9, quadric_unknowns = 6;
 
 /// A quadric fitted to the vertices around a vertex.
 struct QuadricFit {
-    double deviation = nan_value, curvature = nan_value;
-    double residual = nan_value;  ///< of the vertex itself
+    double deviation = no_estimate, curvature = no_estimate;
+    double residual = no_estimate;  ///< of the vertex itself
 };
 
 using Coefficients = Eigen::Matrix<double, 6, 1>;
@@ -30,7 +30,7 @@ using Coefficients = Eigen::Matrix<double, 6, 1>;
 /// `places` relative to the vertex, which comes first, in units of the radius; residuals are positive along `outward`.
 QuadricFit fit_quadric(const std::vector<Vector3d>& places, const Vector3d& outward) {
     QuadricFit fit;
-    if (places.size() < min_vertices) return fit;
+    if (places.size() < fit_min_vertices) return fit;
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& p : places) mean += p;
     mean /= static_cast<double>(places.size());
@@ -62,7 +62,7 @@ QuadricFit fit_quadric(const std::vector<Vector3d>& places, const Vector3d& outw
     }
     const auto [own_row, own_height] = row_of(places.front());
     fit.residual = (axes.eigenvectors().col(0).dot(outward) < 0 ? -1 : 1) * (own_height - own_row.dot(c));
-    fit.deviation = std::sqrt(squares / static_cast<double>(places.size() - unknowns));
+    fit.deviation = std::sqrt(squares / static_cast<double>(places.size() - quadric_unknowns));
     const double mean_curvature = c[3] + c[5], half_difference = std::hypot(c[3] - c[5], c[4]);
     fit.curvature = std::abs(mean_curvature) + half_difference;
     return fit;
@@ -90,9 +90,9 @@ ScanNoise scan_noise(const Mesh& mesh, double radius) {
     ScanNoise noise;
     noise.radius = radius > 0 ? radius : 3 * mean_edge_length(mesh);
     const std::size_t count = mesh.number_of_vertices();
-    noise.deviation.assign(count, nan_value);
-    noise.curvature.assign(count, nan_value);
-    std::vector<double> residuals(count, nan_value);
+    noise.deviation.assign(count, no_estimate);
+    noise.curvature.assign(count, no_estimate);
+    std::vector<double> residuals(count, no_estimate);
     if (noise.radius > 0) {
         Progress progress("noise", count);
         parallel_blocks(count, 1024, [&](std::size_t begin, std::size_t end) {
@@ -109,7 +109,7 @@ ScanNoise scan_noise(const Mesh& mesh, double radius) {
     for (const double value : noise.deviation)
         if (std::isfinite(value)) finite.push_back(value);
     noise.without = count - finite.size();
-    noise.median = finite.empty() ? nan_value : upper_median(std::move(finite));
+    noise.median = finite.empty() ? no_estimate : upper_median(std::move(finite));
     double product = 0, squares = 0;
     for (const Edge edge : mesh.edges()) {
         const double a = residuals[mesh.vertex(edge, 0)], b = residuals[mesh.vertex(edge, 1)];
@@ -117,7 +117,7 @@ ScanNoise scan_noise(const Mesh& mesh, double radius) {
         product += a * b;
         squares += (a * a + b * b) / 2;
     }
-    noise.correlation = squares > 0 ? product / squares : nan_value;
+    noise.correlation = squares > 0 ? product / squares : no_estimate;
     return noise;
 }
 
@@ -132,7 +132,7 @@ PlaceNoise noise_at(const Mesh& mesh, const ScanNoise& noise, Index face, const 
     }
     for (std::size_t k = 0; k < 3; ++k) {
         const double here = noise.curvature[vertices[k]];
-        curvature = std::isnan(here) ? nan_value : std::max(curvature, here);
+        curvature = std::isnan(here) ? no_estimate : std::max(curvature, here);
         if (std::isnan(curvature)) break;
     }
     for (std::size_t k = 0; k < 3; ++k)

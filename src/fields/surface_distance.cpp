@@ -16,11 +16,11 @@ namespace ostraka {
 
 namespace {
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_distance = std::numeric_limits<double>::quiet_NaN();
 /// Distances below this share of the diagonal count as contact with the border.
-constexpr double contact = 1e-12;
+constexpr double border_contact = 1e-12;
 /// Max tangential component of an offset, as a share of its length, of a place above the border.
-constexpr double upright = 1e-6;
+constexpr double upright_offset = 1e-6;
 
 Vector unit_normal(const Mesh& mesh, Face face) {
     const Vector area = area_vector(mesh, face);
@@ -51,7 +51,7 @@ PlaceNormal normal_at(const Mesh& mesh, Face face, const std::array<double, 3>& 
     return {sum, on_border};
 }
 
-bool counts(const PlaceDistance& place, bool keep_beyond) {
+bool is_counted(const PlaceDistance& place, bool keep_beyond) {
     return std::isfinite(place.distance) && (keep_beyond || !place.beyond);
 }
 
@@ -178,7 +178,7 @@ std::vector<const PlaceDistance*> sorted_places(const std::vector<PlaceDistance>
                                                 const std::string& where) {
     std::vector<const PlaceDistance*> sorted;
     for (const PlaceDistance& place : places)
-        if (counts(place, keep_beyond)) sorted.push_back(&place);
+        if (is_counted(place, keep_beyond)) sorted.push_back(&place);
     if (sorted.empty())
         fail_input(where, "no place has a distance",
                    "check that the surface has an area and, with '--border leave-out', that it lies over the other surface");
@@ -200,10 +200,10 @@ PlaceDistance SignedDistance::at(const Point& query) const {
     const Vector offset = query - result.nearest.point;
     result.distance = result.nearest.distance;
     const double height = offset * at_nearest.normal;
-    if (at_nearest.on_border && result.distance > contact * diagonal()) {
+    if (at_nearest.on_border && result.distance > border_contact * diagonal()) {
         const double tangential = std::sqrt(CGAL::cross_product(offset, at_nearest.normal).squared_length());
         const double length = std::sqrt(offset.squared_length() * at_nearest.normal.squared_length());
-        result.beyond = !(tangential <= upright * length);
+        result.beyond = !(tangential <= upright_offset * length);
     }
     if (!result.beyond && height < 0) result.distance = -result.distance;
     return result;
@@ -258,7 +258,7 @@ std::vector<PlaceDistance> vertex_distances(const Mesh& mesh, const SignedDistan
             const Vertex vertex(static_cast<Index>(i));
             if (mesh.is_isolated(vertex)) {
                 result[i].place = mesh.point(vertex);
-                result[i].distance = nan_value;
+                result[i].distance = no_distance;
                 continue;
             }
             result[i] = reference.at(mesh.point(vertex));
@@ -309,7 +309,7 @@ DistanceSummary summary_of(const std::vector<PlaceDistance>& places, bool keep_b
     result.raised /= count;
     result.lowered /= count;
     if (sided == 0) {
-        result.mean = result.deviation = result.lowest = result.highest = nan_value;
+        result.mean = result.deviation = result.lowest = result.highest = no_distance;
         return result;
     }
     result.mean = sum / static_cast<double>(sided);
@@ -335,7 +335,7 @@ ToleranceShares tolerance_shares(const std::vector<PlaceDistance>& places, doubl
     ToleranceShares shares;
     std::size_t count = 0;
     for (const PlaceDistance& place : places) {
-        if (!counts(place, keep_beyond)) continue;
+        if (!is_counted(place, keep_beyond)) continue;
         ++count;
         if (std::abs(place.distance) <= tolerance) ++shares.within;
         else if (place.beyond) ++shares.beyond;

@@ -32,7 +32,7 @@ struct Direction {
 
 std::vector<double> coordinates_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-std::string percent(double share) { return number(100 * share, 4) + " %"; }
+std::string area_share(double share) { return number(100 * share, 4) + " %"; }
 
 struct MeasureDistance final : Operation {
     void declare(Parameters& p) override {
@@ -160,7 +160,7 @@ private:
                 report.note(
                     fmt::format("half of the mesh is farther than {} from the reference, {} of its diagonal: the meshes "
                                 "may not be registered; {}",
-                                number(median, 3), percent(median / to_reference.diagonal()), remedy));
+                                number(median, 3), area_share(median / to_reference.diagonal()), remedy));
         }
         std::size_t opposed = 0;
         for (const PlaceDistance& place : forth.places)
@@ -225,8 +225,9 @@ private:
         }
         for (const double tolerance : tolerances) {
             const ToleranceShares t = tolerance_shares(direction.places, tolerance, keeps_beyond());
-            report.row("tolerances")("direction", direction.name)("tolerance", tolerance)("within", t.within, percent(t.within))(
-                "above", t.above, percent(t.above))("below", t.below, percent(t.below))("beyond", t.beyond, percent(t.beyond));
+            report.row("tolerances")("direction", direction.name)("tolerance", tolerance)(
+                "within", t.within, area_share(t.within))("above", t.above, area_share(t.above))(
+                "below", t.below, area_share(t.below))("beyond", t.beyond, area_share(t.beyond));
         }
     }
 
@@ -237,10 +238,10 @@ private:
             const ScanNoise& noise = direction->from.noise;
             auto row = report.row("significance");
             row("direction", direction->name)("noise", noise.median)("noiseRadius", noise.radius)(
-                "correlation", noise.correlation)("assessed", shares.assessed, percent(shares.assessed));
+                "correlation", noise.correlation)("assessed", shares.assessed, area_share(shares.assessed));
             if (shares.assessed > 0)
-                row("level", shares.level)("significant", shares.above + shares.below, percent(shares.above + shares.below))(
-                    "above", shares.above, percent(shares.above))("below", shares.below, percent(shares.below));
+                row("level", shares.level)("significant", shares.above + shares.below, area_share(shares.above + shares.below))(
+                    "above", shares.above, area_share(shares.above))("below", shares.below, area_share(shares.below));
             if (direction == &forth) report.notes(doubts_about(shares, forth.from, forth.to, registration_error));
         }
     }
@@ -280,10 +281,11 @@ private:
         row("mean", s.mean)("meanAbsolute", s.mean_absolute)("rms", s.rms)("lowest", s.lowest)("highest", s.highest)(
             "volumeAbove", measured * s.raised)("volumeBelow", measured * s.lowered)(
             "beyond", static_cast<double>(beyond) / static_cast<double>(places.size()),
-            percent(static_cast<double>(beyond) / static_cast<double>(places.size())));
+            area_share(static_cast<double>(beyond) / static_cast<double>(places.size())));
         const SignificantShares shares =
             significant_shares(places, detection_levels(places, forth.from, forth.to, registration_error));
-        if (shares.assessed > 0) row("above", shares.above, percent(shares.above))("below", shares.below, percent(shares.below));
+        if (shares.assessed > 0)
+            row("above", shares.above, area_share(shares.above))("below", shares.below, area_share(shares.below));
     }
 
     /// Distances of vertices, NaN where they are left out.
@@ -332,10 +334,10 @@ private:
         const SignificantShares shares = significant_shares(forth.places, forth.levels);
         if (shares.assessed > 0)
             facts.push_back(fmt::format("significant at 95 %: {} of the area above, {} below (level of detection {}{})",
-                                        percent(shares.above), percent(shares.below), number(shares.level, 3), suffix));
+                                        area_share(shares.above), area_share(shares.below), number(shares.level, 3), suffix));
         for (const double tolerance : tolerances)
             facts.push_back(fmt::format("within {}{}: {}", number(tolerance), suffix,
-                                        percent(tolerance_shares(forth.places, tolerance, keeps_beyond()).within)));
+                                        area_share(tolerance_shares(forth.places, tolerance, keeps_beyond()).within)));
         return facts;
     }
 
