@@ -25,7 +25,7 @@ std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_tem
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
-std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
+std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_catalogue(), make_report(), make_publish(),
     make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
 namespace {
@@ -99,12 +99,13 @@ constexpr OperationEntry entries[]{
     {"study segments", "segment an object along its height by clustering its slices", make_study_segments},
     {"import", "read a scan as it comes, with its images; repair it as far as needed, and keep the raw files and index maps beside it; exit code 3 if the object is still open or intersects itself", make_import},
     {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis},
-    {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice},
+    {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice, 2},
     {"deform", "deform a shape and preserve the constraints on its parts (exit code 3: the result is not acceptable)", make_deform, 2},
     {"fit", "complete an object from fragments with a template of its class, and report whether the fragments are compatible with each other and the template (exit code 3: incompatible or undecided)", make_fit, 3},
     {"pair", "register two fragments along their common fracture surface; exit code 3 if there is no answer", make_pair},
     {"assemble", "join fragments along their fracture surfaces, leave out unrelated fragments, and report the probability of each join; exit code 3 if no fragments are joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render, 2},
+    {"catalogue", "print a catalogue of a folder of scans: drawings of vessels and sherds at a scale, views, measures and what cannot be told, one page for each object or sheets of many, and a table of all; exit code 3 if no object can be read", make_catalogue},
     {"publish", "write an annotated object as a folder for any web server: IIIF manifest, GLB with features, annotations and an HTML page", make_publish, 2},
     {"report", "make one self-contained HTML page of results: objects in 3D, tables, drawings", make_report, 3},
     {"run", "run the steps of a study file, except steps that are unchanged since the last run (exit code 3: a step failed)", make_run, 1, true},
