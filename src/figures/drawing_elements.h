@@ -8,7 +8,7 @@
 namespace ostraka::figures {
 
 /// Colours of material, of open contours, of guide lines and of secondary text.
-inline constexpr Rgb clay{222, 196, 166}, torn{213, 94, 0}, guide{0, 114, 178}, quiet{150, 150, 150};
+inline constexpr Rgb clay_fill{222, 196, 166}, torn{213, 94, 0}, guide{0, 114, 178}, quiet{150, 150, 150};
 
 /// Mapping from the plane of a drawing, where y points upwards, to the sheet.
 struct Placing {

@@ -18,7 +18,6 @@ using namespace figures;
 
 namespace {
 
-constexpr double points_per_mm = 72 / 25.4;
 constexpr double above = 64, below = 62, beside = 64;
 
 /// Points of the sheet per unit, and the name of the scale ("1 : 2") if the unit is known.

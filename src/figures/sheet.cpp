@@ -3,6 +3,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
+#include "ostraka/image/image.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <cairo-pdf.h>
@@ -10,6 +11,10 @@
 
 #include <cmath>
 #include <cstring>
+<<<<<<< HEAD
+=======
+#include <stdexcept>
+>>>>>>> 9143daa2ae62da4c77722b86cdf750a2f1730741
 
 namespace ostraka::figures {
 
@@ -203,6 +208,56 @@ std::string Sheet::fitted(const std::string& words, double width, double size) {
         if (width_of(remaining + "\u2026", size) <= width) break;
     }
     return remaining + "\u2026";
+}
+
+void Sheet::image(const std::string& jpeg, const Box& box) {
+    if (jpeg.empty()) return;
+    const Pixels pixels = decode(parse_image(jpeg, "picture.jpg", "picture"), "picture");
+    const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels.width, pixels.height), &cairo_surface_destroy);
+    unsigned char* rows = cairo_image_surface_get_data(surface.get());
+    if (rows == nullptr) throw Error(ErrorKind::failure, "picture", "there is no memory for an image", "use fewer pixels");
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+    for (int row = 0; row < pixels.height; ++row)
+        for (int column = 0; column < pixels.width; ++column) {
+            const auto& [red, green, blue, alpha] = pixels.at(column, row);
+            const std::uint32_t pixel = std::uint32_t{red} << 16U | std::uint32_t{green} << 8U | std::uint32_t{blue};
+            std::memcpy(rows + static_cast<std::size_t>(row) * stride + 4 * static_cast<std::size_t>(column), &pixel, 4);
+        }
+    cairo_surface_mark_dirty(surface.get());
+    auto* file = new std::string(jpeg);
+    const auto release = [](void* bytes) { delete static_cast<std::string*>(bytes); };
+    if (cairo_surface_set_mime_data(surface.get(), CAIRO_MIME_TYPE_JPEG, reinterpret_cast<const unsigned char*>(file->data()),
+                                    file->size(), release, file) != CAIRO_STATUS_SUCCESS)
+        delete file;
+    cairo_save(context_.get());
+    cairo_translate(context_.get(), box.left, box.top);
+    cairo_scale(context_.get(), (box.right - box.left) / pixels.width, (box.bottom - box.top) / pixels.height);
+    cairo_set_source_surface(context_.get(), surface.get(), 0, 0);
+    cairo_paint(context_.get());
+    cairo_restore(context_.get());
+}
+
+void Sheet::sector(double x, double y, double radius, double share, const Rgb& colour) {
+    cairo_new_path(context_.get());
+    cairo_move_to(context_.get(), x, y);
+    cairo_arc(context_.get(), x, y, radius, -pi / 2, -pi / 2 + 2 * pi * share);
+    cairo_close_path(context_.get());
+    set(colour);
+    cairo_fill(context_.get());
+}
+
+void Sheet::circle(double x, double y, double radius, const Rgb& colour, double width) {
+    cairo_new_path(context_.get());
+    cairo_arc(context_.get(), x, y, radius, 0, 2 * pi);
+    stroke(colour, width, false);
+}
+
+void Sheet::next_page() {
+    if (format_ != Format::pdf) throw std::logic_error("only a PDF document has several pages");
+    cairo_show_page(context_.get());
+    set(paper);
+    cairo_paint(context_.get());
 }
 
 void Sheet::clip(const Box& box) {

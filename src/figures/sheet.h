@@ -15,6 +15,8 @@ struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace ostraka::figures {
 
+/// Points of a sheet per millimetre of paper.
+inline constexpr double points_per_mm = 72 / 25.4;
 /// Size of text, and margin of a sheet, in points.
 inline constexpr double text_size = 13, margin = 14;
 /// Colours of text and axes, of grid lines, of secondary lines and of the background.
@@ -67,6 +69,16 @@ public:
     void upward_text(const std::string& words, double x, double y, double anchor = 0.5, double size = text_size);
     /// The text, shortened with an ellipsis if needed to fit the width.
     [[nodiscard]] std::string fitted(const std::string& words, double width, double size = text_size);
+
+    /// Draws a JPEG image, stretched over the box. In SVG and PDF the file is embedded as it is.
+    void image(const std::string& jpeg, const Box& box);
+    /// Fills a sector of a circle: `share` of the full turn, clockwise from the top.
+    void sector(double x, double y, double radius, double share, const Rgb& colour);
+    /// Draws a circle.
+    void circle(double x, double y, double radius, const Rgb& colour, double width);
+
+    /// Begins a new page of a PDF document. Throws std::logic_error for another format.
+    void next_page();
 
     void clip(const Box& box);  ///< restricts drawing to the box until unclip()
     void unclip();              ///< ends clip()

@@ -55,7 +55,7 @@ void draw_slice(Sheet& sheet, const DrawnSlice& drawn, const Placing& placing) {
     for (const Slice& part : components(*drawn.slice)) {
         std::vector<std::vector<std::array<double, 2>>> curves;
         for (const auto& contour : part.contours) curves.push_back(placing(contour.points, false));
-        sheet.fill(curves, clay);
+        sheet.fill(curves, clay_fill);
     }
     if (drawn.descriptors != nullptr && drawn.descriptors->fitted_radius > 0 &&
         !(drawn.descriptors->fitted_radius_low < 0.8 * drawn.descriptors->fitted_radius)) {
@@ -131,7 +131,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
             const Placing placing{view_scale, margin - view_scale * side.low.x(), top + view_scale * side.high.y()};
             std::vector<std::vector<std::array<double, 2>>> curves;
             for (const auto& curve : content.view) curves.push_back(placing(curve, false));
-            sheet.fill(curves, lighter(clay, 0.35));
+            sheet.fill(curves, lighter(clay_fill, 0.35));
             const double right = margin + view_scale * side.size().x();
             double last = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < content.slices.size(); ++i) {

@@ -3,8 +3,10 @@
 #include "operations/slice_report.h"
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/catalogue/entry.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/memory.h"
+#include "ostraka/figures/catalogue.h"
 #include "ostraka/figures/slice_drawing.h"
 #include "ostraka/mesh/limits.h"
 #include "ostraka/slicing/silhouette.h"
@@ -283,6 +285,7 @@ struct SliceObject final : Operation {
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
         const Profile found_profile = find_profile(sliced_mesh(), axis, section_angle);
         const std::string name = file.filename().string();
+        if (!found_profile.turned && 2 * found_profile.open < 24 && draw_sherd(file, is_requested, report)) return;
         const std::string reason = 2 * found_profile.open >= 24
                                        ? fmt::format(
                                              "the contours of {} of 24 slices do not close, so that it cannot be determined "
@@ -300,6 +303,28 @@ struct SliceObject final : Operation {
                 name +
                 " does not show everything that protrudes from the surface of revolution: some of it lies in front or behind");
         write_profile_drawing(file, found_profile, name_of_drawing(), unit_of_lengths);
+    }
+
+    /// Draws a closed sherd about its own axis of revolution, if it has one and its wall does not go all around.
+    bool draw_sherd(const Path& file, bool is_requested, Report& report) const {
+        CatalogueSubject subject;
+        subject.name = name_of_drawing();
+        subject.soup = to_soup(sliced_mesh());
+        subject.unit = unit_of_lengths;
+        CatalogueOptions drawing;
+        drawing.views = false;
+        drawing.outside = CatalogueOptions::Outside::lines;
+        const CatalogueEntry entry = catalogue_entry(subject, drawing);
+        const bool is_sherd =
+            entry.kind == CatalogueKind::rim || entry.kind == CatalogueKind::wall || entry.kind == CatalogueKind::base;
+        if (!is_sherd) return false;
+        report.note(fmt::format("a {}: {}", to_string(entry.kind),
+                                is_requested ? "the drawing shows it about its own axis of revolution"
+                                             : file.filename().string() + " is not written; --profile FILE draws it"));
+        for (const std::string& clause : entry.unknown) report.note(clause);
+        if (entry.unit_assumed) report.note("the unit is not known: the scale of the drawing holds for millimetres (--unit)");
+        if (is_requested) write_pottery_drawing(file, entry, CatalogueStyle());
+        return true;
     }
 
     void add_notes(Report& report, const SlicedObject& cut) const {

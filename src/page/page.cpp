@@ -3,6 +3,7 @@
 #include "page/viewer.h"
 
 #include "ostraka/core/message_text.h"
+#include "ostraka/files/base64.h"
 #include "ostraka/files/json_build.h"
 #include "ostraka/files/markup.h"
 #include "ostraka/measure/measure.h"
@@ -89,14 +90,14 @@ std::string Page::data(const std::string& provenance_text) const {
 }
 
 std::string Page::html(const std::string& provenance_text) const {
-    return viewer_with(data(provenance_text), base64(deflated(bytes_)), !entries_.Empty());
+    return viewer_with(data(provenance_text), to_base64(deflated(bytes_)), !entries_.Empty());
 }
 
 std::string Page::script(const std::string& file, const std::string& provenance_text) const {
     Json name;
     static_cast<JsonValue&>(name) = json_string(file, name.GetAllocator());
     return "ostrakaObject(" + with_markup_escaped(to_compact_text(name)) + ", " + data(provenance_text) + ", \"" +
-           base64(deflated(bytes_)) + "\");\n";
+           to_base64(deflated(bytes_)) + "\");\n";
 }
 
 Page::Content Page::content(const std::string& provenance_text) const { return {data(provenance_text), bytes_}; }

@@ -1,6 +1,7 @@
 #include "page/viewer.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/files/base64.h"
 #include "ostraka/files/file.h"
 #include "ostraka/page/content_policy.h"
 
@@ -53,21 +54,6 @@ std::string sources(std::string_view element, bool allow_self) {
 
 }  // namespace
 
-std::string base64(std::string_view bytes) {
-    static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const auto byte = [&](std::size_t k) {
-            return i + k < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0U;
-        };
-        const std::uint32_t word = byte(0) << 16U | byte(1) << 8U | byte(2);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += i + k <= bytes.size() ? letters[word >> (18U - 6U * static_cast<unsigned>(k)) & 63U] : '=';
-    }
-    return text;
-}
-
 std::string inline_hashes(std::string_view page, std::string_view element) {
     const std::string begin = "<" + std::string(element), end = "</" + std::string(element);
     std::string hashes;
@@ -76,7 +62,7 @@ std::string inline_hashes(std::string_view page, std::string_view element) {
         const std::size_t stop = std::min(page.find(end, text), page.size());
         if (element != "script" || runs(page.substr(at, text - at)))
             hashes += (hashes.empty() ? "'sha256-" : " 'sha256-") +
-                      base64(bytes_of_hexadecimal(sha256(page.substr(text, stop - text)))) + "'";
+                      to_base64(bytes_of_hexadecimal(sha256(page.substr(text, stop - text)))) + "'";
         at = stop;
     }
     return hashes;

@@ -11,7 +11,4 @@ namespace ostraka {
 /// `allow_self`: true if the page loads scripts and pictures from its own folder.
 std::string viewer_with(const std::string& data, const std::string& bytes, bool allow_self);
 
-/// The bytes in base64 encoding.
-std::string base64(std::string_view bytes);
-
 }  // namespace ostraka

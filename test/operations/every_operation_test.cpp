@@ -134,6 +134,8 @@ const std::vector<Step>& steps() {
         {"slice", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "count": 12, "output": "slices/"})"},
         {"study segments", R"({"mesh": "pot.ply", "output": "slices.ant.json", "curve": "curve.svg"})"},
         {"render", R"({"meshes": ["pot.ply"], "annotations": ["pot.ant.json"], "picture": "pot.png", "size": "300x200"})"},
+        {"catalogue", R"({"collection": "pot.ply", "output": "pot.pdf", "table": "pot.csv", "unit": "mm", "pixels": 200})",
+         false},
         {"publish",
          R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "folder": "published/", "address": "https://pots.example/1"})"},
         {"report", R"({"results": ["pot.ply", "pot.ant.json", "pot.graph.json"], "page": "pot.html"})"},

@@ -1,0 +1,27 @@
+// The axis of revolution of an object as a catalogue needs it. This is the only place where the catalogue depends on an
+// estimator of axes.
+#pragma once
+
+#include "ostraka/mesh/mesh.h"
+
+#include <string>
+
+namespace ostraka {
+
+/// Axis of revolution with the uncertainty of diameters, or the reason why there is none. Lengths are in the mesh's unit.
+struct CatalogueAxis {
+    bool found = false;          ///< true if there is an axis
+    std::string reason;          ///< why there is no axis; empty if there is one
+    Point point{0, 0, 0};        ///< a point of the axis
+    Vector direction{0, 0, 1};   ///< unit vector along the axis; its sign has no meaning
+    double direction_error = 0;  ///< standard error of the direction, degrees
+    /// Bounds of the 95 % interval of a diameter, relative to the diameter measured about the axis: the true diameter lies
+    /// between diameter + `diameter_low` and diameter + `diameter_high`.
+    double diameter_low = 0, diameter_high = 0;
+};
+
+/// The axis of the surface of revolution fitted to all faces (`rotation_axis`), with 1.96 of its standard errors as interval.
+/// Throws Error (input) for a mesh without faces with area.
+CatalogueAxis catalogue_axis(const Mesh& mesh);
+
+}  // namespace ostraka
