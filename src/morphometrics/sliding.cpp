@@ -175,8 +175,10 @@ private:
                 }
             }
             // Bending is indifferent to some slides where the curve is straight: then the shortest one is taken.
-            const Cholesky factor(A);
-            if (count > 0) steps = factor.found() && factor.rcond() > 1e-11 ? factor.solve(b) : solve_least_squares(A, b, 1e-11);
+            if (count > 0) {
+                const Cholesky factor(A);
+                steps = factor.found() && factor.rcond() > 1e-11 ? factor.solve(b) : solve_least_squares(A, b, 1e-11);
+            }
         }
         Landmarks moved = y;
         for (Eigen::Index i = 0; i < count; ++i) {

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-constexpr double rounding = 1e-12;  ///< singular values below this share of the largest are rounding errors
+constexpr double spline_rounding = 1e-12;  ///< singular values below this share of the largest are rounding errors
 
 /// The kernel of the biharmonic equation, with the sign that makes bending energies positive.
 double kernel(double squared_distance, int dimension) {
@@ -61,14 +61,14 @@ MatrixXd bending_energy_matrix(const Landmarks& reference, int dimension) {
     const SvdX svd(affine_terms(x, dimension).transpose(), true);
     const auto& values = svd.singularValues();
     Eigen::Index rank = 0;
-    while (rank < values.size() && values[rank] > rounding * values[0]) ++rank;
+    while (rank < values.size() && values[rank] > spline_rounding * values[0]) ++rank;
     if (rank >= k) return MatrixXd::Zero(k, k);
     const MatrixXd Z = svd.matrixV().rightCols(k - rank);
     const SymmetricEigenX eigen(Z.transpose() * kernels(x, x, dimension) * Z);
     const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
     Eigen::VectorXd inverse = Eigen::VectorXd::Zero(k - rank);
     for (Eigen::Index i = 0; i < k - rank; ++i)
-        if (eigen.eigenvalues()[i] > rounding * largest) inverse[i] = 1 / eigen.eigenvalues()[i];
+        if (eigen.eigenvalues()[i] > spline_rounding * largest) inverse[i] = 1 / eigen.eigenvalues()[i];
     const MatrixXd V = Z * eigen.eigenvectors();
     const MatrixXd B = V * inverse.asDiagonal() * V.transpose();
     return (B + B.transpose()) / 2;
@@ -89,7 +89,7 @@ ThinPlateSpline::ThinPlateSpline(const Landmarks& from, const Landmarks& to, int
     energy_ = (Y.transpose() * weights_).trace();
     const MatrixXd P = affine_terms(x, dimension), rest = Y - kernels(x, x, dimension) * weights_;
     affine_.resize(dimension + 1, dimension);
-    for (int c = 0; c < dimension; ++c) affine_.col(c) = solve_least_squares(P, rest.col(c), rounding);
+    for (int c = 0; c < dimension; ++c) affine_.col(c) = solve_least_squares(P, rest.col(c), spline_rounding);
 }
 
 Landmarks ThinPlateSpline::operator()(const Landmarks& points) const {
