@@ -11,10 +11,7 @@
 
 #include <cmath>
 #include <cstring>
-<<<<<<< HEAD
-=======
 #include <stdexcept>
->>>>>>> 9143daa2ae62da4c77722b86cdf750a2f1730741
 
 namespace ostraka::figures {
 
