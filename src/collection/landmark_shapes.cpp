@@ -565,7 +565,7 @@ SurfaceOfSpecimen specimen_surfaces(const Collection& collection, const Landmark
         const SurfaceSearch& search = (*surfaces)[specimen]->search;
         const SurfaceHit hit = search.closest({point.x(), point.y(), point.z()});
         const Vector normal = search.normal(hit.face);
-        return SurfacePlace{{hit.point.x(), hit.point.y(), hit.point.z()}, {normal.x(), normal.y(), normal.z()}};
+        return OrientedPoint{{hit.point.x(), hit.point.y(), hit.point.z()}, {normal.x(), normal.y(), normal.z()}};
     };
 }
 

@@ -90,7 +90,7 @@ TEST(Sliding, OnASurfacePointsStayOnItAndEnergyFalls) {
     const SlidSample fitted = slide_semilandmarks(sample, semi);
     EXPECT_LT(spread(fitted.sample), before);
     semi.surface_of = [](std::size_t, const Eigen::RowVector3d& point) {
-        return SurfacePlace{point.normalized(), point.normalized()};
+        return OrientedPoint{point.normalized(), point.normalized()};
     };
     const SlidSample slid = slide_semilandmarks(sample, semi);
     EXPECT_LT(spread(slid.sample), 0.1 * before);

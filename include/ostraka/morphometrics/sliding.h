@@ -27,11 +27,11 @@ struct SlidingOptions {
 };
 
 /// A point on the surface of a specimen, with the unit normal of the surface there.
-struct SurfacePlace {
+struct OrientedPoint {
     Eigen::RowVector3d point, normal;
 };
 /// The place on the surface of a specimen that is closest to a point; called by several threads.
-using SurfaceOfSpecimen = std::function<SurfacePlace(std::size_t specimen, const Eigen::RowVector3d& point)>;
+using SurfaceOfSpecimen = std::function<OrientedPoint(std::size_t specimen, const Eigen::RowVector3d& point)>;
 
 /// Semi-landmarks of a sample.
 struct SemiLandmarks {
