@@ -18,7 +18,7 @@ std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make
 std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_edit(), make_relation_list(),
     make_relation_check(), make_relation_export();
 std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
-    make_measure_clay();
+    make_measure_clay(), make_measure_capacity();
 std::unique_ptr<Operation> make_vocabulary_check(), make_vocabulary_show(), make_vocabulary_convert();
 std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_template_show(), make_template_learn(),
     make_template_classify(), make_template_sample(), make_template_propagate(), make_template_revolve();
@@ -30,7 +30,7 @@ std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform
 
 namespace {
 constexpr OperationEntry entries[]{
-    {"mesh info", "report counts, measures and defects of a mesh; exit code 3 if the mesh is not closed, oriented, manifold and free of self-intersections", make_mesh_info},
+    {"mesh info", "report counts, measures and defects of a mesh; exit code 3 if the mesh is not closed, oriented, manifold and free of self-intersections", make_mesh_info, 2},
     {"mesh convert", "write a mesh in another format, with polygons triangulated and the vertex order kept", make_mesh_convert},
     {"mesh repair", "repair a mesh to an oriented manifold; exit code 3 if the repaired mesh is still open or intersects itself", make_mesh_repair},
     {"mesh simplify", "reduce the number of vertices, with annotations, labels and colours transferred", make_mesh_simplify, 3},
@@ -55,7 +55,7 @@ constexpr OperationEntry entries[]{
     {"annotation transfer", "transfer annotations to another resolution of the same object, and report the fidelity", make_annotation_transfer, 3},
     {"annotation survival", "find the smallest resolution at which each annotation survives", make_annotation_survival},
     {"annotation export", "write annotations in the formats of other tools", make_annotation_export, 2},
-    {"annotation import", "read annotations from the formats of other tools", make_annotation_import},
+    {"annotation import", "read annotations from the formats of other tools", make_annotation_import, 2},
     {"annotation edit", "edit annotations (tag, colour, id, attributes; remove, duplicate, merge, split), or the class, unit and upward direction of the file", make_annotation_edit},
     {"annotation find", "find objects by their parts, attributes and relationships; exit code 3 if no object is found", make_annotation_find},
     {"annotation diff", "list the differences between two sets of annotations; exit code 3 if there are any", make_annotation_diff},
@@ -69,10 +69,11 @@ constexpr OperationEntry entries[]{
     {"relation check", "check which relationships hold on a mesh; exit code 3 if a relationship or rule fails", make_relation_check, 2},
     {"relation export", "draw the relationships as a graph, or write the graph for Graphviz", make_relation_export},
     {"measure take", "take a measure of a mesh or an annotation with a ruler, a tape or bounding planes", make_measure_take},
-    {"measure describe", "compute descriptors of annotations: sizes, box, centroid, volume, curvature, thickness, and statistics of maps", make_measure_describe},
-    {"measure refresh", "recompute the measures and descriptors of all annotations, with uncertainties; exit code 3 if some cannot be computed", make_measure_refresh},
-    {"measure map", "compute curvature, thickness or geodesic distance at every vertex or face, and write the values (a map)", make_measure_map},
-    {"measure clay", "compute bounds of the volume of clay of an object: with an interior that was not scanned solid, and hollow", make_measure_clay},
+    {"measure describe", "compute descriptors of annotations: sizes, box, centroid, volume, curvature, thickness, and statistics of maps", make_measure_describe, 2},
+    {"measure refresh", "recompute the measures and descriptors of all annotations, with uncertainties; exit code 3 if some cannot be computed", make_measure_refresh, 2},
+    {"measure map", "compute curvature, thickness or geodesic distance at every vertex or face, and write the values (a map)", make_measure_map, 2},
+    {"measure clay", "compute bounds of the volume of clay of an object: with an interior that was not scanned solid, and hollow", make_measure_clay, 2},
+    {"measure capacity", "compute the volume of liquid that a vessel holds before it overflows, or up to a level; exit code 3 if it holds none or the volume cannot be told", make_measure_capacity},
     {"vocabulary check", "check a vocabulary for defects; exit code 3 if there are any", make_vocabulary_check},
     {"vocabulary show", "show the concepts of a vocabulary as a tree, with the attributes that each concept permits", make_vocabulary_show},
     {"vocabulary convert", "convert a vocabulary between Ostraka's format and SKOS", make_vocabulary_convert},
@@ -98,7 +99,7 @@ constexpr OperationEntry entries[]{
     {"study technique", "classify bodies as wheel-made or hand-made from their lower slices", make_study_technique},
     {"study segments", "segment an object along its height by clustering its slices", make_study_segments},
     {"import", "read a scan as it comes, with its images; repair it as far as needed, and keep the raw files and index maps beside it; exit code 3 if the object is still open or intersects itself", make_import},
-    {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis},
+    {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis, 2},
     {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice},
     {"deform", "deform a shape and preserve the constraints on its parts (exit code 3: the result is not acceptable)", make_deform, 2},
     {"fit", "complete an object from fragments with a template of its class, and report whether the fragments are compatible with each other and the template (exit code 3: incompatible or undecided)", make_fit, 3},

@@ -99,6 +99,7 @@ const std::vector<Step>& steps() {
         {"measure refresh", R"({"mesh": "pot.ply", "annotations": "described.ant.json", "output": "refreshed.ant.json"})"},
         {"measure map", R"({"mesh": "pot.ply", "output": "curvature.npy", "of": "mean-curvature"})"},
         {"measure clay", R"({"mesh": "pot.ply"})"},
+        {"measure capacity", R"({"vessel": "pot.ply", "annotations": "pot.ant.json", "fill": [0.5]})"},
         {"relation extract", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "pot.graph.json"})"},
         {"relation add",
          R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "level.graph.json", "type": "same level",
