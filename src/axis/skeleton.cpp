@@ -17,6 +17,7 @@
 
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Random.h>
+#include <CGAL/boost/graph/Euler_operations.h>
 #include <fmt/core.h>
 
 #include <queue>
@@ -28,18 +29,60 @@ using namespace detail;
 
 namespace {
 
-/// The component of `faces`, connected over edges, with the most faces.
-std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
+/// The component of `faces`, connected over edges, of the largest area, and what is left out.
+struct LargestPiece {
+    std::vector<Index> faces;
+    std::size_t others = 0;   ///< number of other components
+    double others_share = 0;  ///< their share of the area
+};
+LargestPiece largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<bool> visited(mesh.number_of_faces(), true);
     for (const Index f : faces) visited[f] = false;
-    std::vector<Index> best;
+    LargestPiece best;
+    double best_area = -1, whole = 0;
+    std::size_t pieces = 0;
     for (const Index seed : faces) {
         if (visited[seed]) continue;
         const std::vector<Face> piece = flood_faces(mesh, Face(seed), visited);
-        if (piece.size() > best.size()) best.assign(piece.begin(), piece.end());
+        double area = 0;
+        for (const Face f : piece) area += face_area(mesh, f);
+        whole += area;
+        ++pieces;
+        if (area > best_area) best_area = area, best.faces.assign(piece.begin(), piece.end());
     }
-    std::sort(best.begin(), best.end());
+    std::sort(best.faces.begin(), best.faces.end());
+    best.others = pieces > 0 ? pieces - 1 : 0;
+    best.others_share = whole > 0 ? 1 - best_area / whole : 0;
     return best;
+}
+
+/// Cuts edges longer than `longest` in the middle, the longest first: the flow contracts the corners of coarse meshes, such as a
+/// box of 12 triangles, to a point. Stops at 100 000 faces.
+void cut_long_edges(Mesh& mesh, double longest) {
+    for (bool changed = true; changed && mesh.number_of_faces() < 100000;) {
+        std::vector<std::pair<double, Index>> edges;
+        for (const Edge e : mesh.edges()) {
+            const Halfedge h = mesh.halfedge(e);
+            const double squared = CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
+            if (squared > longest * longest) edges.emplace_back(-squared, e.idx());
+        }
+        std::sort(edges.begin(), edges.end());
+        changed = !edges.empty();
+        std::vector<bool> cut(mesh.num_faces(), false);  // each face is cut once per round, new faces not at all
+        const auto used = [&](Face f) { return f.idx() >= cut.size() || cut[f.idx()]; };
+        for (const auto& [squared, index] : edges) {
+            const Halfedge h = mesh.halfedge(Edge(index)), o = mesh.opposite(h);
+            if (mesh.is_border(h) || mesh.is_border(o) || used(mesh.face(h)) || used(mesh.face(o))) continue;
+            cut[mesh.face(h)] = cut[mesh.face(o)] = true;
+            const Point middle = CGAL::midpoint(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
+            // `before` ends at the new vertex; h continues from there.
+            const Halfedge before = CGAL::Euler::split_edge(h, mesh);
+            mesh.point(mesh.target(before)) = middle;
+            CGAL::Euler::split_face(before, mesh.next(h), mesh);
+            const Halfedge back = mesh.opposite(h);  // ends at the new vertex
+            CGAL::Euler::split_face(back, mesh.next(mesh.next(back)), mesh);
+        }
+    }
 }
 
 /// The component as a separate mesh, moved to `centre` and scaled to diagonal 1, with its holes filled.
@@ -66,6 +109,7 @@ Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& c
     for (const Halfedge hole : holes_of(part))
         if (close_hole(part, hole) == 0)
             fail_input("part", "has an opening that cannot be capped", "close it, or use --method slices");
+    cut_long_edges(part, 0.05);
     return part;
 }
 
@@ -168,7 +212,8 @@ Graph skeleton_of(const Mesh& part) {
 
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
     const AreaMoments moments = part_moments(mesh, faces, options);
-    const std::vector<Index> piece = largest_piece(mesh, faces);
+    const LargestPiece largest = largest_piece(mesh, faces);
+    const std::vector<Index>& piece = largest.faces;
     if (piece.size() > 200000)
         fail_input("part", fmt::format("has {} faces, too many for a skeleton", piece.size()), "simplify the mesh first");
     const Vector3d centre = eigen(moments.centroid);
@@ -179,6 +224,11 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
                             job.second = skeleton_of(job.first);
                         }).second;
     Axis axis;
+    if (largest.others > 0)
+        axis.notes.push_back(
+            fmt::format("the skeleton is that of the largest of {} bodies: {:.3g} % of the area {} left out; name "
+                        "a part to get the axis of another body",
+                        largest.others + 1, 100 * largest.others_share, largest.others == 1 ? "is" : "are"));
     const std::vector<std::size_t> path = graph.points.empty() ? std::vector<std::size_t>() : longest_path(graph);
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) length += (graph.points[path[i]] - graph.points[path[i - 1]]).norm();

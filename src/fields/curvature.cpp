@@ -8,6 +8,7 @@
 #include "ostraka/geom/neighbourhood.h"
 
 #include <cmath>
+#include <limits>
 
 namespace ostraka {
 
@@ -87,18 +88,37 @@ FaceShares face_area_fractions(const Mesh& mesh) {
     return shares;
 }
 
-/// Per vertex, a third of the integrals of the adjacent faces.
+/// A face without a border edge has all its dihedral angles, a face without a border vertex all its angle deficits.
+struct CompleteFaces {
+    std::vector<std::uint8_t> mean, gaussian;
+};
+
+CompleteFaces complete_faces(const Mesh& mesh) {
+    CompleteFaces complete;
+    complete.mean.assign(mesh.number_of_faces(), 1);
+    complete.gaussian = complete.mean;
+    parallel_for(complete.mean.size(), [&](std::size_t f) {
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(static_cast<Index>(f))))) {
+            if (mesh.is_border(mesh.opposite(h))) complete.mean[f] = 0;
+            if (mesh.is_border(mesh.target(h))) complete.gaussian[f] = 0;
+        }
+    });
+    return complete;
+}
+
+/// Per vertex, a third of the integrals and areas of the adjacent complete faces.
 struct VertexShares {
-    std::vector<double> mean, gaussian, area;
+    std::vector<double> mean, gaussian, mean_area, gaussian_area;
     std::vector<Vector> mean_vector, area_vector;
 };
 
 VertexShares vertex_shares(const Mesh& mesh) {
     const FaceShares faces = face_area_fractions(mesh);
+    const CompleteFaces complete = complete_faces(mesh);
     const std::size_t count = mesh.number_of_vertices();
     VertexShares shares;
     shares.mean.assign(count, 0);
-    shares.gaussian = shares.area = shares.mean;
+    shares.gaussian = shares.mean_area = shares.gaussian_area = shares.mean;
     shares.mean_vector.assign(count, Vector(0, 0, 0));
     shares.area_vector = shares.mean_vector;
     parallel_for(count, [&](std::size_t i) {
@@ -107,14 +127,39 @@ VertexShares vertex_shares(const Mesh& mesh) {
         for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
             if (face == Mesh::null_face()) continue;
             const Vector a = ostraka::area_vector(mesh, face) / 3;
+            const double area = std::sqrt(a.squared_length());
+            if (complete.gaussian[face] != 0) {
+                shares.gaussian_area[i] += area;
+                shares.gaussian[i] += faces.integrals.gaussian[face] / 3;
+            }
+            if (complete.mean[face] == 0) continue;
             shares.area_vector[i] += a;
-            shares.area[i] += std::sqrt(a.squared_length());
+            shares.mean_area[i] += area;
             shares.mean[i] += faces.integrals.mean[face] / 3;
-            shares.gaussian[i] += faces.integrals.gaussian[face] / 3;
             shares.mean_vector[i] += faces.vector[face] / 3;
         }
     });
     return shares;
+}
+
+constexpr double no_curvature = std::numeric_limits<double>::quiet_NaN();
+
+/// Curvatures of an interior vertex from its edges and angles alone, where it has no complete face.
+std::pair<double, double> own_curvatures(const Mesh& mesh, Vertex v) {
+    double area = 0, mean = 0;
+    const auto unit_normal = [&](Face face) {
+        const Vector a = ostraka::area_vector(mesh, face);
+        const double length = std::sqrt(a.squared_length());
+        return length > 0 ? Vector(a / length) : Vector(0, 0, 0);
+    };
+    for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+        area += face_area(mesh, mesh.face(h)) / 3;
+        const Vector left = unit_normal(mesh.face(h)), right = unit_normal(mesh.face(mesh.opposite(h)));
+        const Vector e = mesh.point(mesh.target(h)) - mesh.point(mesh.source(h));
+        const double length = std::sqrt(e.squared_length());
+        if (length > 0) mean += length * std::atan2(CGAL::cross_product(left, right) * e / length, left * right) / 4;
+    }
+    return area > 0 ? std::pair(mean / area, deficit(mesh, v) / area) : std::pair(no_curvature, no_curvature);
 }
 
 }  // namespace
@@ -124,29 +169,34 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
     const VertexShares shares = vertex_shares(mesh);
     const double radius = options.scale * box_diagonal(mesh);
     Curvature result;
-    result.mean.assign(mesh.number_of_vertices(), 0);
+    result.mean.assign(mesh.number_of_vertices(), no_curvature);
     result.gaussian = result.mean;
     parallel_for(result.mean.size(), 4096, [&](std::size_t i) {
-        if (!(radius > 0)) {
-            if (!(shares.area[i] > 0)) return;
-            result.mean[i] = shares.mean[i] / shares.area[i];
-            result.gaussian[i] = shares.gaussian[i] / shares.area[i];
-            return;
+        const Vertex vertex(static_cast<Index>(i));
+        if (mesh.is_isolated(vertex) || mesh.is_border(vertex)) return;
+        if (radius > 0) {
+            check_cancelled();  // a ball may be large
+            const double squared_radius = radius * radius;
+            Vector h(0, 0, 0), a(0, 0, 0);
+            double gaussian = 0, area = 0;
+            this_threads_neighbourhood().walk(mesh, vertex, radius, [&](Vertex v, double squared) {
+                const double falloff = 1 - squared / squared_radius, w = falloff * falloff;
+                h += w * shares.mean_vector[v];
+                a += w * shares.area_vector[v];
+                gaussian += w * shares.gaussian[v];
+                area += w * shares.gaussian_area[v];
+            });
+            const double projected = a.squared_length();
+            if (projected > 0) result.mean[i] = h * a / projected;
+            if (area > 0) result.gaussian[i] = gaussian / area;
+        } else {
+            if (shares.mean_area[i] > 0) result.mean[i] = shares.mean[i] / shares.mean_area[i];
+            if (shares.gaussian_area[i] > 0) result.gaussian[i] = shares.gaussian[i] / shares.gaussian_area[i];
         }
-        check_cancelled();  // a ball may be large
-        const double squared_radius = radius * radius;
-        Vector h(0, 0, 0), a(0, 0, 0);
-        double gaussian = 0, area = 0;
-        this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
-            const double falloff = 1 - squared / squared_radius, w = falloff * falloff;
-            h += w * shares.mean_vector[v];
-            a += w * shares.area_vector[v];
-            gaussian += w * shares.gaussian[v];
-            area += w * shares.area[v];
-        });
-        const double projected = a.squared_length();
-        if (projected > 0) result.mean[i] = h * a / projected;
-        if (area > 0) result.gaussian[i] = gaussian / area;
+        if (!std::isnan(result.mean[i]) && !std::isnan(result.gaussian[i])) return;
+        const auto [own_mean, own_gaussian] = own_curvatures(mesh, vertex);
+        if (std::isnan(result.mean[i])) result.mean[i] = own_mean;
+        if (std::isnan(result.gaussian[i])) result.gaussian[i] = own_gaussian;
     });
     return result;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ostraka {
 
@@ -17,7 +18,7 @@ void check_region(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
-                             const std::string& where) {
+                             const std::string& where, UndefinedValues treatment) {
     if (map.size() != mesh.number_of_vertices())
         fail_input(where, fmt::format("has {} values for {} vertices", map.size(), mesh.number_of_vertices()),
                    "give one value for each of the vertices");
@@ -37,12 +38,23 @@ Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, c
             weights.back() += shares[i].second;
             continue;
         }
+        if (std::isnan(map[vertex]) && treatment == UndefinedValues::skipped) {
+            // Kept with weight zero until its further shares are read.
+            values.push_back(0);
+            weights.push_back(-std::numeric_limits<double>::infinity());
+            continue;
+        }
         if (!std::isfinite(map[vertex]))
             fail_input(where, fmt::format("the value of vertex {} is not a finite number", vertex),
                        "correct the map or choose another region");
         values.push_back(map[vertex]);
         weights.push_back(shares[i].second);
     }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (weights[i] >= 0) values[kept] = values[i], weights[kept++] = weights[i];
+    values.resize(kept), weights.resize(kept);
+    if (kept == 0) fail_input(where, "has no value on the region", "choose another region");
     return statistics(values, weights, where);
 }
 

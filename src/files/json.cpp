@@ -90,6 +90,65 @@ std::string as_utf8(std::string_view text) {
     return result;
 }
 
+/// Name of a JSON type, for people.
+std::string type_in_words(std::string_view type) {
+    static const std::map<std::string_view, const char*> words{
+        {"object", "an object {...}"}, {"array", "a list [...]"},    {"string", "a text"}, {"number", "a number"},
+        {"integer", "a whole number"}, {"boolean", "true or false"}, {"null", "null"}};
+    const auto word = words.find(type);
+    return word == words.end() ? std::string(type) : word->second;
+}
+
+/// A value that violates a schema, for people: its type, or the value itself if it is short.
+std::string found_in_words(const JsonValue& value) {
+    if (value.IsObject()) return "an object";
+    if (value.IsArray()) return fmt::format("a list of {}", value.Size());
+    const std::string text = to_compact_text(value);
+    return text.size() > 60 ? std::string(value.IsString() ? "a long text" : "a number") : text;
+}
+
+std::string texts_in(const JsonValue& list, std::string_view separator) {
+    std::string text;
+    for (const auto& entry : list.GetArray()) {
+        if (!text.empty()) text += separator;
+        text += entry.IsString() ? std::string(entry.GetString(), entry.GetStringLength()) : to_compact_text(entry);
+    }
+    return text;
+}
+
+/// What a violated rule of a schema requires, in words; `value`: the value that violates it, may be null.
+std::string rule_in_words(const std::string& keyword, const JsonValue* rule, const JsonValue* value) {
+    const std::string text = rule == nullptr ? std::string() : to_compact_text(*rule);
+    if (keyword == "type" && rule != nullptr)
+        return rule->IsArray() ? texts_in(*rule, " or ")
+                               : type_in_words(std::string_view(rule->GetString(), rule->GetStringLength()));
+    if (keyword == "enum" && rule != nullptr && rule->IsArray()) return "one of: " + texts_in(*rule, ", ");
+    if (keyword == "required" && rule != nullptr && rule->IsArray()) {
+        std::string missing;
+        for (const auto& name : rule->GetArray())
+            if (value == nullptr || !value->IsObject() || !value->HasMember(name))
+                missing +=
+                    fmt::format("{}'{}'", missing.empty() ? "" : ", ", std::string(name.GetString(), name.GetStringLength()));
+        return "the member " + missing;
+    }
+    static const std::map<std::string, const char*> words{{"minimum", "a number of at least {}"},
+                                                          {"maximum", "a number of at most {}"},
+                                                          {"minItems", "at least {} entries"},
+                                                          {"maxItems", "at most {} entries"},
+                                                          {"minLength", "a text of at least {} characters"},
+                                                          {"maxLength", "a text of at most {} characters"},
+                                                          {"minProperties", "at least {} members"},
+                                                          {"maxProperties", "at most {} members"}};
+    if (const auto word = words.find(keyword); word != words.end()) return fmt::format(fmt::runtime(word->second), text);
+    static const std::map<std::string, const char*> plain{{"uniqueItems", "entries that differ from each other"},
+                                                          {"additionalItems", "a shorter list"},
+                                                          {"pattern", "a text of another form"},
+                                                          {"not", "another combination of members"},
+                                                          {"dependencies", "further members that belong to the given ones"}};
+    const auto word = plain.find(keyword);
+    return word != plain.end() ? word->second : "one of the forms of the documentation";
+}
+
 /// Arrays of plain numbers and strings are printed on one line, everything else on separate lines.
 class Printer {
 public:
@@ -197,27 +256,22 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     };
     const auto pointer = validator.GetInvalidDocumentPointer();
     const std::string keyword = validator.GetInvalidSchemaKeyword();
-    std::string expected = keyword;
-    // The violated rule is quoted from the text of the schema.
     const Json schema_document = parse_json(schema_texts().at(schema), schema + ".schema.json");
-    if (const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document);
-        rules != nullptr && rules->IsObject()) {
-        if (const JsonValue* rule = find_member(*rules, keyword)) {
-            std::string rule_text = to_compact_text(*rule);
-            if (rule_text.size() > 200) rule_text = rule_text.substr(0, 197) + "...";
-            expected += " " + rule_text;
-        }
-    }
+    const JsonValue* rules = validator.GetInvalidSchemaPointer().Get(schema_document);
+    const JsonValue* rule = rules != nullptr && rules->IsObject() ? find_member(*rules, keyword) : nullptr;
+    const JsonValue* found = pointer.Get(value);
+    const std::string expected = rule_in_words(keyword, rule, found);
     const std::string location = text_of(pointer);
     if (keyword == "additionalProperties" && pointer.GetTokenCount() > 0) {
         const auto& token = pointer.GetTokens()[pointer.GetTokenCount() - 1];
         fail_input(where, fmt::format("at {}: unknown member '{}'", location, std::string(token.name, token.length)),
                    fmt::format("is it misspelt? See doc/schema/{}.schema.json", schema));
     }
-    fail_input(where,
-               fmt::format("at {}: does not match the format, which requires {}",
-                           location.empty() ? std::string("the root") : location, expected),
-               fmt::format("see doc/schema/{}.schema.json", schema));
+    fail_input(
+        where,
+        fmt::format("at {}: does not match the format: {} is needed{}", location.empty() ? std::string("the root") : location,
+                    expected, found == nullptr || keyword == "required" ? "" : ", not " + found_in_words(*found)),
+        fmt::format("see doc/schema/{}.schema.json", schema));
 }
 
 Json built_in_document(const std::string& name) {
@@ -321,7 +375,7 @@ std::array<double, 3> triple_of(const JsonValue& values) {
 void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy) {
     if (const JsonValue* stated_format = find_member(document, "format");
         stated_format != nullptr && stated_format->IsString() && text_of(*stated_format) != format)
-        fail_input(where, fmt::format("at /format: the format is '{}'", text_of(*stated_format)), remedy);
+        fail_input(where, fmt::format("at /format: the format is '{}'", text_of(*stated_format).substr(0, 60)), remedy);
 }
 
 }  // namespace ostraka

@@ -84,6 +84,10 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes)
     if (ending == ".fcsv") return "fcsv";
     if (ending == ".json" && extension(file.stem()) == ".mrk") return "mrk";
     if (ending == ".jsonld") return "web";
+    // Manifests and annotation pages of IIIF usually end in .json.
+    if (ending == ".json" && bytes.find("\"type\"") != std::string::npos &&
+        (bytes.find("iiif.io/api/presentation") != std::string::npos || bytes.find("www.w3.org/ns/anno") != std::string::npos))
+        return "web";
     if (ending == ".glb" || ending == ".ant" || ending == ".fct") return ending.substr(1);
     fail_usage(fmt::format("the extension of '{}' does not determine a format", file.filename().string()),
                "specify it with --format");

@@ -1,6 +1,7 @@
 // Conversion of W3C Web Annotation JSON-LD to annotations.
 #include "ostraka/interchange/web_annotation.h"
 
+#include "interchange/iiif_comments.h"
 #include "interchange/landmark_formats.h"
 #include "interchange/placing.h"
 #include "interchange/text.h"
@@ -94,7 +95,9 @@ public:
 
     PlacedAnnotations read(const JsonValue& document) {
         JsonValue annotations(rapidjson::kArrayType);
-        for (const auto& [item, pointer] : items_of(document)) {
+        auto items = items_of(document);
+        const std::vector<Json> comments = place_comments(items);
+        for (const auto& [item, pointer] : items) {
             if (!has_value(find_member(*item, "type"), "Annotation")) {
                 note(pointer, "is not an Annotation; left out");
                 continue;
@@ -116,6 +119,29 @@ private:
         notes_.push_back(fmt::format("at {}: {}", pointer.empty() ? "the root" : pointer, text));
     }
 
+    /// Replaces annotations with points or well-known text as targets by annotations with places on the mesh, which are returned.
+    std::vector<Json> place_comments(std::vector<std::pair<const JsonValue*, std::string>>& items) {
+        std::vector<SceneTarget> targets;
+        bool any = false;
+        for (const auto& [item, pointer] : items) {
+            targets.push_back(has_value(find_member(*item, "type"), "Annotation")
+                                  ? scene_target(*item, fmt::format("{}, in {}", where_, pointer))
+                                  : SceneTarget());
+            any = any || targets.back().kind != SceneTarget::Kind::none;
+        }
+        std::vector<Json> placed_items;
+        if (!any) return placed_items;
+        const SceneMotion motion = scene_motion(targets, placer(), options_.tolerance);
+        if (!motion.text.empty()) notes_.push_back(motion.text);
+        placed_items.reserve(items.size());
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (targets[i].kind == SceneTarget::Kind::none) continue;
+            placed_items.push_back(with_places(*items[i].first, targets[i], motion, placer()));
+            items[i].first = &placed_items.back();
+        }
+        return placed_items;
+    }
+
     std::vector<std::pair<const JsonValue*, std::string>> items_of(const JsonValue& document) {
         std::vector<std::pair<const JsonValue*, std::string>> items;
         const auto add_list = [&](const JsonValue& page_items, const std::string& pointer) {
@@ -127,6 +153,11 @@ private:
         const JsonValue* type = find_member(document, "type");
         if (document.IsArray()) {
             add_list(document, "");
+        } else if (is_iiif(document)) {
+            items = iiif_comments(document);
+            if (items.empty())
+                fail_input(where_, "the IIIF document contains no comments",
+                           "give a manifest whose annotation pages are embedded, or the page itself");
         } else if (has_value(type, "AnnotationCollection")) {
             const JsonValue* page = find_member(document, "first");
             const JsonValue* page_items = page == nullptr ? nullptr : find_member(*page, "items");
@@ -143,7 +174,8 @@ private:
         } else if (has_value(type, "Annotation")) {
             items.emplace_back(&document, "");
         } else {
-            fail_input(where_, "contains no Annotation, AnnotationPage or AnnotationCollection", "give a file of the W3C model");
+            fail_input(where_, "contains no Annotation, AnnotationPage, AnnotationCollection or IIIF manifest",
+                       "give a file of the W3C model or of IIIF Presentation");
         }
         return items;
     }

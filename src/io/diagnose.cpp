@@ -258,23 +258,17 @@ void measure(const TriangleSoup& soup, const std::vector<Index>& component, cons
     }
 }
 
-/// A closed component of negative volume is the wall of a cavity if another component encloses it; otherwise it is inside out.
-void find_cavities(const TriangleSoup& soup, const std::vector<Index>& component, MeshDiagnosis& diagnosis) {
-    std::vector<bool> closed;
-    std::vector<Index> negative;
+/// Roles of the closed components: bodies and cavities, in the right orientation or not.
+void find_roles(const TriangleSoup& soup, MeshDiagnosis& diagnosis) {
+    diagnosis.solid = solid_bodies(soup);
     for (Index c = 0; c < diagnosis.components.size(); ++c) {
-        const auto& part = diagnosis.components[c];
-        closed.push_back(part.closed());
-        // The sign of a volume below its rounding error is meaningless.
-        const bool inward = part.volume < -1e-13 * part.area * diagnosis.diagonal;
-        if (part.closed() && part.misoriented_edges == 0 && part.orientable && inward) negative.push_back(c);
-    }
-    const auto enclosed = detail::enclosed_components(soup, component, closed, negative);
-    for (const Index c : negative) {
         auto& part = diagnosis.components[c];
-        part.cavity = enclosed[c] != 0;
-        part.inside_out = !part.cavity;
-        ++(part.cavity ? diagnosis.cavities : diagnosis.inside_out_components);
+        part.inside_out = diagnosis.solid.roles[c] == SolidBodies::Role::inside_out;
+        part.cavity = diagnosis.solid.roles[c] == SolidBodies::Role::cavity;
+        part.turned_cavity = diagnosis.solid.roles[c] == SolidBodies::Role::turned_cavity;
+        diagnosis.inside_out_components += part.inside_out ? 1 : 0;
+        diagnosis.cavities += part.cavity ? 1 : 0;
+        diagnosis.turned_cavities += part.turned_cavity ? 1 : 0;
     }
 }
 
@@ -311,6 +305,8 @@ std::vector<std::string> MeshDiagnosis::defects() const {
     add(misoriented_edges, "inconsistently oriented edge", "inconsistently oriented edges");
     add(nonorientable_components, "component that cannot be oriented", "components that cannot be oriented");
     add(inside_out_components, "component inside out", "components inside out");
+    add(turned_cavities, "component inside another that is oriented outwards",
+        "components inside others that are oriented outwards");
     add(self_intersections, "pair of intersecting triangles", "pairs of intersecting triangles");
     if (self_intersections_checked && !self_intersections_complete)
         descriptions.emplace_back("the search for intersecting triangles was given up, there may be more");
@@ -345,7 +341,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
     lap("duplicate vertices");
     const auto without_area = detail::triangles_without_area(soup);
     measure(soup, component, without_area, diagnosis);
-    find_cavities(soup, component, diagnosis);
+    find_roles(soup, diagnosis);
     diagnosis.unit = guess_unit(diagnosis.diagonal);
     lap("measures");
     diagnosis.oriented_box = oriented_box(soup.points);

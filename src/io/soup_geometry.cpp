@@ -68,10 +68,10 @@ bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const s
 }
 }  // namespace
 
-std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
-                                              const std::vector<bool>& closed, const std::vector<Index>& inner) {
-    std::vector<std::uint8_t> enclosed(closed.size(), 0);  // not a bit vector: threads write adjacent elements
-    if (inner.empty() || closed.size() < 2) return enclosed;
+std::vector<std::vector<Index>> enclosing_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
+                                                     const std::vector<bool>& closed, const std::vector<Index>& inner) {
+    std::vector<std::vector<Index>> enclosing(closed.size());
+    if (inner.empty() || closed.size() < 2) return enclosing;
     std::vector<CGAL::Bbox_3> boxes(closed.size());
     std::vector<Index> first_triangle(closed.size(), no_index);
     for (Index t = 0; t < soup.triangles.size(); ++t) {
@@ -97,17 +97,24 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
             std::vector<std::pair<Index, bool>> parity;
             if (!crossing_parity(soup, tree, component_of_triangle, own_component, start, end, max_boxes, parity) && attempt < 15)
                 continue;
-            bool inside = false;
             for (const auto& [other, is_odd] : parity) {
                 if (!is_odd || !closed[other]) continue;
                 const auto &a = boxes[own_component], &b = boxes[other];
-                inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() &&
-                                    a.ymax() <= b.ymax() && a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
+                if (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() && a.ymax() <= b.ymax() &&
+                    a.zmin() >= b.zmin() && a.zmax() <= b.zmax())
+                    enclosing[own_component].push_back(other);
             }
-            enclosed[own_component] = inside ? 1 : 0;
             break;
         }
     });
+    return enclosing;
+}
+
+std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
+                                              const std::vector<bool>& closed, const std::vector<Index>& inner) {
+    const auto enclosing = enclosing_components(soup, component_of_triangle, closed, inner);
+    std::vector<std::uint8_t> enclosed(closed.size(), 0);
+    for (std::size_t c = 0; c < closed.size(); ++c) enclosed[c] = enclosing[c].empty() ? 0 : 1;
     return enclosed;
 }
 

@@ -34,9 +34,11 @@ double diagonal(const CGAL::Bbox_3& box);  ///< length of the diagonal
 SelfIntersections self_intersections(const TriangleSoup& soup, const std::vector<Index>& place,
                                      const std::vector<std::uint8_t>& without_area, std::size_t limit);
 
-/// For each closed component listed in `inner`: 1 if the component lies completely inside another closed component. Components
-/// with nested bounding boxes are tested by a ray from one triangle. `closed`: for each component, true if the component is
-/// closed.
+/// For each closed component listed in `inner`: the closed components that it lies completely inside, ascending. Components with
+/// nested bounding boxes are tested by a ray from one triangle. `closed`: for each component, true if the component is closed.
+std::vector<std::vector<Index>> enclosing_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
+                                                     const std::vector<bool>& closed, const std::vector<Index>& inner);
+/// For each closed component listed in `inner`: 1 if the component lies completely inside another closed component.
 std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
                                               const std::vector<bool>& closed, const std::vector<Index>& inner);
 

@@ -79,6 +79,15 @@ struct DescriptorSearch::Cache {
         return box_;
     }
 
+    /// Caches the solid of the last region, like its box.
+    const BodyVolume& solid_of(const Mesh& mesh, const Annotation& annotation) {
+        if (!solid_ || solid_faces_ != annotation.faces) {
+            solid_ = body_volume(mesh, annotation.faces);
+            solid_faces_ = annotation.faces;
+        }
+        return *solid_;
+    }
+
     /// The mesh cut along the curves of free annotations, with a search for quantities on it.
     struct Cut {
         AnnotationSet requested_annotations;
@@ -111,6 +120,8 @@ struct DescriptorSearch::Cache {
 private:
     std::vector<Index> boxed_faces_;
     OrientedBox box_;
+    std::vector<Index> solid_faces_;
+    std::optional<BodyVolume> solid_;
     std::unique_ptr<Cut> cut_;
 };
 
@@ -152,9 +163,9 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
         return cut.search->find(*cut.along_edges(annotation), name);
     }
     if (faces.empty()) return std::nullopt;
-    if (name == "volume") return number(name, region_solid(mesh_, faces).volume, 3);
-    if (name == "volume bound") return number(name, region_solid(mesh_, faces).volume_bound, 3);
-    if (name == "solid centroid") return list_quantity(name, coordinates(region_solid(mesh_, faces).centroid), 1);
+    if (name == "volume") return number(name, cache_->solid_of(mesh_, annotation).volume, 3);
+    if (name == "volume bound") return number(name, cache_->solid_of(mesh_, annotation).volume_bound, 3);
+    if (name == "solid centroid") return list_quantity(name, coordinates(cache_->solid_of(mesh_, annotation).centroid), 1);
     if (name == "centroid") return list_quantity(name, coordinates(surface_centroid(mesh_, faces)), 1);
     if (name == "box sides" || name == "box centre" || name == "box axes") {
         const OrientedBox& box = cache_->box_of(mesh_, annotation);
@@ -172,6 +183,11 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
     return std::nullopt;
 }
 
+std::vector<std::string> DescriptorSearch::remarks(const Annotation& annotation) {
+    if (annotation.type != AnnotationType::region || is_free(annotation) || annotation.faces.empty()) return {};
+    return cache_->solid_of(mesh_, annotation).remarks;
+}
+
 std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, const std::vector<NamedMap>& maps) {
     std::vector<Quantity> result;
     const std::string annotation_name = name_of(annotation);
@@ -185,23 +201,32 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
     if (annotation.type == AnnotationType::line) result.push_back(*find(annotation, "length"));
     if (region)
         for (const std::string& name : region_quantities()) result.push_back(*find(annotation, name));
-    const auto map_statistics = [&](const std::vector<double>& map_values, const std::string& where) {
+    const auto map_statistics = [&](const std::vector<double>& map_values, const std::string& where,
+                                    UndefinedValues treatment = UndefinedValues::refused) {
         if (map_values.size() != mesh_.number_of_vertices())
             fail_input(where, fmt::format("has {} values for {} vertices", map_values.size(), mesh_.number_of_vertices()),
                        "give one value for each of the vertices");
         const std::vector<double> values = cut == nullptr ? map_values : cut->object.vertex_values(mesh_, map_values);
-        if (region) return vertex_statistics(mesh, values, edge_annotation.faces, where);
+        if (region) return vertex_statistics(mesh, values, edge_annotation.faces, where, treatment);
         std::vector<double> annotation_values;
         for (const Index v : vertices) {
+            if (std::isnan(values[v]) && treatment == UndefinedValues::skipped) continue;
             if (!std::isfinite(values[v]))
                 fail_input(where, fmt::format("the value of vertex {} is not a finite number", v), "correct the map");
             annotation_values.push_back(values[v]);
         }
+        if (annotation_values.empty()) fail_input(where, "has no value on the annotation", "choose another annotation");
         return statistics(annotation_values, std::vector<double>(annotation_values.size(), 1), where);
     };
     if (options_.curvature) {
-        add_statistics(result, "mean curvature", map_statistics(curvature().mean, annotation_name), -1);
-        add_statistics(result, "Gaussian curvature", map_statistics(curvature().gaussian, annotation_name), -2);
+        // A part of the border has no curvature, and no statistics of it.
+        const auto add_curvature = [&](const char* name, const std::vector<double>& values, int power) {
+            const std::vector<double> own = cut == nullptr ? values : cut->object.vertex_values(mesh_, values);
+            const bool any = std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return !std::isnan(own[v]); });
+            if (any) add_statistics(result, name, map_statistics(values, annotation_name, UndefinedValues::skipped), power);
+        };
+        add_curvature("mean curvature", curvature().mean, -1);
+        add_curvature("Gaussian curvature", curvature().gaussian, -2);
     }
     if (options_.thickness && region) {
         std::vector<double> values, weights;

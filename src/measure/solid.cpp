@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/fields/statistics.h"
+#include "ostraka/mesh/disjoint_sets.h"
 
 #include <cmath>
 #include <limits>
@@ -68,7 +69,7 @@ double closed_volume(const Mesh& mesh) {
         if (mesh.is_border(h)) return std::numeric_limits<double>::quiet_NaN();
     std::vector<Index> faces(mesh.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index{0});
-    return std::abs(region_solid(mesh, faces).volume);
+    return body_volume(mesh, faces).volume;
 }
 
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
@@ -113,6 +114,52 @@ RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
     const double size = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
     // A solid so thin that its volume is rounding error has no reliable centroid.
     result.centroid = std::abs(result.volume) > 1e-13 * size * size * size ? sum.centroid() : surface_centroid(mesh, faces);
+    return result;
+}
+
+BodyVolume body_volume(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_region(mesh, faces);
+    // Components of the region, connected over edges; closed if no edge leads out of the region.
+    std::vector<bool> selected(mesh.number_of_faces(), false);
+    for (const Index face : faces) selected[face] = true;
+    DisjointSets sets(mesh.number_of_faces());
+    std::vector<std::uint8_t> open(mesh.number_of_faces(), 0);
+    const auto outside = [&](Halfedge h) { return mesh.is_border(h) || !selected[mesh.face(h)]; };
+    for (const Index face : faces)
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(face))))
+            if (!outside(mesh.opposite(h))) sets.unite(face, mesh.face(mesh.opposite(h)));
+    for (const Index face : faces)
+        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(face))))
+            if (outside(mesh.opposite(h))) open[sets.find(face)] = 1;
+    std::vector<Index> open_faces;
+    TriangleSoup closed;
+    std::vector<Index> number(mesh.num_vertices(), no_index);
+    for (const Index face : faces) {
+        if (open[sets.find(face)] != 0) {
+            open_faces.push_back(face);
+            continue;
+        }
+        auto& triangle = closed.triangles.emplace_back();
+        std::size_t k = 0;
+        for (const Vertex v : corners(mesh, Face(face))) {
+            if (number[v] == no_index) {
+                number[v] = static_cast<Index>(closed.points.size());
+                const Point& p = mesh.point(v);
+                closed.points.push_back({p.x(), p.y(), p.z()});
+            }
+            triangle.at(k++) = number[v];
+        }
+    }
+    if (closed.triangles.empty()) return {region_solid(mesh, faces), {}};
+    const SolidBodies bodies = solid_bodies(closed);
+    BodyVolume result{open_faces.empty() ? RegionSolid() : region_solid(mesh, open_faces), bodies.remarks()};
+    if (open_faces.empty() && bodies.signed_volume == bodies.volume && bodies.closed == 1)
+        return {region_solid(mesh, faces), {}};  // one body: the sum with the smallest rounding error
+    const double volume = result.volume + bodies.volume;
+    const Point own(bodies.centroid[0], bodies.centroid[1], bodies.centroid[2]);
+    const double share = volume != 0 ? result.volume / volume : 0;
+    result.centroid = open_faces.empty() ? own : own + share * (result.centroid - own);
+    result.volume = volume, result.volume_bound += bodies.bound;
     return result;
 }
 

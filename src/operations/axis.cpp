@@ -112,6 +112,7 @@ struct FindAxis final : Operation {
         }
         report("figures", std::move(figures));
         if (!axis.found) report.line("has no axis: " + axis.reason);
+        report.notes(axis.notes);
     }
 
     MeshInput mesh;

@@ -39,20 +39,23 @@ constexpr DiagnosisCount diagnosis_counts[]{
     {"nonorientable_components", &M::nonorientable_components},
     {"inside_out_components", &M::inside_out_components},
     {"cavities", &M::cavities},
+    {"turned_cavities", &M::turned_cavities},
 };
 
 JsonValue component_json(const ComponentDiagnosis& part, JsonAllocator& allocator) {
     return json_object(allocator, "first_vertex", part.first_vertex, "vertices", part.vertices, "triangles", part.triangles,
                        "closed", part.closed(), "manifold", part.manifold(), "orientable", part.orientable, "inside_out",
-                       part.inside_out, "cavity", part.cavity, "euler", part.euler(), "genus",
-                       part.genus() < 0 ? std::nullopt : std::optional(part.genus()), "area", part.area, "volume",
+                       part.inside_out, "cavity", part.cavity, "turned_cavity", part.turned_cavity, "euler", part.euler(),
+                       "genus", part.genus() < 0 ? std::nullopt : std::optional(part.genus()), "area", part.area, "volume",
                        part.closed() ? std::optional(part.volume) : std::nullopt);
 }
 
 JsonValue size_json(const MeshDiagnosis& d, JsonAllocator& allocator) {
-    JsonValue size = json_object(allocator, "area", d.area, "volume", d.volume);
-    if (!d.closed() || !d.oriented())
-        add_members(size, allocator, "volume_note", "a signed sum only: the mesh is not closed and oriented");
+    const bool solid = d.closed() && d.oriented();
+    JsonValue size = json_object(allocator, "area", d.area, "volume", solid ? d.solid.volume : d.volume);
+    if (!solid) add_members(size, allocator, "volume_note", "a signed sum only: the mesh is not closed and oriented");
+    else if (const auto remarks = d.solid.remarks(); !remarks.empty())
+        add_members(size, allocator, "volume_bound", d.solid.bound, "volume_note", joined(remarks, "; "));
     add_members(size, allocator, "shortest_edge", d.shortest_edge, "mean_edge", d.mean_edge, "longest_edge", d.longest_edge);
     if (d.edges > 0)
         add_members(
@@ -119,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
     add("inconsistently oriented edges", d.misoriented_edges);
     if (d.nonorientable_components > 0) add("components that cannot be oriented", d.nonorientable_components);
     add("components inside out", d.inside_out_components);
-    if (d.cavities > 0) add("cavities", d.cavities);
+    if (d.cavities + d.turned_cavities > 0) add("cavities", d.cavities + d.turned_cavities);
     add("duplicate triangles", d.duplicate_triangles);
     add("triangles without area", d.degenerate_triangles + d.repeated_corners);
     add("thin triangles", d.thin_triangles);
@@ -129,7 +132,10 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
                                   ? "not checked"
                                   : (d.self_intersections_complete ? "" : "at least ") + std::to_string(d.self_intersections));
     add("area", number(d.area, 8));
-    add("volume", number(d.volume, 8) + (d.closed() && d.oriented() ? "" : " (a signed sum: not closed and oriented)"));
+    if (d.closed() && d.oriented()) {
+        const std::string remarks = joined(d.solid.remarks(), "; ");
+        add("volume", number(d.solid.volume, 8) + (remarks.empty() ? "" : fmt::format(" ({})", remarks)));
+    } else add("volume", number(d.volume, 8) + " (a signed sum: not closed and oriented)");
     add("edge length", fmt::format("{} to {}, mean {}", number(d.shortest_edge), number(d.longest_edge), number(d.mean_edge)));
     if (d.edges > 0) {
         add("box", fmt::format("{} from ({}, {}, {})",

@@ -39,12 +39,15 @@ struct PairFragments final : Operation {
         const auto prepare = [&](const FileInput& slot, const Fragment& fragment) {
             return in_file(slot.file(), [&] { return PreparedFracture(fragment, options); });
         };
-        PairRegistration pair = register_fractures(prepare(first, a.fragment), prepare(second, b.fragment), options);
-        for (const SuspiciousFragment& outlier : suspicious_fragments({a.fragment, b.fragment})) {
+        // Named before the registration, which may fail because of them.
+        const std::vector<SuspiciousFragment> suspicious = suspicious_fragments({a.fragment, b.fragment});
+        for (const SuspiciousFragment& outlier : suspicious)
             report.note(fmt::format("{} {}", printable((outlier.fragment == 0 ? first : second).file()), outlier.text));
-            if (!outlier.left_out) continue;
-            pair.undecided = "the second " + outlier.text;
-            pair.confidence = 0;
+        PairRegistration pair = register_fractures(prepare(first, a.fragment), prepare(second, b.fragment), options);
+        for (const SuspiciousFragment& outlier : suspicious) {
+            const std::string name = fmt::format("the {} {}", outlier.fragment == 0 ? "first" : "second", outlier.text);
+            if (outlier.left_out) pair.undecided = name, pair.confidence = 0;
+            else if (!pair.decided()) pair.undecided += "; " + name;
         }
         const JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), report.allocator());
         report.values(result);

@@ -31,7 +31,10 @@ Level smoothed_level(const Mesh& mesh, const Diffusion& diffusion, const Eigen::
     CurvatureOptions options;
     const double diagonal = box_diagonal(level.mesh);
     options.scale = diagonal > 0 ? std::min(1.0, 1.5 * sigma / diagonal) : 0;
-    const Curvature curvature = ostraka::curvature(level.mesh, options);
+    Curvature curvature = ostraka::curvature(level.mesh, options);
+    for (auto* values : {&curvature.mean, &curvature.gaussian})
+        for (double& value : *values)
+            if (std::isnan(value)) value = 0;  // the border has no salient points
     const std::size_t count = mesh.number_of_vertices();
     level.mean = curvature.mean;
     level.shape_index.resize(count), level.curvedness.resize(count), level.area.assign(count, 0), level.normals.resize(count);

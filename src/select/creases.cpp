@@ -62,8 +62,10 @@ Response respond(const Mesh& mesh, const CreaseOptions& options) {
     const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.wide)}).mean;
     std::vector<double>& values = response.values;
     values.assign(wide.size(), 0);
-    for (const Vertex v : mesh.vertices())
-        if (!mesh.is_isolated(v) && !mesh.is_border(v)) values[v] = radius * (response.curvature[v] - wide[v]);
+    for (const Vertex v : mesh.vertices()) {
+        if (!std::isnan(response.curvature[v]) && !std::isnan(wide[v])) values[v] = radius * (response.curvature[v] - wide[v]);
+        else response.curvature[v] = 0;
+    }
     if (mesh.number_of_faces() > 0) response.deviation = robust_deviation(mesh, values);
     for (const Vertex v : mesh.vertices())
         if (values[v] * response.curvature[v] < 0) values[v] = 0;

@@ -14,6 +14,7 @@
 #include "select/growth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ostraka {
 
@@ -22,6 +23,20 @@ namespace {
 using std::to_string;
 
 std::string key_of(const char* name, double a, double b = 0) { return std::string(name) + ' ' + digits(a) + ' ' + digits(b); }
+
+/// Vertices without a value, as at the border, get the mean of their neighbours' values, or 0.
+std::vector<double> extended_to_border(const Mesh& mesh, std::vector<double> values) {
+    const std::vector<double> original = values;
+    for (const Vertex v : mesh.vertices()) {
+        if (!std::isnan(values[v])) continue;
+        double sum = 0, count = 0;
+        if (!mesh.is_isolated(v))
+            for (const Vertex u : mesh.vertices_around_target(mesh.halfedge(v)))
+                if (!std::isnan(original[u])) sum += original[u], count += 1;
+        values[v] = count > 0 ? sum / count : 0;
+    }
+    return values;
+}
 
 }  // namespace
 
@@ -99,7 +114,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
         if (!maps_.contains(key)) {
             Curvature found;
             in_place(here, [&] { found = curvature(mesh_, options); });
-            maps_[key].values = std::move(mean ? found.mean : found.gaussian);
+            maps_[key].values = extended_to_border(mesh_, std::move(mean ? found.mean : found.gaussian));
         }
         map = maps_[key];
         for (double& x : map.values) x *= mean ? unit : unit * unit;

@@ -44,6 +44,8 @@ SourceValues::SourceValues(const BakeSource& source, const BakeOptions& options,
         CurvatureOptions curvature_options;
         curvature_options.scale = options.curvature_scale;
         curvature_ = curvature(source.mesh, curvature_options).mean;
+        for (double& value : curvature_)
+            if (std::isnan(value)) value = 0;  // at the border
     }
     if (quantity_ == BakedQuantity::occlusion)
         occlusion_ = std::make_unique<Occlusion>(source.mesh, options.occlusion_rays, options.occlusion_distance);

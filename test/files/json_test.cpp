@@ -62,3 +62,36 @@ TEST(Json, SchemaErrorNamesPointerAndRule) {
         EXPECT_NE(text.find("string"), std::string::npos) << text;
     }
 }
+
+TEST(Json, ViolatedRulesAreInWords) {
+    const auto message = [](const std::string& text) {
+        try {
+            validate(parse_json(text, "file"), "web-annotation", "file");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    for (const char* text : {R"({"type": "Annotation"})", "[]", R"({"type": "Annotation", "target": 7})",
+                             R"({"type": "Annotation", "target": {"selector": {"places": {"points": [[1, 2]]}}}})"}) {
+        const std::string problem = message(text);
+        ASSERT_FALSE(problem.empty()) << text;
+        for (const char* raw : {"{\"", "[\"", "anyOf", "$ref", "minItems", "definitions"})
+            EXPECT_EQ(problem.find(raw), std::string::npos) << problem;
+    }
+    EXPECT_NE(message(R"({"type": "Annotation"})").find("'target'"), std::string::npos);
+    EXPECT_NE(message("[]").find("an object"), std::string::npos);
+}
+
+TEST(Json, ErrorsQuoteNoBinary) {
+    const Error error(ErrorKind::input, "file",
+                      std::string("the word '\x01\x02\xff\xfe"
+                                  "abc\0def'",
+                                  22),
+                      "write it again");
+    EXPECT_EQ(error.problem(), "the word '...abc...def'");
+    const Error longer(ErrorKind::input, "file", std::string(100000, 'x'), "");
+    EXPECT_LT(std::string(longer.what()).size(), 5000U);
+    const Error foreign(ErrorKind::input, "file", "Gefäß", "");
+    EXPECT_EQ(foreign.problem(), "Gefäß");
+}

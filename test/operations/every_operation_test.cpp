@@ -102,6 +102,7 @@ const std::vector<Step>& steps() {
         {"measure distance",
          R"({"mesh": "pot.ply", "reference": "fine.ply", "output": "distance.npy", "back": "back.npy", "level": "level.npy",
              "annotations": "pot.ant.json", "tolerance": [0.1, 0.5], "samples": 2000, "picture": "distance.svg", "size": "400x200"})"},
+        {"measure capacity", R"({"vessel": "pot.ply", "annotations": "pot.ant.json", "fill": [0.5]})"},
         {"relation extract", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "pot.graph.json"})"},
         {"relation add",
          R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "level.graph.json", "type": "same level",
@@ -263,8 +264,8 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
 
 TEST_F(EveryOperation, RunsHereOrHasItsOwnTest) {
     // Operations with inputs that take long to make are run by the tests of their modules.
-    std::set<std::string> run{"study landmarks", "study shape", "template revolve", "pair", "assemble", "run", "replay",
-                              "conformance run", "conformance self"};
+    std::set<std::string> run{"study landmarks", "study shape",     "template revolve", "pair", "assemble", "run",
+                              "replay",          "conformance run", "conformance self"};
     for (const Step& step : steps()) run.insert(step.operation);
     for (const OperationEntry& entry : operations()) EXPECT_TRUE(run.count(entry.name) == 1) << entry.name;
 }

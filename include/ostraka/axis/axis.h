@@ -45,6 +45,7 @@ struct Axis {
     std::vector<std::vector<Point>> lines;
     double quality = 0;               ///< quality of the axis, 0 to 1; each method defines its own
     std::vector<AxisFigure> figures;  ///< further numbers about the axis, which depend on the method
+    std::vector<std::string> notes;   ///< remarks, such as on parts that were left out
     /// The figure of this name; null if there is none.
     [[nodiscard]] const AxisFigure* figure(const std::string& name) const;
 };
@@ -70,7 +71,8 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
 /// slices x number of faces).
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest component, with its holes filled. The axis is the
+/// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the component of the largest area, with its holes filled and long
+/// edges cut; a note reports components that are left out. The axis is the
 /// longest path in the skeleton, or its loop. Quality: the fraction of the skeleton's length on the longest path. No axis is
 /// found for parts that contract to a point. `figures`: length, number of branches, rms distance of the path from the straight
 /// axis. The part may have at most 200 000 faces.

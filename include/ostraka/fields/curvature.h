@@ -17,20 +17,21 @@ struct CurvatureOptions {
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
-/// Curvature of a mesh, one value per vertex; 0 where undefined (isolated vertices, faces without area).
+/// Curvature of a mesh, one value per vertex; NaN where undefined (border vertices, isolated vertices, faces without area).
 struct Curvature {
     /// Mean curvature (k1 + k2) / 2 in 1/length, positive on a convex surface with outward normals.
     std::vector<double> mean;
     std::vector<double> gaussian;  ///< Gaussian curvature k1 k2 in 1/length^2
 };
 
-/// Curvature at the vertices. scale 0: the curvature measures of Cohen-Steiner and Morvan (2003), integrated over the faces
-/// around a vertex (edges on the outline of these faces count half) and divided by the area of these faces. scale r > 0: H =
-/// (sum w h . sum w a) / |sum w a|^2 over the part of the ball of radius r that is connected with the vertex, where h is the
-/// mean curvature vector of an edge (Sullivan 2008), a is the area vector of a face, and the weight w falls smoothly to zero at
-/// distance r. This estimate of H is exact on spheres and cylinders for any r, and insensitive to noise to first order. K = sum
-/// w (angle deficit) / sum w A. Border edges and border vertices carry no curvature. Time: number of vertices times the number
-/// of vertices in a ball. Throws Error (usage) for a scale out of range.
+/// Curvature at the vertices. scale 0: the measures of Cohen-Steiner and Morvan (2003) over the faces around a vertex (edges on
+/// the outline of these faces count half), divided by the area of these faces. scale r > 0: H = (sum w h . sum w a) / |sum w a|^2
+/// over the part of the ball of radius r that is connected with the vertex, where h is the mean curvature vector of an edge
+/// (Sullivan 2008), a the area vector of a face and w falls smoothly to zero at distance r. This estimate of H is exact on
+/// spheres and cylinders for any r, and insensitive to noise to first order. K = sum w (angle deficit) / sum w A. The sums leave
+/// out faces with a border edge (for K: with a border vertex), whose dihedral angles or deficits are unknown, so that the values
+/// one ring inside a border are those of the surface; a vertex with such faces only is evaluated from its own edges and angles.
+/// Border vertices have no curvature. Time: vertices times vertices in a ball. Throws Error (usage) for a scale out of range.
 Curvature curvature(const Mesh& mesh, const CurvatureOptions& options = {});
 
 /// Curvature integrals over each face; the integral over a region is the sum over its faces. An edge of length l and dihedral

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/options.h"
 #include "ostraka/geom/oriented_box.h"
+#include "ostraka/io/bodies.h"
 #include "ostraka/mesh/mesh.h"
 
 #include <string>
@@ -36,8 +37,9 @@ struct ComponentDiagnosis {
     /// Signed volume; for an open component, the signed volume of the cone from the centre of the object's bounding box over
     /// the component.
     double volume = 0;
-    bool inside_out = false;  ///< true: closed, with negative volume, and not a cavity
-    bool cavity = false;      ///< true: closed, with negative volume, and completely inside another closed component
+    bool inside_out = false;     ///< true: closed, with negative volume, and not a cavity
+    bool cavity = false;         ///< true: closed, with negative volume, and inside an odd number of other closed components
+    bool turned_cavity = false;  ///< true: closed, with positive volume, and inside an odd number of other closed components
     /// Euler characteristic.
     [[nodiscard]] long long euler() const { return static_cast<long long>(vertices + triangles) - static_cast<long long>(edges); }
     /// True: no non-manifold edges or vertices.
@@ -74,7 +76,7 @@ struct MeshDiagnosis {
     std::vector<BorderLoop> border_loops;        ///< closed paths of border edges, longest first
     std::vector<ComponentDiagnosis> components;  ///< connected components, sorted by smallest vertex index
     /// Number of components of each kind.
-    std::size_t inside_out_components = 0, nonorientable_components = 0, cavities = 0;
+    std::size_t inside_out_components = 0, nonorientable_components = 0, cavities = 0, turned_cavities = 0;
     // Self-intersections: pairs of triangles that coincide, or that intersect outside their common vertices and edges.
     // Degenerate triangles are ignored.
     bool self_intersections_checked = false;  ///< true: self-intersections were searched
@@ -85,8 +87,10 @@ struct MeshDiagnosis {
     std::vector<std::pair<Index, Index>> self_intersection_examples;
     // Size, in the unit of the file.
     double area = 0;
-    /// Signed sum over the triangles; equal to the volume of the solid only if the mesh is closed and oriented.
+    /// Signed sum over the triangles; equal to the volume of the solid only if the mesh is closed and oriented outwards, with
+    /// cavities oriented inwards, and no bodies overlap.
     double volume = 0;
+    SolidBodies solid;  ///< the closed components as one solid, with the volume of the solid
     double shortest_edge = 0, mean_edge = 0, longest_edge = 0;  ///< lengths of edges
     CGAL::Bbox_3 box;
     double diagonal = 0;  ///< diagonal of the bounding box of the vertices with triangles

@@ -67,6 +67,9 @@ public:
     /// elements. Statistics on points and lines use equal weights.
     std::vector<Quantity> describe(const Annotation& annotation, const std::vector<NamedMap>& maps = {});
 
+    /// Remarks on the volume of a region: bodies that are inside out or overlap, cavities that are oriented outwards.
+    std::vector<std::string> remarks(const Annotation& annotation);
+
     /// Mean and Gaussian curvature of the whole mesh, per vertex.
     const Curvature& curvature();
     /// Thickness of the whole mesh, per face; NaN if undefined.

@@ -1,8 +1,10 @@
 // The solid bounded by a region: the faces of the region, and surfaces that close its outlines.
 #pragma once
 
+#include "ostraka/io/bodies.h"
 #include "ostraka/mesh/mesh.h"
 
+#include <string>
 #include <vector>
 
 namespace ostraka {
@@ -23,7 +25,16 @@ struct RegionSolid {
 /// Throws Error (usage) for a face out of range. Time: linear, except for the hulls (n log n in the length of an outline).
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// Volume of a mesh without border, independent of its orientation; NaN for an open mesh.
+/// Volume and centroid of the solid bounded by a region, whatever the orientation of its closed components: a component inside
+/// another bounds a cavity, and bodies that overlap have a bound (see SolidBodies). Open components count as in `region_solid`,
+/// with the sign of their orientation. `remarks`: what is wrong with the
+/// orientation. Throws as `region_solid`.
+struct BodyVolume : RegionSolid {
+    std::vector<std::string> remarks;  ///< texts about orientation and overlaps; empty: nothing to report
+};
+BodyVolume body_volume(const Mesh& mesh, const std::vector<Index>& faces);
+
+/// Volume of a mesh without border, independent of its orientation (see `body_volume`); NaN for an open mesh.
 double closed_volume(const Mesh& mesh);
 
 /// Area-weighted mean of the faces' centroids, or the mean of the corners if the area is 0. Throws Error (usage) for a face out

@@ -1,12 +1,15 @@
 // annotation apply
 #include "operations/annotation/annotation_report.h"
 #include "operations/annotation/document.h"
+#include "operations/annotation/mesh_labels.h"
 #include "operations/annotation/pictures.h"
 #include "operations/operations.h"
 
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/vocabulary/vocabulary.h"
+
+#include <fmt/core.h>
 
 namespace ostraka {
 
@@ -15,11 +18,19 @@ namespace {
 struct AnnotationApply final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer per face)").optional();
+        p.input("recipe", Kind::recipe, recipe,
+                "recipe (.recipe.json) or label file (one integer per face: text, or .npy with one per face or vertex)")
+            .optional();
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.order({"mesh", "recipe", "output"});
         p.order({"mesh", "output"});
         p.options("from-ply-labels", mesh_labels, "use the labels of the mesh file itself instead of a recipe or label file");
+        p.options(
+            "from", source,
+            "source of the labels in the mesh file: label (the property of this name, or the only one that speaks of labels), "
+            "values:NAME (whole numbers of a property, such as a scalar field of CloudCompare), group or object (OBJ), "
+            "material, colour (of the faces, or else of the vertices)",
+            Words{label_sources(), "values:NAME", {}});
         p.input_option("names", Kind::text, names,
                        "JSON file with the names of the labels, such as {\"0\": \"seat\", \"1\": \"back\"}; other labels are "
                        "named 'part N'");
@@ -32,10 +43,13 @@ struct AnnotationApply final : Operation {
     }
 
     void check() const override {
-        if (mesh_labels == static_cast<bool>(recipe))
-            fail_usage(mesh_labels ? "--from-ply-labels takes a mesh and an output"
-                                   : "a mesh, a recipe or label file, and an output are needed",
-                       mesh_labels ? "leave out the recipe or label file" : "give them, or --from-ply-labels");
+        const bool own = mesh_labels || !source.empty();
+        if (own == static_cast<bool>(recipe))
+            fail_usage(own ? fmt::format("{} takes a mesh and an output", mesh_labels ? "--from-ply-labels" : "--from")
+                           : "a mesh, a recipe or label file, and an output are needed",
+                       own ? "leave out the recipe or label file" : "give them, or --from-ply-labels, or --from");
+        if (mesh_labels && !source.empty() && source != "label")
+            fail_usage("--from-ply-labels with --from " + source, "give one of the two");
         if (edited && !is_document(recipe)) fail_usage("--edit needs a recipe", "give a recipe whose steps edit the annotations");
     }
 
@@ -64,15 +78,17 @@ struct AnnotationApply final : Operation {
     }
 
     AnnotationSet from_labels(Context& context, const MeshFile& file) const {
-        std::vector<std::int32_t> labels;
-        if (recipe)
-            context.record([&] { labels = read_labels(recipe.path(), file.mesh.number_of_faces(), file.polygon_of_triangle); });
-        else labels = labels_in(file);
-        if (labels.empty())
-            fail_input(mesh.file(), "has no labels",
-                       "give a PLY file with a face or vertex property \"label\", a label file or a recipe");
+        MeshLabels labels;
+        context.record([&] {
+            labels =
+                recipe ? labels_in_file(recipe.path(), file)
+                       : labels_from(file, mesh.sources.front().object ? Path() : mesh.sources.front().file, source, mesh.file());
+        });
+        if (!labels.source.empty()) context.note("labels: " + labels.source);
         using Names = std::map<std::int32_t, std::string>;
-        return regions_from_labels(file.mesh, labels, names ? names.load<Names>(read_label_names) : Names());
+        const Names own_names = names ? names.load<Names>(read_label_names) : Names();
+        for (const auto& [label, name] : own_names) labels.names[label] = name;
+        return regions_from_labels(file.mesh, labels.of_face, labels.names);
     }
 
     MeshInput mesh;
@@ -81,6 +97,7 @@ struct AnnotationApply final : Operation {
     AnnotationsOutput output;
     AnnotationPictures pictures;
     CheckVocabularyOptions words;
+    std::string source;
     bool mesh_labels = false;
 };
 

@@ -1,8 +1,12 @@
 // annotation import
 #include "operations/annotation/interchange_format.h"
+#include "operations/annotation/mesh_labels.h"
 #include "operations/operations.h"
 
+#include "ostraka/annotation/label_file.h"
 #include "ostraka/interchange/interchange.h"
+
+#include <fmt/core.h>
 
 namespace ostraka {
 
@@ -11,11 +15,15 @@ namespace {
 struct AnnotationImport final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("input", Kind::text, input, "file to read, in the format of another tool");
+        p.input("input", Kind::text, input,
+                "file to read, in the format of another tool; also a copy of the mesh with labels, such as scalar fields of "
+                "CloudCompare (.ply, .obj), or an array of labels (.npy)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
         p.input_option("onto", Kind::annotations, onto,
                        "annotations to which the annotations or attributes in the file are added");
+        p.options("from", source, "source of the labels in a copy of the mesh (see annotation apply)",
+                  Words{label_sources(), "values:NAME", {}});
         options.list_options(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),
@@ -23,6 +31,7 @@ struct AnnotationImport final : Operation {
     }
 
     void run(Context& context, Report& report) override {
+        if (!format && holds_labels(input.file())) return import_labels(context, report);
         const auto& bytes = input.load<std::string>(read_file);
         if (!format) format = guess_interchange_format(input.file(), bytes);
         const Mesh& surface = mesh->mesh;
@@ -46,11 +55,53 @@ struct AnnotationImport final : Operation {
         output.write(std::move(placed.set), surface, mesh.file());
     }
 
+    static bool holds_labels(const std::string& file) {
+        const std::string ending = extension(file);
+        return ending == ".npy" || ending == ".ply" || ending == ".obj" || ending == ".labels" || ending == ".seg";
+    }
+
+    void import_labels(Context& context, Report& report) const {
+        const MeshFile& target = *mesh;
+        const Path path = input.path();
+        const std::string ending = extension(path);
+        MeshLabels labels;
+        context.record([&] {
+            if (ending != ".ply" && ending != ".obj") {
+                labels = labels_in_file(path, target);
+                return;
+            }
+            const MeshFile copy = read_mesh(path);
+            if (copy.mesh.number_of_faces() != target.mesh.number_of_faces() ||
+                copy.mesh.number_of_vertices() != target.mesh.number_of_vertices())
+                fail_input(
+                    input.file(),
+                    fmt::format("has {} vertices and {} faces, the mesh {} and {}", copy.mesh.number_of_vertices(),
+                                copy.mesh.number_of_faces(), target.mesh.number_of_vertices(), target.mesh.number_of_faces()),
+                    "apply its labels to it ('annotation apply'), then 'annotation transfer' them");
+            labels = labels_from(copy, path, source, input.file());
+        });
+        if (!labels.source.empty()) context.note("labels: " + labels.source);
+        AnnotationSet set = regions_from_labels(target.mesh, labels.of_face, labels.names);
+        if (onto) {
+            AnnotationSet sum = onto.on(target.mesh);
+            sum.provenance.SetNull();
+            for (Annotation& annotation : set.annotations) {
+                if (sum.find(annotation.id) != nullptr) annotation.id = free_id(sum);
+                sum.annotations.push_back(std::move(annotation));
+            }
+            set = std::move(sum);
+        }
+        report("format", "labels")("annotations", set.annotations.size());
+        report.empty_table("placed", false);
+        output.write(std::move(set), target.mesh, mesh.file());
+    }
+
     MeshInput mesh;
     FileInput input;
     AnnotationsInput onto;
     AnnotationsOutput output;
     std::optional<std::string> format;
+    std::string source;
     ImportOptions options;
 };
 

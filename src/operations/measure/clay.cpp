@@ -43,6 +43,11 @@ struct MeasureClay final : Operation {
         }
         report("unit", length_unit)("volume of the mesh", mesh_volume);
         report.line(sentence(clay, mesh_volume));
+        if (const double cavity = clay.envelope - clay.maximum; cavity > 1e-3 * clay.envelope)
+            report.line(
+                fmt::format("the space within the outer surface that is not clay, the difference of the two, is {}: the "
+                            "cavities as far as they were scanned ('ostraka measure capacity': up to the overflow or a level)",
+                            volume(cavity)));
         add_notes(report, clay);
         if (std::isnan(clay.maximum)) report.answer_no();
     }
@@ -56,6 +61,7 @@ struct MeasureClay final : Operation {
         return {{"most clay", clay.maximum, "length^3"},
                 {"least clay", clay.minimum, "length^3"},
                 {"within the outer surface", clay.envelope, "length^3"},
+                {"cavity seen", clay.envelope - clay.maximum, "length^3"},
                 {"wall taken for least", clay.wall, "length"},
                 {"wall seen, mean", clay.wall_mean, "length"},
                 {"wall seen, least (5 % quantile)", clay.wall_min, "length"},

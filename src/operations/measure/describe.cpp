@@ -41,6 +41,8 @@ struct MeasureDescribe final : Operation {
         report.empty_table("");
         for (Annotation* annotation : selected(set)) {
             std::vector<Quantity> quantities = quantities_of(*annotation, search, named_maps);
+            for (const std::string& remark : search.remarks(*annotation))
+                report.note(fmt::format("volume of {}: {}", name_of(*annotation), remark));
             if (colours && annotation->type == AnnotationType::region) add_colours({mesh, set}, *annotation, quantities);
             store(*annotation, quantities, set.unit);
             report_result(report, *annotation, quantities, set.unit);
