@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace ostraka {
 namespace {
@@ -176,6 +177,22 @@ TEST(Capacity, UnscannedWallGivesAnUpperBoundOnly) {
     const Capacity capacity = find_capacity(build_mesh(soup), upwards);
     EXPECT_FALSE(capacity.known());
     EXPECT_NE(capacity.reason.find("hole below its rim"), std::string::npos) << capacity.reason;
+}
+
+TEST(Capacity, AMissingTriangleOfTheRimOrTheBaseDoesNotMakeClayACavity) {
+    // A thick-walled cup, whose clay has more volume than its cavity, with a triangle missing at the rim or at the base.
+    const std::vector<Vector2d> thick{{0, 0}, {10, 0}, {10, 40}, {4, 40}, {4, 10}, {0, 10}};
+    for (const double height : {40.0, 0.0}) {
+        TriangleSoup soup = to_soup(revolve_profile(thick, 90));
+        bool removed = false;
+        std::erase_if(soup.triangles, [&](const auto& t) {
+            const bool level = soup.points[t[0]][2] == height && soup.points[t[1]][2] == height && soup.points[t[2]][2] == height;
+            return level && !std::exchange(removed, removed || level);
+        });
+        const Capacity capacity = find_capacity(build_mesh(soup), upwards);
+        ASSERT_TRUE(capacity.known()) << capacity.reason;
+        EXPECT_NEAR(capacity.full.volume, pi * 16 * 30, 1e-6 * pi * 16 * 30) << "missing at " << height;
+    }
 }
 
 TEST(Capacity, TwoCompartmentsCountTogetherAboveTheirPartition) {
