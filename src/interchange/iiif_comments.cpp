@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -304,7 +305,7 @@ SceneMotion scene_motion(const std::vector<SceneTarget>& targets, const Placer& 
     static constexpr std::pair<const char*, double> units[]{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}};
     for (const auto& [unit, metres] : units)
         for (int axis = 0; axis < 6; ++axis) {
-            const Vector3d up = (axis < 3 ? 1 : -1) * Vector3d::Unit(axis % 3);
+            const Vector3d up = (axis < 3 ? 1.0 : -1.0) * Vector3d::Unit(axis % 3);
             SceneMotion motion;
             motion.rotation = rotation_between(up, Vector3d::UnitY()).conjugate();
             motion.scale = metres;

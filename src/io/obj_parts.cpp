@@ -2,7 +2,9 @@
 
 #include "ostraka/core/message_text.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 namespace ostraka {
 
@@ -12,12 +14,17 @@ ObjParts read_obj_parts(const Path& file, ObjStatement statement) {
     ObjParts parts;
     std::map<std::string, std::int32_t> number;
     std::string name;
-    bool named = false, continues = false;
+    bool named = false;
+    std::string logical;  // lines that end with a backslash are joined with the next
     for (std::size_t at = 0; at < text.size();) {
-        std::string_view line = trimmed(line_at(text, at));
-        const bool continued = continues;  // the line before ended with a backslash
-        continues = line.ends_with('\\');
-        if (continued || line.empty() || line.front() == '#') continue;
+        const std::string_view part = trimmed(line_at(text, at));
+        if (part.ends_with('\\')) {
+            logical += std::string(part.substr(0, part.size() - 1)) + ' ';
+            continue;
+        }
+        const std::string joined_line = std::exchange(logical, std::string()) + std::string(part);
+        const std::string_view line = trimmed(joined_line);
+        if (line.empty() || line.front() == '#') continue;
         const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
         const std::string_view word = line.substr(0, end);
         if (word == keyword) {

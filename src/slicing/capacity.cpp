@@ -56,6 +56,7 @@ std::vector<Candidate> candidates_at(const Flood& flood, double level) {
         const Index set = line.sets.find(line.region(i));
         if (!line.loops[i].clay && set != line.sets.find(line.unbounded())) pools[set].level = level;
     }
+    std::erase_if(pools, [&](const auto& pool) { return line.between_walls(pool.first); });
     std::vector<Index> lowest(line.pieces, no_index);
     for (Index v = 0; v < line.piece.size(); ++v)
         if (const Index p = line.piece[v]; p != no_index && (lowest[p] == no_index || flood.height(v) < flood.height(lowest[p])))
@@ -167,19 +168,21 @@ std::vector<Pool> pools_of(const Mesh& mesh, const Flood& flood) {
     for (const auto& list : found) candidates.insert(candidates.end(), list.begin(), list.end());
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.volume > b.volume; });
-    std::vector<Pool> pools;
+    std::vector<Pool> pools, clay;
     for (const Candidate& candidate : candidates) {
         constexpr std::size_t max_pools = 8;
         if (pools.size() == max_pools || candidate.volume < 0.01 * candidates.front().volume) break;
-        if (std::any_of(pools.begin(), pools.end(), [&](Pool& pool) { return pool.line.set_of(candidate.seed) == pool.set; }))
-            continue;
+        const auto holds = [&](Pool& pool) { return pool.line.set_of(candidate.seed) == pool.set; };
+        if (std::any_of(pools.begin(), pools.end(), holds) || std::any_of(clay.begin(), clay.end(), holds)) continue;
         Pool pool;
         pool.seed = candidate.seed;
         const std::optional<double> level = flood.overflow(candidate.seed, candidate.level);
         pool.sealed = !level;
         fill(flood, pool, level.value_or(flood.heights().back()));
         if (pool.set == no_index) continue;
-        pools.push_back(std::move(pool));
+        // What is a hollow at a low level may be the inside of a wall higher up.
+        if (pool.line.between_walls(pool.set)) clay.push_back(std::move(pool));
+        else pools.push_back(std::move(pool));
     }
     for (Pool& pool : pools) pool.cavity = cavity_of(mesh, flood, pool);
     std::stable_sort(pools.begin(), pools.end(), [](const Pool& a, const Pool& b) { return a.size.volume > b.size.volume; });

@@ -60,7 +60,7 @@ Flood::Flood(const Mesh& mesh, const SliceFrame& frame)
     Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (const Vertex v : mesh.vertices()) {
         const Eigen::Vector2d place = frame.place(mesh.point(v));
-        places_[v] = {place.x(), place.y(), frame.height(mesh.point(v))};
+        places_[v] = Eigen::Vector3d(place.x(), place.y(), frame.height(mesh.point(v)));
         if (mesh.is_isolated(v)) continue;
         heights_.push_back(places_[v].z());
         low = low.cwiseMin(places_[v]), high = high.cwiseMax(places_[v]);
@@ -165,7 +165,8 @@ void Flood::trace_loops(Waterline& line) const {
         // Seen from above, the normals point to the left of a contour that runs from rising to falling edges.
         const Index normal_side = 2 * line.piece[foot], back = normal_side + 1;
         loop.inside = loop.area > 0 ? normal_side : back, loop.outside = loop.area > 0 ? back : normal_side;
-        loop.clay = closed_[component_[foot]] != 0;  // completed by nest_loops
+        loop.component = component_[foot];
+        loop.clay = closed_[loop.component] != 0;  // completed by nest_loops
         line.loops.push_back(loop);
         outlines.push_back(std::move(outline));
     }

@@ -31,6 +31,7 @@ struct Waterline {
         Index inside = 0, outside = 0;  ///< nodes
         Index parent = 0;               ///< the region around the loop, 0: the unbounded one
         bool clay = false;              ///< true: the region within is enclosed by an odd number of closed components
+        Index component = 0;            ///< component of the mesh
     };
     std::vector<Loop> loops;
     std::size_t crossing = 0;  ///< number of loops that cross others
@@ -41,6 +42,17 @@ struct Waterline {
     [[nodiscard]] Index set_of(const WetPlace& place) {
         const Index p = piece[place.vertex];
         return p == no_index ? no_index : sets.find(2 * p + static_cast<Index>(place.side));
+    }
+    /// True if a set lies between two walls of one component: there is clay, though the component has a border somewhere.
+    [[nodiscard]] bool between_walls(Index set) {
+        const Index outside = sets.find(unbounded());
+        if (set == outside) return false;
+        for (std::size_t i = 0; i < loops.size(); ++i) {
+            if (loops[i].parent == 0 || loops[loops[i].parent - 1].component != loops[i].component) continue;
+            const Index inner = sets.find(region(i));
+            if (sets.find(region(loops[i].parent - 1)) == set && inner != set && inner != outside) return true;
+        }
+        return false;
     }
     /// True if the place is below the plane and connected with the unbounded region.
     [[nodiscard]] bool spilled(const WetPlace& place) {

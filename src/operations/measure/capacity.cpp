@@ -185,7 +185,7 @@ struct MeasureCapacity final : Operation {
         Vector best = axes.front();
         for (const Vector& candidate : axes)
             for (const double sign : {1.0, -1.0})
-                if (const double volume = held(surface, sign * candidate); volume > most) most = volume, best = sign * candidate;
+                if (const double amount = held(surface, sign * candidate); amount > most) most = amount, best = sign * candidate;
         return best;
     }
 
@@ -199,10 +199,10 @@ struct MeasureCapacity final : Operation {
     /// Whether a vessel stands on its mouth: turned over, it holds at least three times as much.
     [[nodiscard]] double held_overturned(const Mesh& surface, const Capacity& capacity) const {
         if (up == "auto" || up == "axis") return 0;
-        const double volume = capacity.main ? capacity.full.volume : 0;
-        if (volume > 0.1 * capacity.box) return 0;
+        const double upright = capacity.main ? capacity.full.volume : 0;
+        if (upright > 0.1 * capacity.box) return 0;
         const double turned = held(surface, -capacity.up);
-        return turned > std::max(3 * volume, min_cavity_share * capacity.box) ? turned : 0;
+        return turned > std::max(3 * upright, min_cavity_share * capacity.box) ? turned : 0;
     }
 
     void report_result(Report& report, const Mesh& surface, const Capacity& capacity) const {
@@ -210,9 +210,9 @@ struct MeasureCapacity final : Operation {
         const double overturned = held_overturned(surface, capacity);
         std::string reason = capacity.reason;
         if (overturned > 0)
-            reason =
-                fmt::format("the vessel stands upside down; turned over it holds {} (--up auto, or --up={},{},{})",
-                            volume(overturned), number(-capacity.up.x()), number(-capacity.up.y()), number(-capacity.up.z()));
+            reason = fmt::format("the vessel stands upside down; turned over it holds {} (--up auto, or --up={},{},{})",
+                                 volume(overturned), number(0 - capacity.up.x()), number(0 - capacity.up.y()),
+                                 number(0 - capacity.up.z()));
         report("known", reason.empty())("reason", reason)("up", triple(capacity.up))("overturned", overturned > 0)("unit",
                                                                                                                    length_unit);
         report("noise", capacity.noise)("upError", options.up_error);
