@@ -156,7 +156,8 @@ private:
         std::vector<Landmarks> absent;
         for (std::size_t i = 0; i < complete_.size(); ++i)
             absent.push_back(frame.maps[i].apply(rows_of(complete_[i], split.absent)));
-        const MatrixXd x = shape_rows(std::vector<Landmarks>(frame.aligned.begin(), frame.aligned.end() - 1)), y = shape_rows(absent);
+        const MatrixXd x = shape_rows(std::vector<Landmarks>(frame.aligned.begin(), frame.aligned.end() - 1)),
+                       y = shape_rows(absent);
         const Prediction prediction(x, y, best_count(x, y));
         const Eigen::RowVectorXd predicted = prediction(shape_rows({frame.aligned.back()}));
         const SimilarityMap& map = frame.maps.back();

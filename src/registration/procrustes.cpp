@@ -150,8 +150,9 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
 }
 
 bool are_planar(const std::vector<Landmarks>& configurations) {
-    return !configurations.empty() && std::all_of(configurations.begin(), configurations.end(),
-                                                  [](const Landmarks& x) { return x.rows() > 0 && (x.col(2).array() == 0).all(); });
+    return !configurations.empty() && std::all_of(configurations.begin(), configurations.end(), [](const Landmarks& x) {
+        return x.rows() > 0 && (x.col(2).array() == 0).all();
+    });
 }
 
 Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {

@@ -25,7 +25,8 @@ Places places_of(const LandmarkSpecimen& specimen, const Path& file) {
         const std::string& name = specimen.landmarks[k];
         if (!names.insert(name).second)
             fail_input(file.string(), fmt::format("two landmarks are called '{}'", name), "give each landmark its own name");
-        if (const auto& position = specimen.positions[k]) places.emplace(name, Point((*position)[0], (*position)[1], (*position)[2]));
+        if (const auto& position = specimen.positions[k])
+            places.emplace(name, Point((*position)[0], (*position)[1], (*position)[2]));
     }
     return places;
 }
@@ -128,7 +129,8 @@ LandmarkMembers read_landmark_members(const std::vector<Path>& files, MissingInM
         }
         check_unit(set, file, result.landmark_template);
         if (set.dimension != sample.dimension)
-            fail_input(file.string(), fmt::format("has landmarks in {} dimensions, the first file in {}", set.dimension, sample.dimension),
+            fail_input(file.string(),
+                       fmt::format("has landmarks in {} dimensions, the first file in {}", set.dimension, sample.dimension),
                        "leave it out");
         for (const LandmarkSpecimen& specimen : set.specimens) {
             const std::string name = set.specimens.size() == 1 ? object_name(file) : specimen.name;
@@ -154,8 +156,8 @@ LandmarkMembers read_landmark_members(const std::vector<Path>& files, MissingInM
             member_of(sample.specimens[s], completed.sample.configurations[s], counts[s], result.landmark_template));
         for (const MissingLandmark& estimated : completed.missing)
             if (estimated.specimen == s)
-                result.members.back().fit.notes.push_back(
-                    fmt::format("landmark '{}' is missing and was estimated ({})", sample.landmarks[estimated.landmark], estimated.how));
+                result.members.back().fit.notes.push_back(fmt::format("landmark '{}' is missing and was estimated ({})",
+                                                                      sample.landmarks[estimated.landmark], estimated.how));
     }
     return result;
 }

@@ -32,8 +32,8 @@ LandmarkSpecimens planar_specimens() {
         for (std::size_t k = 0; k < 10; ++k) {
             std::array<double, 2> p{};
             for (std::size_t c = 0; c < 2; ++c)
-                p[c] = std::exp(log_size) * (mean[k][c] + (s % 2 == 0 ? 0.1 : -0.1) * species[k][c] + 0.2 * log_size * slope[k][c] +
-                                             0.03 * random.normal());
+                p[c] = std::exp(log_size) * (mean[k][c] + (s % 2 == 0 ? 0.1 : -0.1) * species[k][c] +
+                                             0.2 * log_size * slope[k][c] + 0.03 * random.normal());
             specimen.landmarks.push_back(std::to_string(k + 1));
             specimen.positions.push_back(std::array<double, 3>{std::cos(angle) * p[0] - std::sin(angle) * p[1] + 5,
                                                                std::sin(angle) * p[0] + std::cos(angle) * p[1], 0});
@@ -69,7 +69,8 @@ TEST(LandmarkStudyCommand, ReadsOneFileWithManySpecimens) {
     EXPECT_STREQ(left_out["result"]["odd"][0]["cause"].GetString(), "exchanged");
     EXPECT_STREQ(left_out["result"]["odd"][0]["landmarks"][1].GetString(), "8");
     for (const char* method : {"tps", "regression"}) {
-        const Json estimated = report_of(command + quoted(scratch / method) + " --missing " + method + " --scaling --leave-odd-out");
+        const Json estimated =
+            report_of(command + quoted(scratch / method) + " --missing " + method + " --scaling --leave-odd-out");
         EXPECT_EQ(estimated["result"]["landmarks"].GetInt(), 10);
         EXPECT_EQ(estimated["result"]["objects"].GetInt(), 39);
         EXPECT_STREQ(estimated["result"]["missing"][0]["how"].GetString(), method);
@@ -101,7 +102,8 @@ TEST(LandmarkStudyCommand, FoldersMayMixFormats) {
     write_file(scratch / "in" / "fish4.csv", table);
     write_file(scratch / "in" / "fish5.pts", pts + "}\n");
     write_file(scratch / "in" / "truth.csv", "name,label\nfish1,x\nfish2,y\n");
-    const Json report = report_of("study landmarks " + quoted(scratch / "in") + " --own-truth --output " + quoted(scratch / "out"));
+    const Json report =
+        report_of("study landmarks " + quoted(scratch / "in") + " --own-truth --output " + quoted(scratch / "out"));
     EXPECT_EQ(report["result"]["objects"].GetInt(), 5);
     EXPECT_EQ(report["result"]["landmarks"].GetInt(), 10);
     EXPECT_EQ(report["result"]["truth"]["labelled"].GetInt(), 2);
@@ -156,8 +158,9 @@ TEST(StudyShapeCommand, SeparatesSymmetricAndAsymmetricShape) {
     }
     write_file(scratch / "faces.tps", specimens_to_tps(set));
     write_file(scratch / "faces.csv", table);
-    const Json report = report_of("study shape " + quoted(scratch / "faces.tps") + " --table " + quoted(scratch / "faces.csv") +
-                                  " --symmetry object --individual individual --permutations 99 --output " + quoted(scratch / "out"));
+    const Json report =
+        report_of("study shape " + quoted(scratch / "faces.tps") + " --table " + quoted(scratch / "faces.csv") +
+                  " --symmetry object --individual individual --permutations 99 --output " + quoted(scratch / "out"));
     const auto& rows = report["result"]["anova"];
     ASSERT_EQ(rows.Size(), 5U);
     EXPECT_STREQ(rows[1]["term"].GetString(), "side");
@@ -173,7 +176,8 @@ TEST(TemplateLearnCommand, LearnsAClassFromOneFileOfManySpecimens) {
     LandmarkSpecimens set = planar_specimens();
     set.specimens[3].positions[2].reset();
     write_file(scratch / "fish.tps", specimens_to_tps(set));
-    const std::string command = "template learn " + quoted(scratch / "fish.tps") + " --name fish --output " + quoted(scratch / "class");
+    const std::string command =
+        "template learn " + quoted(scratch / "fish.tps") + " --name fish --output " + quoted(scratch / "class");
     const auto refused = run_command(command);
     EXPECT_EQ(refused.code, 1);
     EXPECT_NE(refused.err.find("fish4"), std::string::npos) << refused.err;

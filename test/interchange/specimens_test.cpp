@@ -52,10 +52,13 @@ TEST(Specimens, TpsHasSpecimensCurvesAndScales) {
     const LandmarkSpecimens spatial = specimens_from_text("LM3=1\n1 2 3\nID=a\nLM3=1\n4 5 6\n", "x.tps");
     EXPECT_EQ(spatial.dimension, 3);
     EXPECT_EQ(names_of(spatial), (std::vector<std::string>{"a", "x 2"}));
-    EXPECT_NE(message([] { specimens_from_text("LM=1\n1 2\nLM3=1\n1 2 3\n", "x.tps"); }).find("two- and three-"), std::string::npos);
+    EXPECT_NE(message([] { specimens_from_text("LM=1\n1 2\nLM3=1\n1 2 3\n", "x.tps"); }).find("two- and three-"),
+              std::string::npos);
     EXPECT_NE(message([] { specimens_from_text("LM=2\n1 2\n1 2 3\n", "x.tps"); }).find("line 3"), std::string::npos);
-    EXPECT_NE(message([] { specimens_from_text("LM=2\n1 2\nCURVES=1\nPOINTS=3\n1 2\n", "x.tps"); }).find("line 3"), std::string::npos);
-    EXPECT_NE(message([] { specimens_from_text("LM=1\n1 2\nCURVES=1\nPOINTS=3\n1 2\n", "x.tps"); }).find("fewer"), std::string::npos);
+    EXPECT_NE(message([] { specimens_from_text("LM=2\n1 2\nCURVES=1\nPOINTS=3\n1 2\n", "x.tps"); }).find("line 3"),
+              std::string::npos);
+    EXPECT_NE(message([] { specimens_from_text("LM=1\n1 2\nCURVES=1\nPOINTS=3\n1 2\n", "x.tps"); }).find("fewer"),
+              std::string::npos);
 }
 
 TEST(Specimens, TpsRoundTrips) {
@@ -76,8 +79,8 @@ TEST(Specimens, NtsAndDtaFollowTheirHeader) {
     EXPECT_EQ(nts.dimension, 2);
     EXPECT_EQ(names_of(nts), (std::vector<std::string>{"first", "second"}));
     EXPECT_EQ(nts.specimens[0].positions, (std::vector<Position>{at(1, 2), at(3, 4), {}}));
-    const LandmarkSpecimens dta = specimens_from_text(
-        "'landmarks\n1 2L 6 1 -1 DIM=3\nskull1\nskull2\n1 2 3\n-1 -1 -1\n\n4 5 6\n7 8 9\n", "skulls.dta");
+    const LandmarkSpecimens dta =
+        specimens_from_text("'landmarks\n1 2L 6 1 -1 DIM=3\nskull1\nskull2\n1 2 3\n-1 -1 -1\n\n4 5 6\n7 8 9\n", "skulls.dta");
     EXPECT_EQ(dta.dimension, 3);
     EXPECT_EQ(dta.specimens[0].positions, (std::vector<Position>{at(1, 2, 3), {}})) << "a code of the file's own";
     EXPECT_EQ(dta.specimens[1].positions[1], at(7, 8, 9));
@@ -105,16 +108,19 @@ TEST(Specimens, PtsOfTwoKindsAndMorphologika) {
     const LandmarkSpecimens face = specimens_from_text("version: 1\nn_points: 2\n{\n1.5 2\n3 4\n}\n", "face.pts");
     EXPECT_EQ(face.dimension, 2);
     EXPECT_EQ(face.specimens[0].positions, (std::vector<Position>{at(1.5, 2), at(3, 4)}));
-    EXPECT_NE(message([] { specimens_from_text("Version 1.0\n3\nS000 1 2 3\n", "skull.pts"); }).find("states 3"), std::string::npos);
+    EXPECT_NE(message([] { specimens_from_text("Version 1.0\n3\nS000 1 2 3\n", "skull.pts"); }).find("states 3"),
+              std::string::npos);
     EXPECT_NE(message([] { specimens_from_text("S000 1 2 3\nS1 1 2\n", "skull.pts"); }).find("line 2"), std::string::npos);
-    const std::string morphologika = "[individuals]\n2\n[landmarks]\n2\n[dimensions]\n3\n[names]\nHomo\nPan\n[labels]\nsex site\n"
-                                     "[labelvalues]\nf A\nm B\n[rawpoints]\n'1\n1 2 3\nNA NA NA\n\n'2\n4 5 6\n7 8 9\n";
+    const std::string morphologika =
+        "[individuals]\n2\n[landmarks]\n2\n[dimensions]\n3\n[names]\nHomo\nPan\n[labels]\nsex site\n"
+        "[labelvalues]\nf A\nm B\n[rawpoints]\n'1\n1 2 3\nNA NA NA\n\n'2\n4 5 6\n7 8 9\n";
     const LandmarkSpecimens two = specimens_from_text(morphologika, "apes.txt");
     EXPECT_EQ(names_of(two), (std::vector<std::string>{"Homo", "Pan"}));
     EXPECT_EQ(two.specimens[1].properties.at("site"), "B");
     EXPECT_FALSE(two.specimens[0].positions[1]);
-    EXPECT_NE(message([&] { specimens_from_text(morphologika.substr(0, morphologika.size() - 7), "apes.txt"); }).find("specimen 2"),
-              std::string::npos);
+    EXPECT_NE(
+        message([&] { specimens_from_text(morphologika.substr(0, morphologika.size() - 7), "apes.txt"); }).find("specimen 2"),
+        std::string::npos);
 }
 
 TEST(Specimens, TablesHaveOneRowPerSpecimenOrPerLandmark) {

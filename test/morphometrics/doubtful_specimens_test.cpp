@@ -32,8 +32,8 @@ TEST(DoubtfulSpecimens, OneErrorIsNamed) {
         EXPECT_EQ(doubts[0].specimen, 7U);
         EXPECT_EQ(doubts[0].cause, DoubtCause::mirrored);
         ShapeSample displaced = clean;
-        displaced.configurations[0].row(5) += Eigen::RowVector3d(1, dimension == 2 ? 1 : 0, dimension == 3 ? 1 : 0) *
-                                              0.5 * centroid_size(clean.configurations[0]);
+        displaced.configurations[0].row(5) +=
+            Eigen::RowVector3d(1, dimension == 2 ? 1 : 0, dimension == 3 ? 1 : 0) * 0.5 * centroid_size(clean.configurations[0]);
         doubts = doubtful_specimens(displaced);
         ASSERT_EQ(doubts.size(), 1U);
         EXPECT_EQ(doubts[0].cause, DoubtCause::displaced);
@@ -85,7 +85,9 @@ TEST(DoubtfulSpecimens, ExchangedLandmarksOfSkullsAreNamed) {
         const std::size_t s = random.below(sample.specimens.size()), a = random.below(sample.landmarks.size());
         std::size_t b = random.below(sample.landmarks.size() - 1);
         b += b >= a ? 1 : 0;
-        changed.configurations[s].row(static_cast<Eigen::Index>(a)).swap(changed.configurations[s].row(static_cast<Eigen::Index>(b)));
+        changed.configurations[s]
+            .row(static_cast<Eigen::Index>(a))
+            .swap(changed.configurations[s].row(static_cast<Eigen::Index>(b)));
         for (const Doubt& doubt : doubtful_specimens(changed))
             named += doubt.specimen == s && doubt.cause == DoubtCause::exchanged &&
                              doubt.landmarks == std::vector<std::size_t>{std::min(a, b), std::max(a, b)}

@@ -72,7 +72,8 @@ TEST(Sliding, OnASurfacePointsStayOnItAndEnergyFalls) {
     std::vector<Eigen::RowVector3d> places;
     for (int c = 0; c < 3; ++c)
         for (const double sign : {-1.0, 1.0}) places.push_back(sign * Eigen::RowVector3d::Unit(c));
-    for (int k = 0; k < 12; ++k) places.push_back(Eigen::RowVector3d(random.normal(), random.normal(), random.normal()).normalized());
+    for (int k = 0; k < 12; ++k)
+        places.push_back(Eigen::RowVector3d(random.normal(), random.normal(), random.normal()).normalized());
     for (std::size_t k = 0; k < places.size(); ++k) sample.landmarks.push_back(std::to_string(k));
     for (int s = 0; s < 8; ++s) {
         Landmarks x(18, 3);

@@ -55,8 +55,8 @@ TEST(PermutedModel, TwoWayAnalysisOfWarpBreaks) {
         EXPECT_NEAR(*anova.row("tension").f, 8.498, 0.0005);
         EXPECT_FALSE(anova.row("tension").p);
     }
-    const Anova nested = permuted_anova(column(breaks), variables, parse_model("wool * tension", variables), options,
-                                        {{"wool", "wool:tension"}});
+    const Anova nested =
+        permuted_anova(column(breaks), variables, parse_model("wool * tension", variables), options, {{"wool", "wool:tension"}});
     EXPECT_NEAR(*nested.row("wool").f, 450.6667 / (1002.7778 / 2), 1e-4);
     EXPECT_EQ(nested.row("wool").error, "wool:tension");
     EXPECT_THROW(permuted_anova(column(breaks), variables, parse_model("wool", variables), options, {{"wool", "colour"}}), Error);
@@ -80,7 +80,8 @@ TEST(PermutedModel, UnbalancedTypesFollowTheirDefinitions) {
         options.type = type;
         return permuted_anova(Y, variables, parse_model(model, variables), options);
     };
-    const Anova first = analysis("a * b + x", SumsOfSquares::sequential), second = analysis("a * b + x", SumsOfSquares::hierarchical),
+    const Anova first = analysis("a * b + x", SumsOfSquares::sequential),
+                second = analysis("a * b + x", SumsOfSquares::hierarchical),
                 third = analysis("a * b + x", SumsOfSquares::marginal);
     EXPECT_NEAR(first.row("a:b").squares, third.row("a:b").squares, 1e-10) << "the last term";
     EXPECT_NEAR(second.row("b").squares, analysis("a + x + b", SumsOfSquares::sequential).row("b").squares, 1e-10);
@@ -98,8 +99,8 @@ TEST(PermutedModel, UnbalancedTypesFollowTheirDefinitions) {
 }
 
 TEST(PermutedModel, ModelsAreReadAndConfoundedTermsNoted) {
-    const std::vector<ModelVariable> variables{factor("a", {"1", "2", "1", "2"}), factor("b", {"x", "y", "x", "y"}),
-                                               {"log(size)", false, {}, {1, 2, 3, 5}}};
+    const std::vector<ModelVariable> variables{
+        factor("a", {"1", "2", "1", "2"}), factor("b", {"x", "y", "x", "y"}), {"log(size)", false, {}, {1, 2, 3, 5}}};
     const auto names = [&](const std::string& model) {
         std::string text;
         for (const ModelTerm& term : parse_model(model, variables)) text += term.name + " ";
@@ -140,7 +141,8 @@ TEST(PermutedModel, PValuesAreUniformWithoutAnEffectAndRepeat) {
 
 TEST(PermutedModel, RepeatabilityIsTheIntraclassCorrelation) {
     // Two measurements of three individuals: mean squares 8 among and 1 within, (8 - 1) / (8 + 1).
-    const auto result = repeatability(column({-2 - std::sqrt(0.5), -2 + std::sqrt(0.5), -std::sqrt(0.5), std::sqrt(0.5), 2 - std::sqrt(0.5), 2 + std::sqrt(0.5)}),
+    const auto result = repeatability(column({-2 - std::sqrt(0.5), -2 + std::sqrt(0.5), -std::sqrt(0.5), std::sqrt(0.5),
+                                              2 - std::sqrt(0.5), 2 + std::sqrt(0.5)}),
                                       {"a", "a", "b", "b", "c", "c"});
     ASSERT_TRUE(result);
     EXPECT_NEAR(result->repeats, 2, 1e-12);

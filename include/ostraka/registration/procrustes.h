@@ -25,9 +25,10 @@ struct SimilarityMap {
 };
 
 struct ProcrustesOptions {
-    bool scaling = false;                 ///< true: scale all configurations to the same size
-    bool reflection = false;              ///< true: treat mirror images as the same shape
-    /// True: rotations are about the z axis only, for two-dimensional landmarks (z is 0), which a half turn in space would mirror.
+    bool scaling = false;     ///< true: scale all configurations to the same size
+    bool reflection = false;  ///< true: treat mirror images as the same shape
+    /// True: rotations are about the z axis only, for two-dimensional landmarks (z is 0), which a half turn in space would
+    /// mirror.
     bool planar = false;
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

@@ -18,8 +18,8 @@ struct LandmarkTemplate : AnnotatedMesh {
     RelationGraph graph;                                                  ///< empty
     [[nodiscard]] ClassTemplate known() const { return {*this, graph}; }  ///< template of a class; refers to this object
 };
-/// Reads the first specimen of a landmark file as a template. Throws Error (input), naming the file, for fewer than four landmarks
-/// (three in two dimensions), two landmarks of the same name, and a landmark that the first specimen lacks.
+/// Reads the first specimen of a landmark file as a template. Throws Error (input), naming the file, for fewer than four
+/// landmarks (three in two dimensions), two landmarks of the same name, and a landmark that the first specimen lacks.
 LandmarkTemplate read_landmark_template(const Path& file);
 
 /// Reads a landmark file as a member and matches its landmarks to the template's by name; a note lists additional landmarks.

@@ -15,10 +15,11 @@ namespace {
 
 struct TemplateLearn final : Operation {
     void declare(Parameters& p) override {
-        p.input("template", Kind::template_package, template_input,
-                "template (.template.json), or, for a class of landmarks only, the first landmark file (.mrk.json, .fcsv, .tps, .pp, "
-                ".nts, .dta, .pts, .csv, Morphologika), whose first specimen determines the set of landmarks and the orientation "
-                "of the mean");
+        p.input(
+            "template", Kind::template_package, template_input,
+            "template (.template.json), or, for a class of landmarks only, the first landmark file (.mrk.json, .fcsv, .tps, .pp, "
+            ".nts, .dta, .pts, .csv, Morphologika), whose first specimen determines the set of landmarks and the orientation "
+            "of the mean");
         p.input("members", Kind::mesh, members,
                 "mesh file of each member, with annotations in NAME.ant.json beside it; for a class of landmarks, further "
                 "landmark files, with one or several members each")
@@ -34,10 +35,11 @@ struct TemplateLearn final : Operation {
         p.options("name", name, "name of the class; by default the class of the template");
         vocabulary.declare(p, as_template_words);
         p.options("given", given, "same effect as --correspondence given");
-        p.options("missing", missing,
-                  "class of landmarks: members that lack a landmark are refused, or the landmark is estimated by the thin-plate "
-                  "spline of the mean of complete members, by regression, or by the mirrored other side ('left', 'right' in names)",
-                  Choices{"refuse", "tps", "regression", "mirror"});
+        p.options(
+            "missing", missing,
+            "class of landmarks: members that lack a landmark are refused, or the landmark is estimated by the thin-plate "
+            "spline of the mean of complete members, by regression, or by the mirrored other side ('left', 'right' in names)",
+            Choices{"refuse", "tps", "regression", "mirror"});
         specimen_options.list_options(p.options);
         options.list_options(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
