@@ -38,7 +38,8 @@ std::size_t largest_row(const WallGrid& grid, const LevelEnd& end, bool top) {
     return best;
 }
 
-/// Smallest and largest diameter over opposite directions of a whole circle.
+/// Smallest and largest diameter over opposite directions of a whole circle (5 % and 95 % quantiles), without directions beyond
+/// one and a half interquartile ranges of the quartiles, such as those of handles and spouts.
 std::pair<double, double> range_across(const WallGrid& grid, std::size_t row) {
     std::vector<double> diameters;
     constexpr std::size_t half = WallGrid::bins / 2;
@@ -46,6 +47,9 @@ std::pair<double, double> range_across(const WallGrid& grid, std::size_t row) {
         if (grid.outer(row, bin) > 0 && grid.outer(row, bin + half) > 0)
             diameters.push_back(grid.outer(row, bin) + grid.outer(row, bin + half));
     if (diameters.empty()) return {0, 0};
+    const double low = sample_quantile(diameters, 0.25), high = sample_quantile(diameters, 0.75);
+    const double fence = 1.5 * (high - low) + 1e-9 * high;
+    std::erase_if(diameters, [&](double d) { return d < low - fence || d > high + fence; });
     return {sample_quantile(diameters, 0.05), sample_quantile(diameters, 0.95)};
 }
 
@@ -98,7 +102,7 @@ void set_diameter(CatalogueEntry& entry, const Pose& pose, const CatalogueAxis& 
         return;
     }
     diameter.name = name;
-    diameter.known = diameter.high - diameter.low <= 2 * max_error * diameter.value;
+    diameter.known = diameter.is_range || diameter.high - diameter.low <= 2 * max_error * diameter.value;
     if (diameter.known) return;
     if (!std::isfinite(diameter.high) || diameter.high > 10 * diameter.value)
         entry.unknown.push_back(fmt::format("the {} cannot be told: more than {}", name, length_words(diameter.low)));
@@ -204,6 +208,11 @@ void draw_about_axis(CatalogueEntry& entry, const Pose& pose, const CatalogueAxi
         viewer = pose.range.middle() - side * std::min(pose.range.angle / 2, pi / 4);
         drawing.reconstructed = outer_profile(section, grid.low(), grid.high(), 300);
         const double thickness = std::isfinite(entry.thickness) ? entry.thickness : 0.03 * grid.high();
+        // The reconstructed outline ends with the preserved outside, not along the fractures.
+        std::erase_if(drawing.reconstructed, [&](const Vector2d& p) {
+            return (entry.kind != CatalogueKind::base && p.y() < grid.low() + thickness) ||
+                   (entry.kind != CatalogueKind::rim && p.y() > grid.high() - thickness);
+        });
         if (entry.kind != CatalogueKind::rim) drawing.breaks = fracture_parts(section, true, thickness);
         if (entry.kind != CatalogueKind::base)
             for (auto& part : fracture_parts(section, false, thickness)) drawing.breaks.push_back(std::move(part));

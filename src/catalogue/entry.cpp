@@ -107,7 +107,7 @@ void add_views_about_axis(CatalogueEntry& entry, const Pose& pose) {
     const double front = entry.diameter.known && pose.all_around ? 0 : pose.range.middle() * degrees + 90;
     std::vector<View> views;
     if (pose.all_around) {
-        views = {{"side", 0, 0}, {"from the right", 90, 0}, {"from above", 0, 90}, {"from below", 0, -90}};
+        views = {{"side", 0, 0}, {"from above", 0, 90}, {"from below", 0, -90}};
     } else {
         views = {{"outside", front, 0}, {"inside", front + 180, 0}, {"side", front + 90, 0}};
     }

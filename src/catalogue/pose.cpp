@@ -88,11 +88,10 @@ struct Turn {
     std::string doubt;
 };
 
-Turn turn_of_sherd(const Pose& pose, bool hint_known) {
+Turn turn_of_sherd(const Pose& pose) {
     const EndShape top = shape_of(pose, true), bottom = shape_of(pose, false);
     if (top.base != bottom.base) return {top.base, ""};
     if (pose.top.is_level() != pose.bottom.is_level()) return {pose.bottom.is_level(), ""};
-    if (hint_known) return {};
     if (!pose.top.is_level()) return {false, "neither end of the wall is level or closes: which end is up is not known"};
     // Two level ends: a break cut straight is flat, a lip is not; else the wider end is taken for the rim.
     if (std::abs(top.flat_share - bottom.flat_share) > 0.3)
@@ -154,11 +153,13 @@ Pose pose_of(const TriangleSoup& soup, const CatalogueAxis& axis, double factor,
     Pose pose = placed_pose(soup, axis, factor, up);
     pose.all_around = goes_all_around(pose.grid);
     Turn turn;
-    if (!pose.all_around) {
-        turn = turn_of_sherd(pose, hint_known);
+    if (hint_known) {
+        // A stated direction is not doubted.
+    } else if (!pose.all_around) {
+        turn = turn_of_sherd(pose);
     } else if (const std::size_t top = hollow_rows(pose.grid, true), bottom = hollow_rows(pose.grid, false); top != bottom) {
         turn.over = bottom > top;
-    } else if (!hint_known) {
+    } else {
         turn.doubt = "both ends are alike: which end is up is not known";
     }
     if (turn.over) {

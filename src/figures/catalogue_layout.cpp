@@ -18,8 +18,9 @@ namespace {
 constexpr double page_margin = 15 * points_per_mm, header_height = 30, text_points = 8, leading = 10.5, column_gap = 18;
 
 /// Scales from the largest to the smallest; enlargements are for objects below 25 mm only.
-constexpr std::array<double, 15> scales{10,       5,        2,        1,        1 / 2.0,   1 / 3.0,    1 / 4.0,    1 / 5.0,
-                                        1 / 10.0, 1 / 20.0, 1 / 25.0, 1 / 50.0, 1 / 100.0, 1 / 1000.0, 1 / 10000.0};
+constexpr std::array<double, 20> scales{10,       5,        4,        3,         2,          1,          1 / 2.0,
+                                        1 / 3.0,  1 / 4.0,  1 / 5.0,  1 / 6.0,   1 / 8.0,    1 / 10.0,   1 / 15.0,
+                                        1 / 20.0, 1 / 25.0, 1 / 50.0, 1 / 100.0, 1 / 1000.0, 1 / 10000.0};
 
 /// The largest scale at which `fits(scale)`; the requested one if it fits. 0: none fits.
 template <class Fits>
@@ -53,7 +54,8 @@ void add_measures(std::vector<TextLine>& lines, const CatalogueEntry& entry) {
     const CatalogueDiameter& diameter = entry.diameter;
     if (!diameter.name.empty()) {
         std::string text = diameter_text(diameter);
-        if (diameter.known) text += diameter.is_range ? ", range of all directions" : ", 95 % interval";
+        if (diameter.known && text.find('(') != std::string::npos)
+            text += diameter.is_range ? ", range over all directions" : ", 95 % interval";
         add(diameter.name.c_str(), text);
         add(entry.kind == CatalogueKind::vessel || entry.kind == CatalogueKind::rim ? "rim preserved" : "circle preserved",
             share_text(diameter.share) + fmt::format(" ({}\u00B0)", fixed(360 * diameter.share, 0)));
@@ -72,7 +74,7 @@ void add_measures(std::vector<TextLine>& lines, const CatalogueEntry& entry) {
             number_text(entry.capacity, 3, "litres") +
                 (std::isfinite(entry.capacity_error) ? fmt::format(" \u00B1 {}", significant(entry.capacity_error, 1)) : ""));
     if (std::isfinite(entry.volume)) add("volume of the body", number_text(entry.volume, 3, "cm\u00B3"));
-    if (std::isfinite(entry.weight)) add("weight (from density)", number_text(entry.weight, 3, "g"));
+    if (std::isfinite(entry.weight)) add("weight", number_text(entry.weight, 3, "g"));
     for (const std::string& clause : entry.unknown) add("not known", clause);
     add("scan", fmt::format("{} vertices, {} faces, in {}{}", entry.vertices, entry.faces, entry.unit,
                             entry.unit_assumed ? " (assumed)" : ""));
@@ -91,8 +93,12 @@ std::vector<TextLine> left_column(const CatalogueEntry& entry) {
     if (!entry.landmarks.empty()) {
         lines.push_back({"Landmarks", "", true});
         std::string names;
-        for (std::size_t i = 0; i < entry.landmarks.size(); ++i)
+        bool numbered = true;  // the names are the numbers
+        for (std::size_t i = 0; i < entry.landmarks.size(); ++i) {
+            numbered = numbered && entry.landmarks[i] == std::to_string(i + 1);
             names += fmt::format("{}{} {}", i > 0 ? ", " : "", i + 1, printable(entry.landmarks[i], 60));
+        }
+        if (numbered) names = fmt::format("1 to {}, as in the file", entry.landmarks.size());
         lines.push_back({"", names, false});
     }
     return lines;
@@ -278,7 +284,7 @@ private:
         const double room = text_top_ - 12 - top() - row_.height - 10;
         const double base = top() + (room + extent.height() + above_drawing - below_drawing) / 2;
         plate.draw(sheet, page_margin + (width() - extent.width()) / 2 + extent.left, base, false);
-        scale_with_bar(sheet, page_margin + 6, top() + room - 6, scale_, width() / 3);
+        scale_with_bar(sheet, page_margin + 6, std::min(base + 34, top() + room - 6), scale_, width() / 3);
         if (!(row_.scale > 0)) return;
         std::vector<const CatalogueView*> views;
         for (const CatalogueView& view : entry_.views) views.push_back(&view);
