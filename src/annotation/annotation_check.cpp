@@ -143,8 +143,8 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
             fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
         }
         if (again.points != annotation.points || again.polylines != annotation.polylines || again.faces != annotation.faces)
-            throw Error(ErrorKind::failure, where, "at " + at + ": its curves and its elements do not say the same",
-                        "give it elements by its curves, or take the curves away");
+            throw Error(ErrorKind::failure, where, "at " + at + ": its curves and its elements differ",
+                        "compute its elements from its curves, or remove the curves");
     }
     if (annotation.all && annotation.faces.size() != mesh.number_of_faces())
         fail(where, at,

@@ -251,7 +251,7 @@ std::vector<Information> information_of(const JsonValue::ConstArray& list, const
         one.value = text_in(object, "value");
         one.title = text_in(object, "title");
         one.sha256 = text_in(object, "sha256");
-        if (!one.sha256.empty() && !one.is_local()) fail(where, here, "a checksum of what is no local file", "remove sha256");
+        if (!one.sha256.empty() && !one.is_local()) fail(where, here, "a checksum belongs to local files only", "remove sha256");
     }
     return result;
 }
@@ -282,7 +282,8 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
     const auto refuse = [&](std::initializer_list<const char*> members) {
         for (const char* member : members)
             if (find_member(object, member) != nullptr)
-                fail(where, at + '/' + member, "does not belong to an annotation of type " + type, "remove it or mend the type");
+                fail(where, at + '/' + member, "does not belong to an annotation of type " + type,
+                     "remove it or correct the type");
     };
     if (type == "point") {
         annotation.type = AnnotationType::point;

@@ -408,7 +408,7 @@ void FairOptions::list_options(OptionList& list) {
     list("distance", distance,
          "maximum distance of a smoothed curve from the original; 0: the mean edge length of the mesh or along the curve",
          Range{0, 1e60}, "unit of the mesh");
-    list("let-area-change", let_area_change, "leave the areas of regions as smoothing makes them, instead of restoring them");
+    list("let-area-change", let_area_change, "do not restore the areas of regions after smoothing");
 }
 
 }  // namespace ostraka

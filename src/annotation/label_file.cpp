@@ -17,7 +17,7 @@ std::int32_t parse_label(std::string_view text, const std::string& where) {
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), label);
     if (code != std::errc() || end != text.data() + text.size())
         fail_input(where, "'" + std::string(text.substr(0, 40)) + "' is not a label",
-                   "give one whole number (of 32 bits) a line");
+                   "give one whole number of 32 bits per line");
     return label;
 }
 
@@ -36,7 +36,7 @@ std::vector<std::int32_t> read_labels(const Path& file, std::size_t face_count, 
         }
         if (blank_since != 0)
             fail_input(file.string() + ", line " + std::to_string(blank_since), "the line is empty",
-                       "give one whole number a line");
+                       "give one whole number per line");
         labels.push_back(parse_label(line, file.string() + ", line " + std::to_string(line_number)));
     }
     if (labels.size() == face_count) return labels;

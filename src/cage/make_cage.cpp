@@ -140,9 +140,11 @@ void CageOptions::list_options(OptionList& list) {
          "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
          "requires it",
          Range{0, 1}, "share of the diagonal");
-    list("offset", offset, "distance of the mesh from the wrap that becomes the cage", Range{1e-4, 0.5}, "share of the diagonal");
+    list("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
+         "share of the diagonal");
     list("genus", genus,
-         "handles of the object: follow (the cage has the handles wider than --alpha) or fill (the cage has no handles)",
+         "treatment of the handles (holes) of the object: follow (the cage has the handles whose openings are wider than "
+         "--alpha) or fill (the cage has no handles)",
          Choices{"follow", "fill"});
 }
 

@@ -154,7 +154,7 @@ SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
 void SyntheticMeasuresOptions::list_options(OptionList& list) {
     list("objects", objects, "number of objects", Range{1, 100000});
     list("measures", measures, "number of measures", Range{1, 60});
-    list("groups", groups, "number of groups of measures with fixed ratios among each other", Range{0, 30});
+    list("groups", groups, "number of groups of measures; the measures of a group have fixed ratios to each other", Range{0, 30});
     list("group-size", group_size, "number of measures in each group with fixed ratios", Range{2, 60});
     list("ratio-deviation", ratio_deviation, "standard deviation over the statuettes of the logarithm of ratios that vary",
          Range{0, 2});

@@ -172,10 +172,10 @@ void GroupOptions::list_options(OptionList& list) {
          "spectral embedding of the thesis, section 3.3.2 (embedding)",
          Choices{"linkage", "dbscan", "embedding"});
     list("epsilon", epsilon,
-         "maximum distance within groups (for embedding a share of the largest distance), or a rule that chooses it: knn (mean "
-         "distance to the nearest neighbours), volume (spacing of evenly distributed points), knee (bend of the sorted nearest "
-         "distances), silhouette (largest mean silhouette) or nested (groups of largest silhouette, divided further while their "
-         "parts are distinct)",
+         "maximum distance between neighbours in a group (for embedding a share of the largest distance), or a rule that chooses "
+         "it: knn (mean distance to the nearest neighbours), volume (spacing of evenly distributed points), knee (bend of the "
+         "sorted nearest distances), silhouette (largest mean silhouette) or nested (groups of largest silhouette, divided "
+         "further while their parts are distinct)",
          Words{{"knn", "volume", "knee", "silhouette", "nested"}, "a number from 0 up", [](const std::string& word) {
                    double number = 0;
                    static_cast<void>(epsilon_rule(word, number));

@@ -171,8 +171,8 @@ Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string
 void CompareOptions::list_options(OptionList& list) {
     features.list_options(list);
     matches.list_options(list);
-    list("loose-ratio", loose_ratio, "as --ratio, for matches among which geometrically consistent matches are searched",
-         Range{0, 1});
+    list("loose-ratio", loose_ratio,
+         "same as --ratio, but for the matches from which geometrically consistent matches are selected", Range{0, 1});
     consistent.list_options(list);  // shrinkage holds for the registration as well
     list("trim", align.trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
     list("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});

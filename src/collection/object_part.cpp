@@ -102,7 +102,8 @@ CutPart largest_segment(const Mesh& mesh) {
 
 void PartOptions::list_options(OptionList& list) {
     list("annotation", annotations, "ids or tags (with a vocabulary also narrower concepts) of the regions to analyse").words();
-    list("without", without, "ids or tags of regions left out of the analysis, such as beard; some objects may lack them")
+    list("without", without,
+         "ids or tags of regions that are left out of the analysis, such as beard; objects without such a region are allowed")
         .words();
     list("proposed", proposed,
          "analyse a detected part instead of annotated regions: the tubular part (tube) or the part above the neck (top), from "

@@ -267,8 +267,8 @@ void TechniqueOptions::list_options(OptionList& list) {
     list("slices", slices, "number of slices per object", Range{2, 100000});
     list("from", from, "lower end of the sliced range of each object", Range{0, 1}, "share of the height");
     list("to", to, "upper end of the sliced range of each object (thesis: 0.4)", Range{0, 1}, "share of the height");
-    list("min-turn", min_turn, "minimum share that an open outline of a usable slice covers", Range{0.5, 1},
-         "share of the full turn");
+    list("min-turn", min_turn, "slices with an open outline are used only if the outline covers at least this share",
+         Range{0.5, 1}, "share of the full turn");
     list("min-slices", min_slices, "minimum number of usable slices per object", Range{2, 100000});
 }
 

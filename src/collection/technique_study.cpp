@@ -290,11 +290,11 @@ void TechniqueStudyOptions::list_options(OptionList& list) {
     list("folds", folds, "number of folds of the cross-validation of classifiers", Range{2, 1000});
     list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 1000});
     list("resamples", resamples, "number of resampled collections from which each object is classified", Range{10, 100000});
-    list("simulations", simulations, "number of simulated one-group collections with which two groups are compared",
-         Range{19, 100000});
+    list("simulations", simulations,
+         "number of simulated collections of one group, for the test whether a collection has two groups", Range{19, 100000});
     list("unlike-from", min_outlier_distance,
-         "minimum distance of any descriptor of an object from the collection, in robust standard deviations, at which the "
-         "object gets no answer",
+         "an object gets no answer if one of its descriptors is at least this distance from the collection, in robust standard "
+         "deviations",
          Range{1, 1e6});
     list("seed", seed, "random seed", Range{0, 1e18});
 }

@@ -166,7 +166,7 @@ JsonValue to_json(const CoordinateCertificate& c, JsonAllocator& allocator) {
     if (c.edges) add_members(object, allocator, "edgeLinearity", *c.edges);
     if (c.on_faces) add_members(object, allocator, "faceLinearity", *c.on_faces);
     add_members(object, allocator, "negativeShare", c.negative, "negativeRows", c.negative_rows, "negativeSum", c.negative_sum,
-                "least", c.minimum, "most", c.maximum, "carriersMean", c.carriers_mean, "carriersMost", c.carriers_max);
+                "min", c.minimum, "max", c.maximum, "carriersMean", c.carriers_mean, "carriersMax", c.carriers_max);
     return object;
 }
 

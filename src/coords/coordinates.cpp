@@ -182,14 +182,15 @@ double Coordinates::stored_share() const {
 }
 
 void CoordinateOptions::list_options(OptionList& list) {
-    list("snap", snap, "maximum distance of points that count as lying on the cage", Range{0, 1e-6},
+    list("snap", snap, "points within this distance of the cage count as lying on the cage", Range{0, 1e-6},
          "share of the cage's diagonal");
     list("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage", Range{100, 5e6});
     list("drop", drop, "weights below this value are set to zero (not with mean-value or green)", Range{0, 0.01});
     list("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
     list("tolerance", tolerance, "local: stop when ten iterations reduce the total variation by less than this fraction",
          Range{0, 0.1});
-    list("fade", fade, "nested cages: distance from the border of an inner cage over which its influence grows from none to full",
+    list("fade", fade,
+         "nested cages: the influence of an inner cage increases from 0 at its border to 1 at this distance inside it",
          Range{0, 1}, "share of its diagonal");
 }
 

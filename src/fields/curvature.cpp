@@ -167,7 +167,8 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
 
 void CurvatureOptions::list_options(OptionList& list) {
     list("scale", scale,
-         "radius over which curvature is averaged; a larger radius tolerates more noise; 0: only the faces around each vertex",
+         "radius over which curvature is averaged; a larger radius makes the curvature less sensitive to noise; 0: only the "
+         "faces around each vertex",
          Range{0, 1}, "share of the box diagonal");
 }
 

@@ -155,8 +155,9 @@ void ThicknessOptions::list_options(OptionList& list) {
     list("rays", rays, "number of rays sent inward from each face", Range{1, 1000});
     list("cone", cone, "opening angle of the cone in which the rays of a face lie", Range{0, 175}, "degrees");
     list("thickness-scale", scale,
-         "radius over which normals are averaged for the axis of the cone; a larger radius tolerates more noise", Range{0, 1},
-         "share of the box diagonal");
+         "radius over which normals are averaged for the axis of the cone; a larger radius makes the thickness less sensitive to "
+         "noise",
+         Range{0, 1}, "share of the box diagonal");
 }
 
 }  // namespace ostraka

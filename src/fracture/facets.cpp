@@ -201,7 +201,8 @@ void FacetOptions::list_options(OptionList& list) {
     list("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
     list("facet-wall", wall, "maximum wall thickness of a two-sided fragment, as a share of the root of its area",
          Range{0.01, 1});
-    list("facet-coherence", coherence, "weight of the labels of neighbouring faces relative to a face's own features",
+    list("facet-coherence", coherence,
+         "weight of the agreement with the labels of neighbouring faces, relative to the features of the face itself",
          Range{0, 100});
 }
 

@@ -415,12 +415,13 @@ JsonValue pair_to_json(const PairRegistration& pair, const std::string& a, const
 
 void PairOptions::list_options(OptionList& list) {
     list("frames", frames, "number of local frames along each rim, from which initial poses are made", Range{4, 2000});
-    list("samples", samples, "number of sample points on the fracture surface, and on the rest of a fragment", Range{50, 1e6});
+    list("samples", samples, "number of sample points on the fracture surface of each fragment, and on its intact surface",
+         Range{50, 1e6});
     list("starts", starts, "number of initial poses, best first, that are refined coarsely", Range{1, 10000});
     list("refined", refined, "number of coarsely refined poses, best first, that are refined fully", Range{1, 1000});
     list("reach", search_radius, "initial search radius between two fracture surfaces", Range{1e-4, 1},
          "share of the root of the smaller fragment's area");
-    list("last-reach", last_search_radius, "final search radius; fracture surfaces that penetrate deeper do not join",
+    list("last-reach", last_search_radius, "final search radius; fragments that penetrate each other more deeply are not joined",
          Range{1e-4, 1});
     list("edges", edges, "weight of the rims relative to the interiors of the fracture surfaces", Range{0, 1000});
     list("min-confidence", min_confidence, "minimum confidence of a joint; with a lower confidence there is no answer",

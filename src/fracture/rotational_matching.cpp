@@ -290,7 +290,9 @@ RotationMatch match_rotations(const Mesh& vessel, const Vector3d& point, const V
 }
 
 void RotationMatchOptions::list_options(OptionList& list) {
-    list("turns", rotations, "whether undetermined rotations about a vessel's axis are found from fracture surfaces",
+    list("turns", rotations,
+         "determination of unknown rotations about a vessel's axis from the fracture surfaces: auto (where the rotation is "
+         "unknown) or never",
          Choices{"auto", "never"});
     list("turn-frames", frames, "number of local frames along the rim of each fracture surface", Range{4, 5000});
     list("turn-samples", samples, "number of sample points on each fracture surface", Range{50, 1e6});

@@ -26,7 +26,7 @@ inline constexpr const char* coarser = "measure along edges, up to a limit, or o
 /// kB at 90 thousand, 31 kB at 400 thousand).
 inline void require_for_search(double faces) {
     require_memory(std::max(6e3 * faces, 15 * std::pow(faces, 1.5)),
-                   "the exact shortest way over " + std::to_string(static_cast<long long>(faces)) + " faces", coarser);
+                   "the exact shortest path over " + std::to_string(static_cast<long long>(faces)) + " faces", coarser);
 }
 
 /// Checks for cancellation at every call and, every 262 144 calls, the memory limit.
@@ -36,8 +36,9 @@ public:
         cancelled_();
         if ((++steps_ & 0x3FFFFU) != 0) return;
         if (const double limit = memory_limit(); limit > 0 && resident_memory() > limit)
-            fail_work("", "the exact shortest way takes more than the " + digits(limit / 1e9, 2) + " GB of memory there are",
-                      coarser);
+            fail_work(
+                "", "the exact shortest path takes more than the " + digits(limit / 1e9, 2) + " GB of memory that are available",
+                coarser);
     }
 
 private:

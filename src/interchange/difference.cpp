@@ -112,7 +112,7 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
 }
 
 void MergeOptions::list_options(OptionList& list) {
-    list("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict",
+    list("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict is reported",
          Choices{"none", "ours", "theirs"});
     list("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",
          Anything{});

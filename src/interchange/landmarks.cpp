@@ -229,7 +229,8 @@ LandmarkSet landmarks_of(AnnotatedMeshView object, LandmarkFormat format) {
     }
     if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files store no regions");
     if (polylines > 0) result.notes.push_back(counted(polylines, "poly-line") + points_only);
-    if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files store none");
+    if (attributes > 0)
+        result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files cannot store attributes");
     return result;
 }
 
@@ -241,8 +242,8 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
 
 void LandmarkFileOptions::list_options(OptionList& list) {
     list("mesh-space", mesh_space,
-         "space of the mesh's coordinates, for file formats that state their space: LPS (x to the left, y to the back; 3D "
-         "Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
+         "anatomical coordinate system of the mesh, for file formats that state their coordinate system: LPS (x to the left, y "
+         "to the back; 3D Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
          Choices{"LPS", "RAS"});
     list("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
 }

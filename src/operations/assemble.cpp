@@ -38,9 +38,9 @@ struct Assemble final : Operation {
             .flag();
         p.input_option("template", Kind::template_package, object_template,
                        "template of the class of the objects: each group of joined fragments is completed with the template");
-        p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
+        p.input_option("class", Kind::shape_class, class_file, "class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "write no pictures of the groups");
-        p.options("fresh", fresh, "register all pairs again, without the results of an earlier run").unrecorded();
+        p.options("fresh", fresh, "register all pairs again, and ignore the stored results of earlier runs").unrecorded();
         options.list_options(p.options);
         reading.list_options(p.options);
         p.report.schema = "reassembly";
@@ -236,12 +236,12 @@ private:
         output.write("assembly.json", content);
         if (result.pairs_left > 0)
             report.note(
-                fmt::format("not all pairs were tried, but {} of {}, whose fracture surfaces fit best in a quick comparison; a "
-                            "join of two others is only found where both are joined to the same group (--partners tries more)",
+                fmt::format("only {} of {} pairs were tried: those whose fracture surfaces fit best in a quick comparison; two "
+                            "other fragments are joined only if both join the same group (a larger --partners tries more pairs)",
                             result.pairs_tried, result.pairs_tried + result.pairs_left));
         const std::size_t joined_count =
             static_cast<std::size_t>(std::count_if(result.group.begin(), result.group.end(), [](int g) { return g >= 0; }));
-        report.line(fmt::format("{} of {} fragments are in {} {}; {} stay alone", joined_count,
+        report.line(fmt::format("{} of {} fragments are joined in {} {}; {} are not joined", joined_count,
                                 fragments.size() + unreadable.size(), result.groups(), result.groups() == 1 ? "group" : "groups",
                                 fragments.size() + unreadable.size() - joined_count));
         if (result.groups() == 0) report.answer_no();
@@ -265,7 +265,7 @@ private:
                 "or mark a region \"fracture\" in {}",
                 annotation_file);
         if (source == "annotations") return annotation_file + " names no region \"fracture\" that has faces: mark one";
-        return "no fracture surface is found on it, it may be whole; if it is not, mark a region \"fracture\" in " +
+        return "no fracture surface is found; the object may be whole; if it is not, mark a region \"fracture\" in " +
                annotation_file;
     }
 

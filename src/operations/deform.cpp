@@ -38,35 +38,36 @@ struct Deform final : Operation {
         words.list_options(p.options);
         options.list_options(p.options);
         tolerances.list_options(p.options);
-        p.report.values(boolean("acceptable"), texts("objections"),
-                        number("followed.share", "", "fraction of the requested displacement"), integer("followed.vertices"),
-                        number("followed.mean", "", "length"), number("followed.largest", "", "length"),
-                        integer("selfIntersections"), integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"),
-                        integer("folds"), integer("kinks"), integer("iterations"), integer("rounds"), text("stopped"),
-                        integer("passes"), text("space"), numbers("seated"));
+        p.report.values(
+            boolean("acceptable"), texts("objections"),
+            number("followed.share", "", "how closely the result follows the edit, as a fraction of the edit's displacement"),
+            integer("followed.vertices"), number("followed.mean", "", "length"), number("followed.largest", "", "length"),
+            integer("selfIntersections"), integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"),
+            integer("kinks"), integer("iterations"), integer("rounds"), text("stopped"), integer("passes"), text("space"),
+            numbers("seated"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
                        text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),
                        number("residual.min"), number("residual.max"), number("residual.greatest distance"),
                        integer("residual.constraints"), number("cost.before"), number("cost.after", "cost"));
         p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
-        p.report.table("moved", integer("id", "id"), text("tag", "moved, though the edit did not ask it to"),
+        p.report.table("moved", integer("id", "id"), text("tag", "moved, although the edit does not select it"),
                        number("share", "mean, % of the diagonal"), number("largest", "at most, % of the diagonal"));
-        p.report.table("distorted", integer("id", "id"), text("tag", "distorted, though it was not to change"),
+        p.report.table("distorted", integer("id", "id"), text("tag", "distorted, although its shape should not change"),
                        number("distance", "root mean square"), number("largest", "at most"),
-                       number("thin", "of it half as thick, %"));
+                       number("thin", "share of its area that is half as thick, %"));
     }
 
     void check() const override {
         if (package ? mesh || annotations : !mesh)
-            fail_usage("what to deform is not clear", "give a mesh and its annotations, or a template");
+            fail_usage("the object to deform is not given", "give a mesh and its annotations, or a template");
         const bool named = words.is_edit() || !words.keep.empty() || !words.level.empty();
         if (!edit && !named && !graph && !package && !deformed_cage)
-            fail_usage("nothing is to be done", "give an edit (.edit.json), or say it: --stretch back=1.2 --level legs");
+            fail_usage("no edit is given", "give an edit (.edit.json), or options: --stretch back=1.2 --level legs");
         if (!package && !annotations && (named || graph || annotations_out))
-            fail_usage("parts are named, and there are no annotations", "give the mesh's annotations (.ant.json)");
+            fail_usage("parts are named, but there are no annotations", "give the mesh's annotations (.ant.json)");
         if (static_cast<bool>(cage) != static_cast<bool>(weights))
-            fail_usage("--cage and --weights belong together", "give both: see 'cage weights'");
+            fail_usage("--cage and --weights need each other", "give both: see 'cage weights'");
         if (cage_out && !package && !cage) fail_without_cage();
     }
 
@@ -116,7 +117,7 @@ struct Deform final : Operation {
             annotations_out.write(std::move(set), shaped, output.file());
         }
         if (!subject.object->extras.tetrahedra.empty() && subject.coordinates == nullptr)
-            report.note("the vertices within the tetrahedra stay where they are: deform through a cage, which moves them along");
+            report.note("vertices inside the tetrahedral mesh are not moved: deform through a cage, which moves them too");
         output.write(shaped, subject.object->extras);
         if (states) {
             const auto followed = follow_edit(all, space, where);
@@ -210,8 +211,8 @@ struct Deform final : Operation {
                 }
             }
         if (!cage && subject.coordinates == nullptr && !why_not.empty())
-            fail_input(package.file(), "has a cage and coordinates that do not go together: " + why_not,
-                       "make them anew with 'cage weights', or give --cage and --weights");
+            fail_input(package.file(), "has a cage and coordinates that do not match: " + why_not,
+                       "compute the coordinates again with 'cage weights', or give --cage and --weights");
         return subject;
     }
 
@@ -240,7 +241,8 @@ struct Deform final : Operation {
         report.empty_table("conflicts");
         for (const ConstraintConflict& conflict : result.conflicts) report_result(report, result, conflict);
         if (result.untried > 0)
-            report.line(std::to_string(result.untried) + " constraints were not left out to see: raise --conflicts to try them");
+            report.line(std::to_string(result.untried) +
+                        " further constraints were not tested for conflicts: raise --conflicts to test them");
         report_edit(report, result, unit.empty() ? unit : " " + unit);
         report.line(!result.acceptable           ? "not acceptable: " + joined(result.objections, "; ")
                     : result.constraints.empty() ? "acceptable; no constraints"
@@ -272,9 +274,10 @@ struct Deform final : Operation {
             report.row("distorted")("id", part.annotation)("tag", part.tag)("distance", part.distance)("largest", part.largest)(
                 "thin", 100 * part.thin);
         if (followed.vertices > 0)
-            report.line("the edit is followed by " + number(100 * followed.share, 3) + " %: the " +
-                        std::to_string(followed.vertices) + " vertices that it moves are " + number(followed.mean, 3) + unit +
-                        " from where it puts them in the mean, " + number(followed.largest, 3) + unit + " at most");
+            report.line("the result follows the edit by " + number(100 * followed.share, 3) + " %: the " +
+                        std::to_string(followed.vertices) + " vertices that the edit moves deviate by " +
+                        number(followed.mean, 3) + unit + " from their edited positions in the mean, " +
+                        number(followed.largest, 3) + unit + " at most");
     }
 
     static void report_result(Report& report, const ConstraintReport& constraint, const AnnotationSet& set) {
@@ -321,7 +324,7 @@ struct Deform final : Operation {
         report.row("conflicts")("id", conflict.id)("freed", conflict.freed)("deviations", std::move(deviations));
         report.line(
             printable(name(conflict.id) + " fights with " + joined(others) + ": if " + id + " is left out, " +
-                      (conflict.freed.size() == 1 ? "the other holds" : "the others hold") +
+                      (conflict.freed.size() == 1 ? "the other constraint holds" : "the other constraints hold") +
                       (gives.empty() ? ", and so does " + id : "; " + id + " would have to give: " + joined(gives, "; "))));
     }
 

@@ -138,7 +138,7 @@ std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& d)
         add("oriented box", triple(d.oriented_box.sides));
     }
     add("diagonal", number(d.diagonal));
-    add("unit, a guess", fmt::format("{} ({})", d.unit.unit, d.unit.reason));
+    add("unit (guessed)", fmt::format("{} ({})", d.unit.unit, d.unit.reason));
     const std::string verdict = joined(d.defects(), "; ");
     add("verdict", verdict.empty() ? (d.self_intersections_checked ? "closed, oriented, manifold, no self-intersection"
                                                                    : "closed, oriented, manifold; self-intersections not checked")

@@ -31,14 +31,14 @@ struct Fit final : Operation {
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; created if missing")
             .flag();
         p.input_option("assembly", Kind::assembly, assembly,
-                       "assembly file: its annotation matches with \"stated\": true are used unchanged");
+                       "assembly file of an earlier fit: its annotation matches with \"stated\": true are used unchanged");
         p.input_option(
             "class", Kind::shape_class, class_file,
-            "class learnt with this template (NAME.class.json of 'template learn'): surface that no fragment shows is completed "
-            "from members of the class that resemble the fragments; thresholds without an option are those of the class");
-        p.options("fresh", fresh, "search poses again, instead of using results of an earlier fit in the output folder")
+            "class learnt with this template (NAME.class.json of 'template learn'): the unobserved surface is estimated from the "
+            "shape variation of the class, and thresholds that are not given as options are taken from the class");
+        p.options("fresh", fresh, "search all poses again, and ignore stored results of an earlier fit in the output folder")
             .unrecorded();
-        p.options("placed", placed, "also write each fragment in the pose that was found, as NAME.placed.ply");
+        p.options("placed", placed, "also write each fragment in its computed pose, as NAME.placed.ply");
         vocabulary.declare(p, as_template_words);
         options.list_options(p.options);
         reading.list_options(p.options);
@@ -55,7 +55,7 @@ struct Fit final : Operation {
             if (const std::string name = Path(files.file(k)).stem().string(); !file_names.insert(name).second)
                 fail_usage(fmt::format("two fragments are called '{}'", name), "rename one of the files");
         if (class_file && options.fit.space != NonRigidOptions::Space::mesh)
-            fail_usage("--class changes the template's shape, and its cage does not follow", "leave out --class or --space");
+            fail_usage("--class changes the template's shape, but not its cage", "leave out --class or --space");
     }
 
     void run(Context& context, Report& report) override {
@@ -73,7 +73,8 @@ struct Fit final : Operation {
             check_topology(*learnt, class_file.file(), mesh, object_template.file());
             prior = prior_of(learnt->modes);
             if (learnt->modes.variances.empty())
-                report.note(class_file.file() + " has no modes (one member, or all of one shape): only its mean shape is used");
+                report.note(class_file.file() +
+                            " has no modes of variation (one member, or all members of one shape): only its mean shape is used");
         }
         used_thresholds =
             apply_class_thresholds(options, learnt, [&](const std::string& name) { return thresholds.at(name)->given; });
@@ -178,7 +179,7 @@ struct Fit final : Operation {
             write_completed(output, "completed.ply", result.object);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
-                report.note(fmt::format("{}: {}; the template's triangles show what was observed of it",
+                report.note(fmt::format("{}: {}; its observed surface is represented by the template's triangles",
                                         names.fragments[static_cast<std::size_t>(note.fragment)], note.text));
             AnnotationSet carried_annotations =
                 completed_annotations({object_template->mesh->mesh, *object_template->annotations}, result);
@@ -197,7 +198,7 @@ struct Fit final : Operation {
                                 number(100 * result.observed_share, 3)));
         if (result.crossings > 0)
             report.line(fmt::format(
-                "{} pairs of faces intersect that did not in the template: look at the picture; a larger --detail may help",
+                "{} pairs of faces intersect that do not intersect in the template: check the result; a larger --detail may help",
                 result.crossings));
         for (const ConstraintReport& constraint : result.constraints) report_constraint(report, result, constraint);
         for (const UsedThreshold& threshold : used_thresholds)

@@ -14,7 +14,7 @@ struct Operations final : Operation {
                         "folder to write: a page of Markdown for each first word of the operations' names");
         p.output_option("manuals", Kind::folder, manuals, "folder to write: a manual page for each operation");
         p.output_option("completions", Kind::folder, shells, "folder to write: completion scripts for bash, zsh and fish");
-        p.report.table("operations", text("name", "operation"), text("help", "what it does"), any("inputs"), any("outputs"),
+        p.report.table("operations", text("name", "operation"), text("help", "description"), any("inputs"), any("outputs"),
                        any("options"), any("arguments"), any("result"));
     }
 

@@ -80,7 +80,7 @@ private:
     FileInput file_;
 };
 inline constexpr const char* as_template_words =
-    "by which a tag of an object matches a tag of the template: the same concept in any language, or a narrower concept";
+    "used to match tags of an object with tags of the template: the same concept in any language, or a narrower concept";
 
 /// The annotation with this id, or with this tag if only one annotation has it. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);

@@ -17,13 +17,13 @@ struct PairFragments final : Operation {
                 "mesh file or point cloud of the fragment that stays in place; regions \"outer\", \"inner\" and \"fracture\" in "
                 "NAME.ant.json beside NAME.ply override the computed classification of its surface")
             .with_annotations_beside();
-        p.input(
-             "second", Kind::mesh, second,
-             "mesh file or point cloud of the fragment that is moved; NAME.ant.json beside it is used as for the first fragment")
+        p.input("second", Kind::mesh, second,
+                "mesh file or point cloud of the fragment that is moved; a file NAME.ant.json beside it is used in the same way "
+                "as for the first fragment")
             .with_annotations_beside();
         p.output("output", Kind::folder, output,
-                 "folder, created if missing, for second.ply (the second fragment in the pose that was found; face labels 0 "
-                 "outer, 1 inner, 2 fracture) and pair.json")
+                 "folder, created if missing, for second.ply (the second fragment in the computed pose; face labels 0 outer, 1 "
+                 "inner, 2 fracture) and pair.json")
             .flag();
         options.list_options(p.options);
         reading.list_options(p.options);

@@ -71,7 +71,7 @@ struct Publish final : AnnotatedMeshOperation {
         p.options("title", title, "title of the object; by default the name of the mesh");
         p.options("colour", colouring, page_colouring_help, page_colouring_names());
         p.options("rights", rights, "web address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
-        p.options("credit", credit, "statement that a viewer must show");
+        p.options("credit", credit, "attribution statement that a viewer must show");
         p.report.values(text("manifest"), integer("annotations", "annotations"));
     }
 

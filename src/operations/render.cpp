@@ -35,22 +35,23 @@ struct Render final : Operation {
         p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once per mesh; 'none' for no cage")
             .many_or_none();
         p.options("measures", measures, "draw measures of the annotations with their pins and values");
-        p.options("outlines", outlines, "drawing of lines and borders of regions: along mesh edges (exact) or smoothed",
+        p.options("outlines", outlines, "course of drawn lines and borders of regions: along mesh edges (exact) or smoothed",
                   Choices{"exact", "smooth"});
         p.output_option("turntable", Kind::folder, turntable,
                         "folder to write: pictures of the object during a full turn (0001.png, ...)");
         p.options("frames", frames, "number of pictures of a full turn, for --turntable", Range{2, 3600});
         p.options("title", titles, "title under the object; given once per mesh; 'none' for a mesh without a title");
-        p.options("map-on", map_on, "whether a map has values per vertex or per face; auto: by the number of values",
+        p.options("map-on", map_on,
+                  "elements to which the values of a map belong: vertices or faces; auto: decided by the number of values",
                   Choices{"auto", "vertex", "face"});
         p.options("property", property,
-                  "name of numbers of the vertices or faces in the mesh file, such as a PLY property, to show as a map");
+                  "name of a property of vertices or faces in the mesh file (PLY), which is shown as a map");
         p.options("map-label", map_label, "label of the colour bar, including the unit");
         p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");
         p.options("colour", colouring,
-                  "colours of the surface: the texture, own colours or labels in the file, annotations, values (a map) or "
-                  "clay; auto: values or annotations of parts if they are given, otherwise the first of texture, labels and own "
-                  "colours in the file, otherwise clay",
+                  "colours of the surface: the texture, own (colours of vertices or faces) or labels in the file, annotations, "
+                  "values (a map) or clay (one neutral colour); auto: values or annotations of parts if they are given, "
+                  "otherwise the texture, labels or colours in the file, otherwise clay",
                   colouring_names());
         p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
         options.list_options(p.options);
@@ -67,7 +68,7 @@ struct Render final : Operation {
         if (options.deep && !picture.file().empty() && picture_kind(picture.file()) != PictureKind::pixels)
             fail_usage(fmt::format("--deep with '{}'", picture.file()), "16 bits per channel need a .png picture");
         if (turntable.size() > 0 && !options.views.empty())
-            fail_usage("--turntable with --views", "give one view: the turn begins there");
+            fail_usage("--turntable with --views", "give one view, with which the turn begins");
         for (const auto& [flag, count] : {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()},
                                           std::pair{"cage", cages.size()}, std::pair{"title", titles.size()}})
             if (count != 0 && count != meshes.size())
@@ -90,7 +91,7 @@ struct Render final : Operation {
         });
         if (shows_values) render_options.scale = common_scale(scenes, property.empty() ? first_map() : property);
         if (render_options.fit == RenderOptions::Fit::all && units_differ(scenes)) {
-            report.note("the objects have different units: each is drawn at a scale of its own");
+            report.note("the objects have different units: each is drawn at its own scale");
             render_options.fit = RenderOptions::Fit::each;
         }
         report.run("readSeconds", reading.seconds());

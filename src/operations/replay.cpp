@@ -25,10 +25,10 @@ struct Replay final : Operation {
     void declare(Parameters& p) override {
         p.input("crate", Kind::folder, crate, "folder of the earlier run, as written by 'run'");
         p.output_option("output", Kind::folder, output, "folder in which the run is repeated; a temporary folder if left out");
-        p.options("inputs", inputs, "folder that replaces the folder of the study when the names of inputs are resolved")
-            .only_by_caller();
+        p.options("inputs", inputs, "folder that replaces the folder of the study in the names of inputs").only_by_caller();
         p.options("reads", reads, "further folder from which inputs may be read; may be given more than once").only_by_caller();
-        p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
+        p.options("allow-programs", allow_programs, "allow steps to start external programs, which do not belong to the toolkit")
+            .only_by_caller();
         p.options("programs", programs, "folder of the programs that steps name; by default the folder of this command")
             .only_by_caller();
         p.report.values(integer("steps", "steps repeated"), integer("outputs", "outputs compared"),

@@ -55,16 +55,16 @@ std::string address_of(const Path& path) {
 struct MakeReport final : Operation {
     void declare(Parameters& p) override {
         p.input("results", Kind::text, results,
-                "results to show: meshes, each followed by files that belong to it (.ant.json, .graph.json, .cage.ply, maps "
+                "results to show: meshes, each followed by the files that belong to it (.ant.json, .graph.json, .cage.ply, maps "
                 ".npy, slices and reports of deformations or of 'relation check' .json); templates (.template.json); tables "
-                "(.csv); other reports (.json); drawings (.svg); folders of such files, for example of a run or a fit, of which "
-                "cages and maps are omitted")
+                "(.csv); other reports (.json); drawings (.svg); folders of such files, for example of a run or a fit (cages and "
+                "maps in folders are omitted)")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
         p.output_option("beside", Kind::folder, objects_folder,
-                        "folder, kept beside the page, for the objects of a large collection: the page then loads each object "
-                        "when it is selected");
+                        "folder for the objects of a large collection, which must stay beside the page: the page then loads each "
+                        "object when it is selected");
         p.options("title", title, "title of the page; by default the name of the first result");
         p.options("colour", colouring, page_colouring_help, page_colouring_names());
         p.options("unit", unit, "unit of the coordinates of objects whose annotations state no unit");
@@ -128,7 +128,7 @@ struct MakeReport final : Operation {
         } else if (name.ends_with(".graph.json")) {
             ShownObject& object = object_for(name);
             if (!object.set)
-                fail_input(name, "comes before the annotations that it refers to",
+                fail_input(name, "comes before the annotations to which the graph refers",
                            "name the mesh, its annotations, then the graph");
             object.graph = read_graph(file, *object.set);
         } else if (kind == ".json") {

@@ -47,7 +47,7 @@ struct Run final : Operation {
     void declare(Parameters& p) override {
         p.input("study", Kind::study, study, "study file (.study.json), with steps, parameters, tables and plots");
         p.output_option("output", Kind::folder, output,
-                        "folder of the run: results, tables, page, provenance; NAME-run if left out");
+                        "folder of the run, for results, tables, page and provenance; NAME-run if left out");
         p.options("quick", quick,
                   "use the parameters under 'quick' in the study, and omit the steps that the study marks as slow")
             .unrecorded();
@@ -58,11 +58,14 @@ struct Run final : Operation {
             .unrecorded();
         p.options("explain", explain, "name of a step: report why this step would run again").unrecorded();
         p.options("again", again, "run all steps, including unchanged steps").unrecorded();
-        p.options("shard", shard, "K/N: process the K-th of N shards of the work; if left out, the results are gathered")
+        p.options("shard", shard,
+                  "K/N: process only the K-th of N shards of the steps; if left out, all remaining steps are run and the results "
+                  "of all shards are gathered")
             .unrecorded();
         p.options("reads", reads, "folder from which inputs may be read, besides the folder of the study; repeatable")
             .only_by_caller();
-        p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
+        p.options("allow-programs", allow_programs, "allow steps to start external programs, which do not belong to the toolkit")
+            .only_by_caller();
         p.options("programs", programs, "folder of the programs that steps name; by default the folder of this command")
             .only_by_caller();
         p.report.values(text("output"), integer("instances", "steps to run"), integer("done", "done"),

@@ -24,8 +24,9 @@ enum class PageColouring { automatic, texture, own, annotations, values, plain }
 Choices page_colouring_names();                       ///< names of these, in this order, for an option
 std::string page_colouring(PageColouring colouring);  ///< as PageObject::colouring
 inline constexpr const char* page_colouring_help =
-    "colours that the page shows first: texture or own colours in the file, annotations, values (the first map) or clay; auto: "
-    "annotations if there are any, otherwise the first of texture and own colours that there is";
+    "colours that the page initially shows: texture or own (colours of vertices or faces) in the file, annotations, values (the "
+    "first map) or clay (one neutral colour); auto: annotations if there are any, otherwise the texture, otherwise the colours "
+    "of vertices or faces";
 
 bool has_labels(const MeshExtras& extras);  ///< true if vertices or faces have labels
 

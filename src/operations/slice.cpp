@@ -80,7 +80,7 @@ struct SliceObject final : Operation {
         p.options.group("Planes");
         p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
-        up.declare(p, "upward direction; by default that of the annotations, or 0,0,1");
+        up.declare(p, "upward direction; by default the upward direction of the annotations, or 0,0,1");
         p.options("count", count, "number of layers of equal height, with a slice in the middle of each (default 50)",
                   Range{1, 1e6});
         p.options("spacing", spacing, "distance between slices, counted upwards from the lowest point", Anything{},

@@ -72,7 +72,7 @@ JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
         add_members(object, allocator, "hole", contour.hole, "parent", contour.parent, "depth", contour.depth, "area",
                     contour.area);
         if (contour.crosses) add_members(object, allocator, "crosses", true);
-        if (contour.turned) add_members(object, allocator, "turned", true);
+        if (contour.turned) add_members(object, allocator, "reversed", true);
     } else {
         add_members(object, allocator, "gap", contour.gap);
     }

@@ -81,8 +81,9 @@ GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragmen
     }
     if (group_axis.axis.found)
         report.line(fmt::format(
-            "{} is a surface of revolution: {} % of it is round about one axis, known to {} degrees{}{}", name,
-            number(100 * group_axis.round, 3), number(group_axis.direction_error, 2),
+            "{} is a surface of revolution: {} % of its surface is round about one axis, whose direction is known to {} "
+            "degrees{}{}",
+            name, number(100 * group_axis.round, 3), number(group_axis.direction_error, 2),
             group_axis.diameter > 0 ? "; largest diameter " + number(group_axis.diameter, 4) : "",
             determined > 0 ? fmt::format("; in {} of {} joins where both fragments have an axis, these agree", agree, determined)
                            : ""));

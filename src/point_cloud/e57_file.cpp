@@ -77,7 +77,8 @@ E57Pages::E57Pages(std::string& bytes, const std::string& file) : file_(file) {
 std::size_t E57Pages::logical(std::uint64_t physical, const char* content) const {
     const std::uint64_t pages = bytes_.size() / payload;
     if (physical >= pages * page_size || physical % page_size >= payload)
-        fail_input(file_, fmt::format("{} is said to begin at byte {}, which is no place for it", content, physical),
+        fail_input(file_,
+                   fmt::format("{} is said to begin at byte {}, which is not inside a page of the file", content, physical),
                    "the file is damaged; export it again");
     return static_cast<std::size_t>(physical / page_size * payload + physical % page_size);
 }

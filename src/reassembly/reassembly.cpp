@@ -128,7 +128,7 @@ private:
             other = pair.first == k ? pair.second : pair.first;
         }
         if (best == nullptr)
-            return fragments_.matched_count() > 1 ? "its fracture surface comes into contact with no other"
+            return fragments_.matched_count() > 1 ? "its fracture surface comes into contact with no other fragment"
                                                   : "there is no other fragment with a fracture surface to match";
         const auto percent = [](double p) { return std::to_string(static_cast<int>(std::floor(100 * p))) + " %"; };
         const double corrected = graph_.probable(maximum);

@@ -38,7 +38,7 @@ JsonValue search_to_json(const PoseSearchResult& search, JsonAllocator& allocato
         add_members(slippable, allocator, "text", search.slippable.text(), "point", search.slippable.point, "direction",
                     search.slippable.direction);
     const auto range_entry = [&](const SlippableRange& range) {
-        return json_object(allocator, "turns", range.rotates, "least", range.minimum, "most", range.maximum);
+        return json_object(allocator, "turns", range.rotates, "min", range.minimum, "max", range.maximum);
     };
     add_members(slippable, allocator, "ways", json_list(search.ways, allocator, range_entry));
     add_members(entry, allocator, "freedom", std::move(slippable));

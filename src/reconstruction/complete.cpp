@@ -185,8 +185,8 @@ void CompleteOptions::list_options(OptionList& list) {
          Range{0, 90}, "degrees");
     list("seam-width", blend, "width of the zone in which the template is blended into the edge of a fragment", Range{0, 1},
          "share of the diagonal");
-    list("confidence-length", halving, "distance over which the confidence of completed surface halves", Range{1e-6, 1e6},
-         "share of the diagonal");
+    list("confidence-length", halving, "distance from observed surface over which the confidence of completed surface is halved",
+         Range{1e-6, 1e6}, "share of the diagonal");
     list("join", join, "insert the triangles of the fragments into the completed mesh", Anything{});
     list("min-piece", min_piece, "minimum area of an inserted piece of a fragment, as a share of the fragment's area",
          Range{0, 1});

@@ -203,8 +203,11 @@ void NonRigidOptions::list_options(OptionList& list) {
          Range{1e-4, 10});
     list("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
     list("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    list("transition", stay, "first level: distance over which the deformation fades", Range{1e-3, 1e3}, "share of the diagonal");
-    list("fade", fade, "later levels: distance over which the deformation fades, in smoothing lengths of the level",
+    list("transition", stay, "first level: distance from observed surface over which the deformation decreases to zero",
+         Range{1e-3, 1e3}, "share of the diagonal");
+    list("fade", fade,
+         "later levels: distance from observed surface over which the deformation decreases to zero, in smoothing lengths of the "
+         "level",
          Range{0.1, 1e3});
     list("reach", search_radius, "maximum distance between a vertex and its match in the first level", Range{0, 10},
          "share of the diagonal");

@@ -59,8 +59,8 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
                            candidate.score, "share", candidate.share, "inside", candidate.inside, "residual", candidate.residual);
     };
     const auto range_entry = [&](const SlippableRange& range) {
-        return json_object(allocator, "point", range.point, "direction", range.direction, "turns", range.rotates, "least",
-                           range.minimum, "most", range.maximum);
+        return json_object(allocator, "point", range.point, "direction", range.direction, "turns", range.rotates, "min",
+                           range.minimum, "max", range.maximum);
     };
     JsonValue slippable = json_object(allocator, "kind", to_string(result.slippable.kind), "point", result.slippable.point,
                                       "direction", result.slippable.direction, "pitch", result.slippable.pitch);
@@ -102,7 +102,7 @@ PoseSearchResult result_from(const JsonValue& entry) {
     result.slippable.pitch = slippable["pitch"].GetDouble();
     for (const auto& item : entry["ways"].GetArray())
         result.ways.push_back({vector_from(item["point"]), vector_from(item["direction"]), item["turns"].GetBool(),
-                               item["least"].GetDouble(), item["most"].GetDouble()});
+                               item["min"].GetDouble(), item["max"].GetDouble()});
     return result;
 }
 

@@ -156,7 +156,7 @@ private:
         for (std::size_t k = 0; k < fragments_.size(); ++k)
             for (const auto& [first, second] : result_.placement.fragments[k].swapped)
                 result_.notes[k].push_back(fmt::format(
-                    "landmarks '{}' and '{}' would fit each other's positions: are their tags exchanged?", first, second));
+                    "landmarks '{}' and '{}' would fit better with exchanged tags: are their tags exchanged?", first, second));
         result_.searched = place_by_search(prepared_.searches, fragments_, prepared_.options.search, result_.placement.scale,
                                            result_.placement.fragments);
         for (std::size_t k = 0; k < fragments_.size(); ++k)

@@ -112,7 +112,7 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
 
 void SearchOptions::list_options(OptionList& list) {
     list("search", search,
-         "whether poses of fragments are searched without landmarks; auto: only for fragments with fewer than three landmarks",
+         "pose search by shape, without landmarks: always, never, or only for fragments with fewer than three landmarks (auto)",
          Choices{"auto", "always", "never"});
     poses.list_options(list);
 }

@@ -31,7 +31,7 @@ void ShapePrior::check(std::size_t vertices) const {
         fail_input("class", "its modes do not fit its mean", "learn it again");
     if (!modes.allFinite() ||
         std::any_of(deviations.begin(), deviations.end(), [](double d) { return !(d > 0) || !std::isfinite(d); }))
-        fail_input("class", "has a mode that is not finite or does not vary", "learn it again");
+        fail_input("class", "has a mode that is not finite or has zero variance", "learn it again");
 }
 
 namespace {
@@ -323,7 +323,7 @@ void PriorOptions::list_options(OptionList& list) {
     list("class-limit", maximum, "maximum deviation of a mode of variation from the class mean, in standard deviations",
          Range{0, 100});
     list("class-samples", samples,
-         "minimum number of independent samples that the observed surface counts for, relative to the prior of the class",
+         "minimum weight of the observed surface relative to the prior of the class, as a number of independent samples",
          Range{1, 1e9});
 }
 

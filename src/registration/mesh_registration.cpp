@@ -510,8 +510,7 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
 void MeshRegistrationOptions::list_options(OptionList& list) {
     list("scale", scale, "also find the scale, because the two meshes may be in different units", Anything{});
     list("tolerance", tolerance,
-         "maximum distance at which points of the two registered meshes count as the same surface; 0: estimated from the "
-         "resolutions",
+         "points of the two registered meshes within this distance count as the same surface; 0: estimated from the resolutions",
          Range{0, 1}, "share of the target's diagonal");
     list("samples", samples, "number of surface points with which the meshes are registered and compared", Range{100, 1e6});
 }

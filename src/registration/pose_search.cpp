@@ -394,8 +394,8 @@ void PoseSearchOptions::list_options(OptionList& list) {
     list("search-min-scale", min_scale, "minimum scale of the template in the search for poses", Range{1e-6, 1e6});
     list("search-max-scale", max_scale, "maximum scale of the template in the search for poses", Range{1e-6, 1e6});
     list("search-tolerance", tolerance,
-         "maximum distance at which a point of a fragment counts as lying on the template in the search for poses",
-         Range{1e-6, 1}, "share of the fragment's size");
+         "search for poses: points of a fragment within this distance of the template count as lying on it", Range{1e-6, 1},
+         "share of the fragment's size");
     list("min-confidence", min_confidence, "minimum confidence of a searched pose; below it, the fragment is not placed",
          Range{0, 1});
     list("search-points", points, "number of points sampled on the template in the search for poses", Range{50, 4000});

@@ -115,8 +115,8 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
         std::vector<const Annotation*> members;
         for (const int id : relationship.annotations) members.push_back(object.annotations.find(id));
         const RelationType* type = find_relation_type(relationship.type);
-        if (relationship.is_constraint) check.text = "a constraint, which is judged apart";
-        else if (type == nullptr) check.text = "a type of its own: experts tell";
+        if (relationship.is_constraint) check.text = "a constraint; constraints are judged separately";
+        else if (type == nullptr) check.text = "a user-defined type: only experts can judge it";
         else if (type->geometric == GeometricRelation::containment) check_containment(object.mesh, cut, members, check);
         else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(object.mesh, cut, members, check);
         else if (type->geometric == GeometricRelation::adjacency)

@@ -123,7 +123,7 @@ public:
         for (const auto& [kind, count] : held_)
             if (count >= most_of_type)
                 notes.push_back("'" + relation_type(kind).name + "': the first " + std::to_string(most_of_type) +
-                                " that hold are reported (--type and fewer annotations tell others)");
+                                " that hold are reported (use --type or fewer annotations to get the others)");
         return std::move(found_);
     }
 
@@ -177,7 +177,7 @@ private:
         if (all > most)
             notes.push_back("'" + relation_type(kind).name + "': of " + std::to_string(all) +
                             " pairs of about the same area the " + std::to_string(most) +
-                            " most alike were measured (fewer annotations at once tell all)");
+                            " most similar were measured (give fewer annotations at once to measure all)");
     }
 
     /// Quick test whether the angle between two axes is near 0 or 90 degrees, so that the exact measurement is worthwhile.
@@ -292,7 +292,7 @@ private:
         }
         if (state_.contacts_left_out)
             notes.push_back("contacts were measured at the " + std::to_string(state_.contacts->size()) +
-                            " longest borders between regions only (fewer annotations at once tell all)");
+                            " longest borders between regions only (give fewer annotations at once to measure all)");
     }
 
     RelationMeter& meter_;
@@ -320,7 +320,7 @@ std::vector<std::string> geometric_types(const std::vector<std::string>& names) 
     for (const std::string& name : names) {
         const RelationType* type = find_relation_type(name);
         if (type == nullptr || !type->geometric)
-            fail_usage("'" + name + "' is not a type that geometry tells",
+            fail_usage("'" + name + "' is not a type that is decided by geometry",
                        "use one of those in doc/relations.md; the nearest is '" + nearest_relation_type(name) + "'");
         types.push_back(type->name);
     }
@@ -336,7 +336,7 @@ void note_left_out(const Topology& found, const std::function<bool(const std::st
                                       std::pair(GeometricRelation::adjacency, found.adjacent.size())})
         if (const std::string& name = relation_type(kind).name; count > most_of_type && wanted(name))
             notes.push_back("'" + name + "': the first " + std::to_string(most_of_type) + " of " + std::to_string(count) +
-                            " are reported (fewer annotations tell others)");
+                            " are reported (give fewer annotations to get the others)");
 }
 }  // namespace
 

@@ -102,7 +102,7 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
     const std::size_t count = relationship.annotations.size();
     if (count < type->minimum || (type->maximum > 0 && count > type->maximum)) {
         const std::string minimum = std::to_string(type->minimum), maximum = std::to_string(type->maximum);
-        fail_input(place, "'" + type->name + "' is said of " + counted(count, "annotation"),
+        fail_input(place, "'" + type->name + "' relates " + counted(count, "annotation"),
                    "name " + (type->maximum == 0               ? minimum + " or more"
                               : type->minimum == type->maximum ? minimum
                                                                : minimum + " to " + maximum));
@@ -174,7 +174,7 @@ void check_relationship(const Relationship& relationship, const AnnotationSet& s
     if (!relationship.constraint.empty() && !parse_json(relationship.constraint, place).IsObject())
         fail_input(place, "its constraint is not a JSON object", "give the parameters as {\"name\": value, ...}");
     if (!relationship.constraint.empty() && !relationship.is_constraint)
-        fail_input(place, "has a constraint, but is none", "set isConstraint to true");
+        fail_input(place, "has a constraint, but is not marked as one", "set isConstraint to true");
     const RelationParameters& parameters = relationship.parameters;
     for (const auto& deviation : parameters.deviations) {
         if (deviation.tolerance && !(std::isfinite(*deviation.tolerance) && *deviation.tolerance >= 0))
@@ -222,7 +222,7 @@ void check_graph(const RelationGraph& graph, const AnnotationSet& set, const std
             fail_input(place, "its id is used twice", "give each relationship an id of its own");
         check_relationship(relationship, set, place);
         const auto [entry, added] = said.emplace(statement(relationship), relationship.id);
-        if (!added) fail_input(place, "says the same as relationship " + std::to_string(entry->second), "remove one of them");
+        if (!added) fail_input(place, "repeats relationship " + std::to_string(entry->second), "remove one of them");
     }
 }
 

@@ -30,7 +30,7 @@ const PartAxis& axis_of(Part& part) {
 Vector3d up_of(const AnnotationSet& set, const Relationship& relationship) {
     const auto& up = relationship.parameters.up ? relationship.parameters.up : set.up;
     const Vector3d unit = up ? eigen(unit_vector({(*up)[0], (*up)[1], (*up)[2]})) : Vector3d(0, 0, 0);
-    if (unit.isZero(0)) throw Unknown{"it depends on what is up: give \"up\" in the annotations or the parameters"};
+    if (unit.isZero(0)) throw Unknown{"it depends on the upward direction: give \"up\" in the annotations or the parameters"};
     return unit;
 }
 

@@ -47,7 +47,7 @@ std::vector<Finding> check_parts(AnnotatedMeshView object, const Vocabulary& voc
         for (const std::size_t whole : one.wholes) names.push_back(name_of(object.annotations.annotations[whole]));
         findings.push_back({true, "/annotations/" + std::to_string(one.part),
                             name_of(object.annotations.annotations[one.part]) +
-                                " is a part by the vocabulary, but lies in no whole: not in " + joined(names)});
+                                " is a part by the vocabulary, but does not lie in a whole: not in " + joined(names)});
     }
     return findings;
 }

@@ -214,7 +214,7 @@ private:
                                   : "a power " + std::to_string(x.power) + " of a length";
         };
         problems_.insert("column " + std::to_string(at) + ": " + named(a) + " and " + named(b) +
-                         " do not go together: give the number a unit, or the annotations (annotation edit --set-unit)");
+                         " cannot be compared: give a unit to the number or to the annotations (annotation edit --set-unit)");
         return false;
     }
 

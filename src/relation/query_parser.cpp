@@ -50,7 +50,7 @@ std::vector<QueryToken> query_tokens(const std::string& text) {
             tokens.push_back({QueryToken::Kind::number, text.substr(begin, i - begin), value, begin + 1});
         } else if (c == '"' || c == '\'') {
             const std::size_t end = text.find(c, i + 1);
-            if (end == std::string::npos) fail_query(begin + 1, "a quotation mark without its partner", "close it");
+            if (end == std::string::npos) fail_query(begin + 1, "a quotation mark is not closed", "close it");
             tokens.push_back({QueryToken::Kind::quoted, text.substr(i + 1, end - i - 1), 0, begin + 1});
             if (tokens.back().text.empty()) fail_query(begin + 1, "nothing is quoted", "write a word between the marks");
             i = end + 1;
@@ -73,10 +73,10 @@ public:
     explicit QueryParser(const std::string& text) : tokens_(query_tokens(text)) {}
 
     NodePointer parse() {
-        if (next().kind == QueryToken::Kind::end) fail_query(1, "there is nothing to look for", "write, say, '2 arm and 2 leg'");
+        if (next().kind == QueryToken::Kind::end) fail_query(1, "the query is empty", "write, say, '2 arm and 2 leg'");
         NodePointer node = truth(either());
         if (next().kind != QueryToken::Kind::end)
-            fail_query(next().at, "'" + printable(next().text, 30) + "' does not follow from what is before it",
+            fail_query(next().at, "'" + printable(next().text, 30) + "' cannot stand after the text before it",
                        "join conditions by 'and' or 'or'");
         return node;
     }
@@ -112,7 +112,7 @@ private:
     static NodePointer truth(NodePointer given) {
         if (is_truth(*given)) return given;
         if (given->kind != NodeKind::word)
-            fail_query(given->at, "a condition is wanted, and this is a number", "compare it, as in 'area(handle) > 5 mm^2'");
+            fail_query(given->at, "a condition is expected, but this is a number", "compare it, as in 'area(handle) > 5 mm^2'");
         given->kind = NodeKind::count;
         given->words = {given->text};
         given->value = 1;
@@ -120,10 +120,10 @@ private:
     }
     static NodePointer amount(NodePointer given) {
         if (is_truth(*given))
-            fail_query(given->at, "a number is wanted, and this is a condition", "join conditions by 'and' or 'or'");
+            fail_query(given->at, "a number is expected, but this is a condition", "join conditions by 'and' or 'or'");
         if (given->kind == NodeKind::word)
-            fail_query(given->at, "a number is wanted, and this is the word '" + printable(given->text, 30) + "'",
-                       "write what is to be compared of it: area(" + printable(given->text, 30) + ")");
+            fail_query(given->at, "a number is expected, but this is the word '" + printable(given->text, 30) + "'",
+                       "write which quantity of it is compared: area(" + printable(given->text, 30) + ")");
         return given;
     }
 
@@ -161,8 +161,8 @@ private:
             if (right->kind != NodeKind::word)
                 return pair(NodeKind::compare, at, amount(std::move(left)), amount(std::move(right)), sign);
             if (left->kind != NodeKind::quantity || (std::string_view(sign) != "=" && std::string_view(sign) != "!="))
-                fail_query(at, "words are compared with attributes, by = and != only",
-                           "write, say, 'decoration(body) = \"painted\"'");
+                fail_query(
+                    at, "words can be compared with attributes only, by = or !=", "write, say, 'decoration(body) = \"painted\"'");
             return pair(NodeKind::compare, at, std::move(left), std::move(right), sign);
         }
         return left;
@@ -205,8 +205,8 @@ private:
         }
         fail_query(token.at,
                    token.kind == QueryToken::Kind::end
-                       ? "the query ends where something should follow"
-                       : "'" + printable(token.text, 30) + "' stands where a word or a number should",
+                       ? "the query is incomplete"
+                       : "'" + printable(token.text, 30) + "' stands where a word or a number is expected",
                    "write a part ('handle'), a number, or a quantity such as area(handle)");
     }
     static bool keyword(const QueryToken& token) {
@@ -229,7 +229,7 @@ private:
             return made;
         }
         if (is("^", 1))
-            fail_query(word.at, "'" + printable(unit, 20) + "' is no unit that is known",
+            fail_query(word.at, "'" + printable(unit, 20) + "' is not a known unit",
                        "use mm, cm, m, in, their powers, deg or rad");
         if (std::floor(token.value) != token.value || token.value < 1)
             fail_query(token.at, "there are no " + printable(token.text, 20) + " parts",
@@ -251,7 +251,7 @@ private:
             words.push_back(token.text);
             ++at_;
         } while (take(","));
-        expect(")", "put words of several letters' groups in quotation marks, and close the bracket");
+        expect(")", "put names of several words in quotation marks, and close the bracket");
         const bool plain = name.kind == QueryToken::Kind::name;
         NodePointer made = node(NodeKind::quantity, name.at, name.text);
         std::size_t least = 1, most = 1;
@@ -274,7 +274,7 @@ private:
 
     struct Depth {
         explicit Depth(QueryParser& owner) : parser(owner) {
-            if (++parser.depth_ > 400) fail_query(parser.next().at, "brackets nested too deep", "make it simpler");
+            if (++parser.depth_ > 400) fail_query(parser.next().at, "brackets are nested too deeply", "make it simpler");
         }
         ~Depth() { --parser.depth_; }
         Depth(const Depth&) = delete;

@@ -285,7 +285,7 @@ std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& cl
         if (lengths.size() > 2 * settled + (std::size_t{1} << 22)) {
             add_up(lengths);
             settled = lengths.size();
-            require_memory(4.0 * sizeof(Shared) * static_cast<double>(settled), "to tell which regions are neighbours",
+            require_memory(4.0 * sizeof(Shared) * static_cast<double>(settled), "to compute which regions are adjacent",
                            "give fewer annotations at once");
         }
     }
@@ -300,7 +300,8 @@ std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& cl
 void require_few(const AnnotationSet& set) {
     constexpr std::size_t most = 30000;
     if (set.annotations.size() > most)
-        fail_input("annotations", "there are more than " + std::to_string(most) + ", too many to tell which contain each other",
+        fail_input("annotations",
+                   "there are more than " + std::to_string(most) + ", too many to compute which contain each other",
                    "give fewer at once");
 }
 

@@ -73,7 +73,7 @@ void RenderOptions::list_options(OptionList& list) {
                    candidate.views = text;
                    static_cast<void>(detail::views_of(candidate));
                }});
-    list("up", up, "upward axis of the object; auto: that of the annotations, or z",
+    list("up", up, "upward axis of the object; auto: the upward direction of the annotations, or z",
          Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
                    static_cast<void>(parse_up(text));
                }});
@@ -83,10 +83,9 @@ void RenderOptions::list_options(OptionList& list) {
     list("fit", fit, "several objects: draw all at one scale (all), or each as large as fits its pane (each)",
          Choices{"all", "each"});
     list("shading", shading, "shading of the surface: smooth (interpolated normals) or flat", Choices{"smooth", "flat"});
-    list(
-        "light", light,
-        "light: shaded (a lamp at the viewer's upper left), or flat (the colours exactly as in the image or file, without shade)",
-        Choices{"shaded", "flat"});
+    list("light", light,
+         "lighting: shaded (by a light at the viewer's upper left) or flat (no shading: colours exactly as in the image or file)",
+         Choices{"shaded", "flat"});
     list("crease", crease, "smooth shading: minimum dihedral angle of edges that are drawn sharp", Range{0, 180}, "degrees");
     list("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: no ambient occlusion",
          Range{0, 1024});

@@ -116,8 +116,7 @@ void doubt_axes(const ConstraintMembers& members, const State& deformed, double 
         measured.verdict = Verdict::unknown;
         measured.text += (measured.text.empty() ? "" : "; ") + std::string("the axis of '") + printable(part.tag, 60) +
                          "' is certain to " + digits(apart, 2) +
-                         " degrees only: so far are that of its slices and that of its area "
-                         "apart";
+                         " degrees only: the axis of its slices and that of its area differ by as much";
     }
 }
 

@@ -138,7 +138,7 @@ std::vector<ConstraintReach> cage_reach(const HandleSpace& space, const Relation
                                         const std::string& edit_name, const RelationOptions& tolerances,
                                         const std::string& graph_name) {
     if (space.cage == nullptr || space.coordinates == nullptr)
-        fail_usage("there is no cage whose reach could be told", "give a cage and its coordinates");
+        fail_usage("there is no cage whose reach could be computed", "give a cage and its coordinates");
     check_options(tolerances, "cage reach");
     std::vector<Edit> probes;
     if (edit == nullptr)

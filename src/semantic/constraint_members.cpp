@@ -67,7 +67,8 @@ void ConstraintMembers::need_region(std::size_t i) const {
 
 Vector3d ConstraintMembers::up(const std::optional<Vector3d>& stated) const {
     if (stated) return *stated;
-    if (!shape_.annotations.up) fail("no direction is up", "give direction in the constraint, or up in the annotations");
+    if (!shape_.annotations.up)
+        fail("no upward direction is given", "give direction in the constraint, or up in the annotations");
     return Vector3d((*shape_.annotations.up)[0], (*shape_.annotations.up)[1], (*shape_.annotations.up)[2]).normalized();
 }
 
@@ -87,7 +88,7 @@ const Measure& ConstraintMembers::measure(const MeasureName& name, std::size_t i
     }
     if (match == nullptr)
         fail(fmt::format("annotation {} has no measure that {} names", annotation.id, name.parameter),
-             fmt::format("take one with 'measure take', or mend {}", name.parameter));
+             fmt::format("take one with 'measure take', or correct {}", name.parameter));
     return *match;
 }
 

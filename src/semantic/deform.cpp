@@ -144,14 +144,15 @@ void DeformOptions::list_options(OptionList& list) {
          "shape whose Laplacian displacements the surface approaches: the edited shape (edited) or the shape before the edit "
          "(rest, as in the thesis)",
          Choices{"edited", "rest"});
-    list("spread", spread, "distance over which the displacement by a constraint fades out", Range{1e-4, 1e4},
+    list("spread", spread, "distance over which the displacement caused by a constraint decreases to zero", Range{1e-4, 1e4},
          "share of the diagonal");
     list("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
     list("handles", handles,
          "weight of the positions of handles that the edit moves, and of joints of stretched parts; lower for handles that a "
          "constraint moves as well",
          Range{0, 1e9});
-    list("followed", followed, "minimum share of the edit's displacement that an acceptable result keeps", Range{0, 1});
+    list("followed", followed, "a result is acceptable only if it follows at least this share of the edit's displacement",
+         Range{0, 1});
     list("distortion", distortion,
          "acceptable results: maximum root mean square distortion of a part that neither the edit nor a violated constraint "
          "changes",

@@ -18,8 +18,8 @@ DeformResult Deformer::follow(const Edit& edit) {
     result = finish(std::move(result));
     result.followed = semantic::followed_edit(space_, last_, asked_, rest_, edited_, columns_of(result.points));
     if (result.followed.share < options_.followed)
-        result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
-                                    percent(options_.followed) + " are asked");
+        result.objections.push_back("the result follows the edit by " + percent(result.followed.share) + ", " +
+                                    percent(options_.followed) + " are required");
     add_surface(result);
     result.acceptable = result.objections.empty();
     return result;

@@ -56,22 +56,23 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
         fail_usage(std::string(option) + " " + printable(text, 60) + ": " + what, remedy);
     };
     const std::size_t equals = text.rfind('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
-    if (equals == std::string::npos || equals == 0) fail("says no amount", "give PART=NUMBER, like back=1.2");
+    if (equals == std::string::npos || equals == 0) fail("contains no amount", "give PART=NUMBER, like back=1.2");
     Amount amount;
     amount.parts = text.substr(0, equals);
     const auto number = number_of(text.substr(equals + 1, comma == std::string::npos ? comma : comma - equals - 1));
     if (!number || !std::isfinite(*number))
-        fail("the amount is no number", "give PART=NUMBER without a unit (a length is in the mesh's own), like back=1.2");
+        fail("the amount is not a number", "give PART=NUMBER without a unit (a length is in the mesh's own), like back=1.2");
     amount.number = *number;
     const std::string axis = comma == std::string::npos ? "up" : text.substr(comma + 1);
     if (axis == "up") {
-        if (!set.up) fail("no direction is up", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
+        if (!set.up)
+            fail("no upward direction is given", "add the axis, like " + text.substr(0, comma) + ",z, or up to the annotations");
         amount.axis = {(*set.up)[0], (*set.up)[1], (*set.up)[2]};
         return amount;
     }
     const std::size_t k = axis.empty() ? std::string::npos : std::string("xyz").find(axis.back());
     if (k == std::string::npos || (axis.size() == 2 ? axis[0] != '-' : axis.size() != 1))
-        fail("'" + printable(axis, 20) + "' is no axis", "use up, x, y, z, -x, -y or -z");
+        fail("'" + printable(axis, 20) + "' is not an axis", "use up, x, y, z, -x, -y or -z");
     amount.axis.setZero();
     amount.axis[static_cast<Eigen::Index>(k)] = axis.size() == 2 ? -1 : 1;
     return amount;

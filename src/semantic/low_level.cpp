@@ -245,7 +245,7 @@ Statement low_level(const MembersPtr& members, const ParameterReader& read, cons
     Statement statement;
     statement.resizes = true;
     if (form.keeps == Keeps::rest || (form.keeps == Keeps::rest_without_absolute && !parameters.absolute))
-        statement.keeps = "what its vertices are to each other";
+        statement.keeps = "the relative positions of its vertices";
     statement.lower = [lower](const State&, const State&) { return lower(); };
     const auto list = std::make_shared<const Statement::Constraints>(lower());
     // Residuals are relative to the size of the group at rest, since edges and faces are smaller on finer meshes.

@@ -50,7 +50,7 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
     if (range.high) add_members(object, allocator, "high", *range.high);
     if (range.recognised) add_members(object, allocator, "recognised", *range.recognised);
     add_members(object, allocator, "values", range.values);
-    if (!range.out_of_class.empty()) add_members(object, allocator, "strangers", range.out_of_class);
+    if (!range.out_of_class.empty()) add_members(object, allocator, "outOfClass", range.out_of_class);
     return object;
 }
 
@@ -95,8 +95,8 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     };
     range.values = values_in(object, "values");
     check(range.values, members, "members");
-    range.out_of_class = values_in(object, "strangers");
-    if (!range.out_of_class.empty()) check(range.out_of_class, out_of_class, "strangers");
+    range.out_of_class = values_in(object, "outOfClass");
+    if (!range.out_of_class.empty()) check(range.out_of_class, out_of_class, "outOfClass");
     return range;
 }
 
@@ -152,7 +152,7 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
     }
     add_members(document, allocator, "unsure", learnt.unsure, "accept", learnt.accept);
     if (learnt.most_off) add_members(document, allocator, "mostOff", *learnt.most_off);
-    if (!learnt.out_of_class.empty()) add_members(document, allocator, "strangers", learnt.out_of_class);
+    if (!learnt.out_of_class.empty()) add_members(document, allocator, "outOfClass", learnt.out_of_class);
     add_members(document, allocator, "falseReject", learnt.reject, "resolution", learnt.resolution, "members", std::move(members),
                 "archetype", learnt.members[modes.archetype].name, "diversity", learnt.diversity);
 
@@ -193,7 +193,7 @@ ShapeClass read_class(const Path& file) {
     learnt.unsure = number_in(document, "unsure").value_or(learnt.unsure);
     learnt.accept = number_in(document, "accept").value_or(learnt.accept);
     learnt.most_off = number_in(document, "mostOff");
-    learnt.out_of_class = texts_in(document, "strangers");
+    learnt.out_of_class = texts_in(document, "outOfClass");
     learnt.notes = texts_in(document, "notes");
     learnt.diversity = document["diversity"].GetDouble();
     ShapeModes& modes = learnt.modes;
@@ -268,7 +268,7 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
         if (check.high) add_members(item, allocator, "high", *check.high);
         if (check.recognised) add_members(item, allocator, "recognised", *check.recognised);
         add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
-        if (!check.worst.empty()) add_members(item, allocator, "most", check.worst);
+        if (!check.worst.empty()) add_members(item, allocator, "worst", check.worst);
         return item;
     };
     const auto place = [](const Point& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };

@@ -294,10 +294,11 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
 void ClassifyOptions::list_options(OptionList& list) {
     fit.list_options(list);
     list("correspondence", correspondence,
-         "source of the vertex correspondence: an object with the template's triangles as it is (auto, given), or by fitting "
-         "the template (fitted)",
+         "vertex correspondence between template and object: given (the object must have the template's triangles), fitted (the "
+         "template is fitted to the object), or auto (given if the object has the template's triangles, otherwise fitted)",
          Choices{"auto", "given", "fitted"});
-    list("strict", strict, "let only --max-off decide whether the template fits an object, not also the members", Anything{});
+    list("strict", strict, "decide whether the template fits an object by --max-off alone, without comparison with the members",
+         Anything{});
     list("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
     list("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }

@@ -346,11 +346,11 @@ void MemberFitOptions::list_options(OptionList& list) {
          "without landmarks: number of initial poses from which the template is fitted, nearest first; the best fit is kept "
          "(initial poses: principal axes, and the pose in the files)",
          Range{1, 5});
-    list("observed", observed, "maximum distance of points that count as lying on the other surface", Range{0, 1},
+    list("observed", observed, "points within this distance of the other surface count as lying on it", Range{0, 1},
          "share of the diagonal");
     list("max-off", max_off,
-         "maximum share of the two surfaces (mean of unmatched and unexplained) off each other after the fit; above it the "
-         "template does not fit the object",
+         "the template fits an object only if, after the fit, at most this share of the two surfaces (mean of unmatched and "
+         "unexplained) does not lie on the other surface",
          Range{0, 1});
 }
 

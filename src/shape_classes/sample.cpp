@@ -201,8 +201,9 @@ void SampleOptions::list_options(OptionList& list) {
          "sampling method: modes (normally distributed mode coefficients, within the range of the members) or edits (mean shape "
          "with one to three random parts stretched or scaled)",
          Choices{"modes", "edits"});
-    list("spread", spread, "modes: factor on the range of the mode coefficients of the members", Range{0, 10});
-    list("edit", edit, "edits: standard deviation of the logarithm of a part's stretch", Range{0, 2});
+    list("spread", spread, "modes: the coefficients are drawn within the range of the members' coefficients times this factor",
+         Range{0, 10});
+    list("edit", edit, "edits: standard deviation of the logarithm of the factor by which a part is stretched", Range{0, 2});
     list("attempts", attempts, "maximum number of random draws for each new member", Range{1, 1e6});
 }
 

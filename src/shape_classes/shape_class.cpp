@@ -516,16 +516,18 @@ void LearnOptions::list_options(OptionList& list) {
     fit.list_options(list);
     modes.list_options(list);
     list("correspondence", correspondence,
-         "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
-         "template (auto); all as they are (given); all by fitting the template (fitted)",
+         "vertex correspondence between template and members: given (members must have the template's triangles), fitted (the "
+         "template is fitted to each member), or auto (given for members with the template's triangles, fitted for others)",
          Choices{"auto", "given", "fitted"});
-    list("false-reject", reject, "maximum share of true members that all thresholds together reject (log-normal quantities)",
+    list("false-reject", reject, "maximum share of true members that all thresholds together reject (for log-normal quantities)",
          Range{1e-6, 0.5});
     list("unsure", unsure,
-         "maximum share of true members that are too dissimilar from the other members to be recognised; up to the rejection "
-         "threshold they are undecided; three or more out-of-class objects determine this threshold instead",
+         "maximum share of true members that are not recognised because of their dissimilarity; objects between this threshold "
+         "and the rejection threshold are undecided; with three or more out-of-class objects, these determine the threshold "
+         "instead",
          Range{1e-6, 0.5});
-    list("accept", accept, "maximum share of out-of-class objects that any of the jointly tested classes accepts",
+    list("accept", accept,
+         "maximum share of out-of-class objects that are accepted by at least one of the classes that are tested together",
          Range{1e-6, 0.5});
     list("resolution", resolution, "standard deviation of repeated measurements of one member", Range{0, 1},
          "share of its value");

@@ -148,8 +148,9 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
 
 void ClayOptions::list_options(OptionList& list) {
     list("slices", slices, "number of layers of equal height from which the volume is summed", Range{2, 1000000});
-    list("wall", wall, "minimum thickness of unseen walls; 0: the 5 % quantile of the scanned walls", Range{0, 1e60},
-         "the mesh's unit");
+    list("wall", wall,
+         "minimum thickness of walls whose inner side was not scanned; 0: the 5 % quantile of the thickness of scanned walls",
+         Range{0, 1e60}, "the mesh's unit");
 }
 
 }  // namespace ostraka

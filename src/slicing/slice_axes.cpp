@@ -197,10 +197,10 @@ void TubeOptions::list_options(OptionList& list) {
          "tube: minimum ratio of short to long side of the smallest rectangle around a slice", Range{0, 1});
     list("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its fitted circle", Range{0, 10},
          "share of the radius");
-    list(
-        "similarity", similarity,
-        "tube: maximum root mean square distance of the slices of a group from the group's centre, in dimensionless shape values",
-        Range{1e-6, 1e6});
+    list("similarity", similarity,
+         "tube: maximum root mean square distance of the slices of a group from the group's centre, in dimensionless shape "
+         "descriptors",
+         Range{1e-6, 1e6});
     list("tube-seed", seed, "tube: random seed of the grouping of slices", Range{0, 1e18});
 }
 

@@ -150,7 +150,9 @@ void SolveOptions::list_options(OptionList& list) {
     list("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
     list("tolerance", tolerance, "stop when no point moves by more than this distance per iteration", Range{0, 1},
          "share of the diagonal");
-    list("residual", residual, "stop when the weighted rms distance from the projections falls to this value", Range{0, 1e300});
+    list("residual", residual,
+         "stop when the weighted root mean square distance of the rows from their projections is at most this value",
+         Range{0, 1e300});
     list("window", window, "number of previous iterations from which the acceleration extrapolates; 0: no acceleration",
          Range{0, 50});
 }

@@ -88,7 +88,7 @@ void FragmentOptions::list_options(OptionList& list) {
     list("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
     list("noise", noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.1},
          "share of the whole's diagonal");
-    list("erosion", erosion, "width of the zone at the rim of the fracture that is worn", Range{0, 0.5},
+    list("erosion", erosion, "width of the worn zone along the rim of the fracture", Range{0, 0.5},
          "share of the whole's diagonal");
     list("moved", moved, "rotate and translate the fragment at random", Anything{});
     list("seed", seed, "random seed of the fracture, the noise and the motion", Range{0, 9007199254740992.0});

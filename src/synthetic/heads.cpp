@@ -363,7 +363,7 @@ std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const
 
 void ArchetypeOptions::list_options(OptionList& list) {
     list("long-hair", long_hair, "long locks behind the ears, instead of a cap of short hair", Anything{});
-    list("hand-made", hand_made, "a head formed by hand: freely varied, with a hat", Anything{});
+    list("hand-made", hand_made, "make a hand-formed head: with larger variation, and with a hat", Anything{});
     list("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",
          Range{0, 3});
     list("archetype-seed", seed, "random seed of the proportions of the archetype", Range{0, 9007199254740992.0});

@@ -93,7 +93,7 @@ void ProportionedOptions::list_options(OptionList& list) {
     list("fixed", fixed, "names of the sizes that have fixed ratios to each other, separated by commas",
          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
         .words();
-    list("none", none, "fix no ratio of sizes, except the equal lengths of the two arms");
+    list("none", none, "no fixed ratios of sizes, except the equal lengths of the two arms");
     list("objects", objects, "number of statuettes", Range{1, 100000});
     list("size-deviation", size_deviation, "standard deviation, over the statuettes, of the logarithm of the overall size",
          Range{0, 0.2});

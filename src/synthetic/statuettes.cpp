@@ -320,7 +320,7 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("wall-noise", wall_noise, "root mean square variation of the wall thickness", Range{0, 0.25}, "share of the wall");
     list("off-centre", off_centre, "offset of the cavity from the axis of the body", Range{0, 0.4}, "share of the wall");
     list("cavity-seen", cavity_seen, "share of the depth of the cavity that is scanned", Range{0.1, 1});
-    list("interior", interior, "how the mesh of the cavity ends where the scan ends: closed by a flat wall, or open",
+    list("interior", interior, "end of the cavity in the mesh, where the scan ends: closed by a flat wall, or open",
          Choices{"closed", "open"});
     list("scan-noise", scan_noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.5},
          "mm");

@@ -127,7 +127,7 @@ std::string message_about(const Misalignment& found, double diagonal, const std:
     if (std::abs(found.scale - 1) >= 0.002) motion.push_back("scaled by " + digits(found.scale, 3));
     return "the meshes do not lie on each other: they are " + length(found.distance) + " apart on average (" +
            digits(100 * found.distance / diagonal, 2) + " % of the diagonal), and " + length(found.distance_left) +
-           " if the source is " + joined(motion) + "; what is transferred is off by as much: align them first";
+           " if the source is " + joined(motion) + "; transferred data have errors of this size: align the meshes first";
 }
 
 }  // namespace ostraka

@@ -22,15 +22,16 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
     for (const Annotation& annotation : object.annotations.annotations)
         survivals.push_back({annotation.id, annotation.tag, object.mesh.number_of_vertices(), ""});
     Mesh coarse = object.mesh;
-    const double steps = std::log(static_cast<double>(options.minimum) / static_cast<double>(object.mesh.number_of_vertices())) /
-                         std::log(options.ratio);
+    const double steps =
+        std::log(static_cast<double>(options.min_vertices) / static_cast<double>(object.mesh.number_of_vertices())) /
+        std::log(options.ratio);
     Progress progress("resolutions", static_cast<std::size_t>(std::max(1.0, steps)));
     std::size_t alive = survivals.size();
     bool tried = false;
     while (alive > 0) {
         SimplifyOptions simplifying;
         simplifying.vertices = static_cast<std::uint64_t>(options.ratio * static_cast<double>(coarse.number_of_vertices()));
-        if (simplifying.vertices < options.minimum) break;
+        if (simplifying.vertices < options.min_vertices) break;
         const SimplifyResult simplified = simplify(coarse, simplifying);
         if (!simplified.reached) break;
         tried = true;
@@ -56,8 +57,9 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
 void SurvivalOptions::list_options(OptionList& list) {
     list("ratio", ratio, "ratio of the number of vertices of each resolution to that of the previous resolution",
          Range{0.1, 0.95});
-    list("area-error", area_error, "relative change of area at which a region counts as lost", Range{0.001, 1});
-    list("least", minimum, "minimum number of vertices of the resolutions that are tried", Range{4, 1e9});
+    list("area-error", area_error, "a region counts as lost if its area changes by more than this relative amount",
+         Range{0.001, 1});
+    list("min-vertices", min_vertices, "minimum number of vertices of the resolutions that are tried", Range{4, 1e9});
 }
 
 }  // namespace ostraka

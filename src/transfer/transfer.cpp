@@ -265,12 +265,12 @@ void TransferOptions::list_options(OptionList& list) {
     list("spikes", spikes, "spikes of outlines: prune (remove), avoid (visit no vertex twice) or keep",
          Choices{"prune", "avoid", "keep"});
     list("outlines", outlines,
-         "course of outlines and lines on the target: as on the source, but free for regions that partition the surface, such "
-         "as labels (partitions); as on the source (kept); through the triangles (free); along edges (edges)",
+         "representation of outlines and lines on the target: as on the source, but free for regions that partition the surface, "
+         "such as labels (partitions); as on the source (kept); curves through the triangles (free); paths of edges (edges)",
          Choices{"partitions", "kept", "free", "edges"});
     list("rounding", rounding,
-         "how faces that an outline crosses are assigned: by edge paths (path), to the side with most of the face's area "
-         "(area), or so that the area and perimeter of the region are preserved as well (balanced)",
+         "assignment of faces that an outline crosses: by edge paths (path), to the side with most of the face's area (area), or "
+         "so that the area and perimeter of the region are preserved as well (balanced)",
          Choices{"path", "area", "balanced"});
     list("cover", cover, "required relation of a transferred region to its source region: overlapping, enclosing or enclosed",
          Choices{"overlapping", "enclosing", "enclosed"});

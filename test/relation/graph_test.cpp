@@ -99,7 +99,7 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     expect_refused(head + R"("equal attributes", "isDirected": false, "annotations": [0, 1])" + rest, "which attribute");
     expect_refused(head + R"("line", "isDirected": false, "annotations": [1], "isConstraint": true, "weight": -1})", "weight");
     expect_refused(head + R"("line", "isDirected": false, "annotations": [1], "isConstraint": false, "constraint": {"a": 1}})",
-                   "is none");
+                   "is not marked as one");
     expect_refused(head + R"("same level", "isDirected": false, "annotations": [0, 1],
         "parameters": {"deviations": [{"quantity": "height", "tolerance": -0.5}]})" +
                        rest,
@@ -111,7 +111,7 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     expect_refused(good + "," + good, "id is used twice");
     std::string other = good;
     other.replace(other.find("\"id\": 0"), 7, "\"id\": 1");
-    expect_refused(good + "," + other, "says the same as relationship 0");
+    expect_refused(good + "," + other, "repeats relationship 0");
     // The first part of a proportion changes, so that the order matters. For one level it does not.
     const auto both = [&](const std::string& type) {
         const auto relationship_text = [&](const char* id, const char* members) {
@@ -123,7 +123,7 @@ TEST(Graph, InvalidGraphsAreRefusedWithLocationAndRemedy) {
     EXPECT_EQ(refused(both("proportion")), "read");
     EXPECT_EQ(refused(both("structural continuity")), "read");
     EXPECT_EQ(refused(both("co-axiality")), "read");
-    expect_refused(both("same level"), "says the same as relationship 0");
+    expect_refused(both("same level"), "repeats relationship 0");
     EXPECT_THROW(read(R"({"relationships": [{"id": 0}]})"), Error);
     EXPECT_THROW(read(R"({"relationships": 3})"), Error);
     EXPECT_THROW(read(R"({"relationships": [], "unknown": 1})"), Error);

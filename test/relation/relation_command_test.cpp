@@ -95,9 +95,9 @@ TEST(RelationCommand, AddsSeveralRelationshipsToTheGraphInPlace) {
     refused("--graph " + graph + " --relation 'adjacency lid, body'", 2, "is not a relationship");
     refused("--graph " + graph + " --relation 'adjacency: lid,, body'", 2, "is not a relationship");
     refused("--graph " + graph + " --relation 'adjacensy: lid, body'", 2, "did you mean 'adjacency'?");
-    refused("--graph " + graph + " --relation 'adjacency: lid, body' --type adjacency", 2, "in one way");
+    refused("--graph " + graph + " --relation 'adjacency: lid, body' --type adjacency", 2, "one form only");
     refused("--graph " + graph, 2, "type of the relationship");
-    refused("--relation 'adjacency: lid, body'", 2, "where the graph goes");
+    refused("--relation 'adjacency: lid, body'", 2, "no file for the graph");
     refused(graph + ".new --graph " + graph + ".absent --relation 'adjacency: lid, body'", 1, "cannot be opened");
 }
 

@@ -192,7 +192,7 @@ TEST(CreasesCommand, WritesAnnotationsOrReportsThatThereAreNone) {
         EXPECT_EQ(provenance.find("\"unit\": \"mm\"") != std::string::npos, set.unit == "mm") << provenance;
         const bool has_unit = std::string(flags).find("--unit") != std::string::npos;
         EXPECT_EQ(result.out.find("mean curvature 1/mm") != std::string::npos, has_unit) << result.out;
-        EXPECT_NE(result.out.find("robust deviations"), std::string::npos) << result.out;
+        EXPECT_NE(result.out.find("robust standard deviations"), std::string::npos) << result.out;
     }
     // Earlier contents of the file are kept.
     const std::string before = read_file(scratch / "out.ant.json");

@@ -242,7 +242,7 @@ TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
         EXPECT_EQ(read_file(folder / "r.recipe.json"), recipe);
         EXPECT_EQ(test::count_files(folder.path()), files);
     };
-    refuse("--tag x", 2, "nothing says what to select");
+    refuse("--tag x", 2, "no selection is given");
     refuse("--tag x --all --sphere 0,0,1,1", 2, "two tools at once");
     refuse("--sphere 0,0,1,1", 2, "needs a tag");
     refuse("--tag x --sphere 0,0,1", 2, "takes 4 numbers");

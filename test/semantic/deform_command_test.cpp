@@ -342,7 +342,7 @@ TEST(DeformCommand, BadInput) {
     };
     const std::string edit = folder.at("lift.edit.json") + " ", out = folder.at("out.ply") + " ";
     refused(pot + parts + edit + out + "--space cage", 2, "there is none");
-    refused(pot + parts + edit + out + "--cage " + folder.at("cage.ply"), 2, "belong together");
+    refused(pot + parts + edit + out + "--cage " + folder.at("cage.ply"), 2, "need each other");
     refused(pot + parts + parts + out, 1, "teapot.ant.json");
     refused(pot + parts + edit + data + "teapot.ply", 2, "input");
     refused(data + "vase.ply " + data + "vase.ant.json " + edit + out + folder.handles(), 1, "w.coordinates.json");

@@ -66,10 +66,10 @@ TEST(DeformVerdict, AnEditThatIsUndoneIsNotAcceptable) {
     EXPECT_LT(result.followed.share, 0.5);
     EXPECT_GT(result.followed.largest, 0.5 * far);
     EXPECT_FALSE(result.acceptable);
-    EXPECT_TRUE(objects(result, "the edit is followed by"));
+    EXPECT_TRUE(objects(result, "the result follows the edit by"));
     DeformOptions content;
     content.followed = 0;
-    EXPECT_FALSE(objects(deform(hand.space(), graph, edit(translated("little finger", 0, 0, far)), "e", content), "followed"));
+    EXPECT_FALSE(objects(deform(hand.space(), graph, edit(translated("little finger", 0, 0, far)), "e", content), "follows"));
 }
 
 TEST(DeformVerdict, WithoutConstraintsAnEditIsFollowedAndItsSurroundingsFollow) {

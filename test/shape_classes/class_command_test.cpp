@@ -178,8 +178,8 @@ TEST_F(ClassCommand, AnUnreadableFileDoesNotStopTheOthers) {
     ASSERT_EQ(learnt.code, 0) << learnt.err;
     const Json file = read_json(scratch / "class" / "idol.class.json");
     validate(file, "class", "class");
-    ASSERT_EQ(file["strangers"].Size(), 1U);
-    EXPECT_STREQ(file["strangers"][0].GetString(), "vase");
+    ASSERT_EQ(file["outOfClass"].Size(), 1U);
+    EXPECT_STREQ(file["outOfClass"][0].GetString(), "vase");
     write_file(scratch / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
     const std::string idol = "template classify " + quoted(scratch / "class" / "idol.class.json") + " ",
                       report = " --report " + quoted(scratch / "answer.json");

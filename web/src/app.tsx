@@ -1,6 +1,7 @@
 import { gradient } from "./colours";
 import { Index } from "./collection";
 import { ColouringChoice } from "./colouring";
+import { Light } from "./light";
 import { Conformance, Constraints } from "./constraints";
 import type { Language } from "./data";
 import { Details } from "./details";
@@ -137,6 +138,7 @@ function Toolbar() {
         </>
       )}
       <ColouringChoice />
+      <Light />
       {partner >= 0 && (
         <Slider
           label={word("blend", about.name, page.objects[partner].name)}

@@ -160,6 +160,10 @@ export const shared = {
   patterns: { value: 0 },
   /** 1: colours without light and shade. */
   flatLight: { value: 0 },
+  /** Unit vector towards the lamp, in the frame of the camera. */
+  lamp: { value: new THREE.Vector3(0.263, 0.473, 0.841) },
+  /** How much ridges are brightened and hollows darkened. */
+  relief: { value: 0 },
   clip: { value: new THREE.Vector4(0, 0, 0, 1) },
   /** While handles follow one affine map x -> A x + t: A - I, and t. */
   bend: { value: new THREE.Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0) },
@@ -209,7 +213,8 @@ const surface = new THREE.RawShaderMaterial({
   fragmentShader: `
     precision highp float;
     ${clipping}
-    uniform float patterns, flatLight;
+    uniform float patterns, flatLight, relief;
+    uniform vec3 lamp;
     in vec3 facing;
     in vec4 tint; // with a texture: the colour that multiplies it, or the colour that covers it in part
     flat in float kind;
@@ -248,19 +253,33 @@ const surface = new THREE.RawShaderMaterial({
                   : length(mod(at, period) - 0.5 * period) < 1.8;
         if (mark) colour *= 0.45;
       }
-      float key = max(0.0, dot(n, vec3(0.263, 0.473, 0.841)));
-      float light = mix(0.36 + 0.1 * n.y + 0.72 * key, 1.0, flatLight);
+      // A low lamp (raking light) leaves less light from around, so that its shades are deep.
+      float low = clamp(1.0 - lamp.z / 0.841, 0.0, 1.0);
+      float light = 0.36 - 0.28 * low + 0.1 * n.y + (0.72 + 0.4 * low) * max(0.0, dot(n, lamp));
+      if (relief > 0.0) {
+        // How fast the normal turns across the picture: positive on ridges, negative in hollows.
+        float turn = dFdx(n.x) + dFdy(n.y);
+        light *= clamp(1.0 + relief * 10.0 * turn, 1.0 - 0.75 * relief, 1.0 + 0.75 * relief);
+      }
+      light = mix(light, 1.0, flatLight);
       pixel = vec4(sqrt(min(vec3(1.0), colour * light)), 1.0);
     }`,
 });
 
-/** Material for lines, points and bands of one colour. */
-export function flatMaterial(colour: [number, number, number], dot = 0, through = false): THREE.RawShaderMaterial {
+/** Material for lines, points and bands of one colour; an opacity below 1 lets the shaded surface below show through. */
+export function flatMaterial(colour: [number, number, number], dot = 0, through = false, opacity = 1): THREE.RawShaderMaterial {
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     side: THREE.DoubleSide,
     depthTest: !through,
-    uniforms: { clip: shared.clip, colour: { value: new THREE.Vector3(...colour).divideScalar(255) }, size: { value: dot } },
+    depthWrite: opacity === 1,
+    transparent: opacity < 1,
+    uniforms: {
+      clip: shared.clip,
+      colour: { value: new THREE.Vector3(...colour).divideScalar(255) },
+      size: { value: dot },
+      opacity: { value: opacity },
+    },
     vertexShader: `
       precision highp float;
       uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -277,12 +296,12 @@ export function flatMaterial(colour: [number, number, number], dot = 0, through 
       precision highp float;
       ${clipping}
       uniform vec3 colour;
-      uniform float size;
+      uniform float size, opacity;
       out vec4 pixel;
       void main() {
         if (dot(vec4(place, 1.0), clip) < 0.0) discard;
         if (size > 0.0 && length(gl_PointCoord - 0.5) > 0.5) discard;
-        pixel = vec4(colour, 1.0);
+        pixel = vec4(colour, opacity);
       }`,
   });
 }

@@ -82,7 +82,7 @@ function labelPlaces(width: number, height: number): Label[] {
   return list;
 }
 
-/** Lines of measures: those of the selected annotation, and interactive ones. */
+/** Lines of measures: those of the selected annotation or of all shown ones, and interactive ones. */
 function rulers(): { from: { x: number; y: number }; to: { x: number; y: number }; text: string; ends: [boolean, boolean] }[] {
   if (!view) return [];
   const list: ReturnType<typeof rulers> = [];
@@ -94,13 +94,15 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
         list.push({ from, to, text: i === Math.ceil((pins.length - 1) / 2) ? text : "", ends: [i === 1, i === pins.length - 1] });
     }
   };
-  const one = page.objects[state.object.value]?.annotations[state.chosen.value];
-  for (const m of one?.measures ?? [])
-    add(
-      state.object.value,
-      (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
-      m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
-    );
+  page.objects[state.object.value]?.annotations.forEach((one, i) => {
+    if (i !== state.chosen.value && !(state.allMeasures.value && state.isShown(state.object.value, i))) return;
+    for (const m of one.measures ?? [])
+      add(
+        state.object.value,
+        (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
+        m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
+      );
+  });
   const { object, places } = state.measured.value;
   if (object >= 0 && places.length > 0) {
     const pins = places.map((p) => new THREE.Vector3(p.x, p.y, p.z));
@@ -119,6 +121,28 @@ function element(name: string, attributes: Record<string, string | number>, text
   return made;
 }
 
+/** A length of 1, 2 or 5 times a power of ten that is 60 to 150 pixels long in the picture, and its pixels. */
+export function scaleBar(pixelsPerUnit: number): { length: number; pixels: number } | undefined {
+  const most = 150 / pixelsPerUnit;
+  if (!Number.isFinite(most) || most <= 0) return undefined;
+  const decade = 10 ** Math.floor(Math.log10(most));
+  const length = [5, 2, 1].map((one) => one * decade).find((one) => one <= most) ?? decade;
+  return { length, pixels: length * pixelsPerUnit };
+}
+
+/** The scale bar of the object in a pane: the view is orthographic, so that one length holds for all of the picture. */
+function scaleBarOf(pane: number, width: number, height: number): SVGElement[] {
+  const of = drawn[state.panes.value[pane]];
+  const bar = of && view && scaleBar(view.pixelsPerUnit(of));
+  if (!of || !bar) return [];
+  const x = ((pane + 1) * width) / state.panes.value.length - 14 - bar.pixels;
+  const y = height - 14;
+  return [
+    element("path", { class: "scale-bar", d: `M${x} ${y - 5}V${y}H${x + bar.pixels}V${y - 5}` }),
+    element("text", { class: "scale-bar", x: x + bar.pixels / 2, y: y - 7, "text-anchor": "middle" }, withUnit(bar.length, of.about.unit)),
+  ];
+}
+
 function drawOverlay(svg: SVGSVGElement) {
   const { clientWidth: width, clientHeight: height } = svg;
   const made: SVGElement[] = [];
@@ -135,6 +159,7 @@ function drawOverlay(svg: SVGSVGElement) {
     if (text) made.push(element("text", { class: "ruler", x: (from.x + to.x) / 2 + 6, y: (from.y + to.y) / 2 - 6 }, text));
   }
   const count = state.panes.value.length;
+  for (let pane = 0; pane < count; ++pane) made.push(...scaleBarOf(pane, width, height));
   if (count > 1)
     state.panes.value.forEach((o, i) => {
       const x = ((i + 0.5) * width) / count;
@@ -199,6 +224,9 @@ export function repaint() {
     if (of.cage) of.cage.visible = state.cage.value;
   }
   shared.flatLight.value = isShaded() ? 0 : 1;
+  const [x, y] = state.lamp.value;
+  shared.lamp.value.set(x, y, Math.sqrt(Math.max(0, 1 - x * x - y * y)));
+  shared.relief.value = state.relief.value;
   const partner = state.blendPartner.value;
   for (const of of drawn) of.blendTo(of.index === state.object.value && partner >= 0 ? drawn[partner] : undefined);
   view.show(state.panes.value.map((o) => drawn[o]));

@@ -76,6 +76,13 @@ export const colouring = signal<Colouring | "auto">("auto");
 export const isColouring = (text: string): text is Colouring => ["texture", "own", "annotations", "clay"].includes(text);
 /** Whether colours are shown under light and shade; undefined: unless a material of the object asks for flat light. */
 export const shade = signal<boolean | undefined>(undefined);
+/** Whether the measures of all shown annotations are drawn, not only those of the selected one. */
+export const allMeasures = signal(false);
+/** Direction of the lamp: the part of the unit vector towards it that lies in the picture (right, up). */
+export const firstLamp: [number, number] = [0.263, 0.473];
+export const lamp = signal<[number, number]>(firstLamp);
+/** How much ridges are brightened and hollows darkened, from 0 (not at all) to 1. */
+export const relief = signal(0);
 export const blend = fresh(0);
 export const explode = fresh(0);
 /** Displayed level of the slices; -1: none. */

@@ -227,6 +227,12 @@ export class View {
     return [clientWidth / Math.max(1, this.panes.length), clientHeight];
   }
 
+  /** Length in the picture of a unit of an object, in CSS pixels. */
+  pixelsPerUnit(object: DrawnObject): number {
+    const [, height] = this.paneSize();
+    return (object.group.scale.x * this.camera.zoom * height) / (this.camera.top - this.camera.bottom);
+  }
+
   paint() {
     const { clientWidth, clientHeight } = this.canvas;
     if (this.renderer.xr.isPresenting) return; // the headset renders

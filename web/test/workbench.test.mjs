@@ -169,7 +169,7 @@ try {
     await useTool(page, "rectangle");
     const size = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
     const [w, h] = size;
-    await drag(page, [0.35 * w, 0.05 * h], [0.65 * w, 0.35 * h]);
+    await drag(page, [0.35 * w, 0.09 * h], [0.65 * w, 0.35 * h]);
     await selected(page);
     await page.locator(".annotate input").first().fill("lid");
     await page.locator(".annotate button[type=submit]").first().click();
@@ -598,6 +598,88 @@ try {
     assert.equal(await page.locator(".chooser button").count(), place.list.length);
     await page.locator(".chooser button").last().click();
     assert.equal(await page.evaluate(() => ostraka.page.chosen.value), place.list.at(-1));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
+  await test("the picture fills the window; an object stands up by a click on its base; the lamp, the relief, and a measure that stays", async () => {
+    // A cone that lies on its side: its base is at x = 0, its tip at x = 2.
+    const ring = Array.from({ length: 24 }, (_, i) => `0 ${Math.cos((i * Math.PI) / 12)} ${Math.sin((i * Math.PI) / 12)}`);
+    const faces = ring.flatMap((_, i) => [`3 24 ${i} ${(i + 1) % 24}`, `3 25 ${(i + 1) % 24} ${i}`]);
+    writeFileSync(at("cone.off"), `OFF\n26 48 0\n${[...ring, "2 0 0", "0 0 0"].join("\n")}\n${faces.join("\n")}\n`);
+    const server = serve(at("cone.off"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    for (const [width, height, share] of [
+      [1366, 768, 0.7],
+      [1920, 1080, 0.8],
+    ]) {
+      await page.setViewportSize({ width, height });
+      const box = await page.locator(".canvas canvas").boundingBox();
+      assert.ok(
+        box.width * box.height >= share * width * height,
+        `${box.width} x ${box.height} of ${width} x ${height}: ${(box.width * box.height) / width / height}`,
+      );
+    }
+    await page.setViewportSize({ width: 1280, height: 860 });
+    await page.locator(".gizmo button.left").click();
+    await page.waitForTimeout(300);
+    const middle = await page.locator(".canvas canvas").boundingBox();
+    const [x, y] = [middle.x + middle.width / 2, middle.y + middle.height / 2];
+    await useTool(page, "base");
+    await page.mouse.click(x, y);
+    await steps(page, 2);
+    const size = await page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].size);
+    assert.ok(Math.abs(size[2] - 2) < 1e-3 && Math.abs(size[0] - 2) < 1e-3, size.join());
+    const tip = await page.evaluate(() => {
+      const of = ostraka.objects[ostraka.page.object.value];
+      return of.vertex(24).z > of.vertex(25).z;
+    });
+    assert.ok(tip, "the tip points up");
+    // Each change of light changes the picture, and a double click takes it back.
+    const pixels = async () => {
+      await page.waitForTimeout(400);
+      return (await page.locator(".canvas canvas").screenshot()).toString("base64");
+    };
+    const first = await pixels();
+    const lamp = await page.locator(".lamp").boundingBox();
+    await page.mouse.move(lamp.x + 22, lamp.y + 14);
+    await page.mouse.down();
+    await page.mouse.move(lamp.x + 4, lamp.y + 22, { steps: 4 });
+    await page.mouse.up();
+    const [lampX] = await page.evaluate(() => ostraka.page.lamp.value);
+    assert.ok(lampX < -0.8, String(lampX));
+    const raking = await pixels();
+    assert.notEqual(first, raking);
+    await page.locator(".light input[type=range]").fill("1");
+    assert.notEqual(raking, await pixels());
+    await page.locator(".light input[type=range]").fill("0");
+    await page.locator(".lamp").dblclick();
+    assert.deepEqual(await page.evaluate(() => ostraka.page.lamp.value), [0.263, 0.473]);
+    // The scale bar has the length that it states.
+    const bar = await page.evaluate(() => {
+      const path = document
+        .querySelector(".picture path.scale-bar")
+        .getAttribute("d")
+        .match(/[\d.]+/g)
+        .map(Number);
+      const of = ostraka.objects[ostraka.page.object.value];
+      return {
+        pixels: path[3] - path[0],
+        text: document.querySelector(".picture text.scale-bar").textContent,
+        unit: ostraka.view.pixelsPerUnit(of),
+      };
+    });
+    assert.ok(Math.abs(bar.pixels - Number.parseFloat(bar.text) * bar.unit) < 1e-3, JSON.stringify(bar));
+    // A measure without a chosen annotation is drawn, and stays when the tool is put away.
+    await useTool(page, "ruler");
+    await page.mouse.click(x - 20, y + 10);
+    await page.mouse.click(x + 20, y + 10);
+    await steps(page, 3);
+    await useTool(page, "look");
+    await page.waitForTimeout(300);
+    assert.match(await page.locator(".picture text.ruler").first().textContent(), /^ruler [\d.]+/);
     assert.deepEqual(told, []);
     await close();
     await server.stop();

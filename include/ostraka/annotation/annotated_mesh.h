@@ -11,10 +11,10 @@ struct AnnotatedMesh {
     AnnotationSet annotations;
 };
 
-/// An annotated mesh as functions read it; the mesh and the annotations must outlive it. It is a type of its own because most
-/// callers cannot pass an AnnotatedMesh without a copy of the mesh: operations hold meshes and annotations as separate shared
-/// objects, as they are separate files; several sets may belong to one mesh, and one set to several shapes of a mesh. A
-/// function that changes the annotations takes `const Mesh&` and `AnnotationSet&` instead.
+/// Read-only reference to a mesh and its annotations; both must outlive it. Functions take this type instead of AnnotatedMesh
+/// because most callers store the mesh and the annotations in separate objects and would have to copy the mesh. One mesh may
+/// have several annotation sets, and one set may belong to several deformed shapes of a mesh. A function that changes the
+/// annotations takes `const Mesh&` and `AnnotationSet&` instead.
 struct AnnotatedMeshView {
     AnnotatedMeshView(const AnnotatedMesh& object) : AnnotatedMeshView(object.mesh, object.annotations) {}
     AnnotatedMeshView(const Mesh& object_mesh, const AnnotationSet& set) : mesh(object_mesh), annotations(set) {}

@@ -14,32 +14,34 @@ namespace ostraka {
 
 /// A measure with the pins (picked vertices) that define the measure (Appendix B.1).
 struct Measure {
-    std::string tool;           ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;  ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
-    /// For each entry of `points`: exact position of the pin, inside a face; empty: the pins are at the vertices.
+    std::string tool;  ///< "ruler", "tape" or "bounding"
+    /// Pins as vertex indices: two for a ruler, two or more for a tape, the two extreme vertices for bounding.
+    std::vector<Index> points;
+    /// Exact position of each pin of `points`, possibly inside a face; empty: the pins are at the vertices.
     std::vector<SurfacePoint> locations;
-    std::optional<std::array<double, 3>> direction;  ///< direction of a bounding measure
+    std::optional<std::array<double, 3>> direction;  ///< direction along which a bounding measure is taken
     /// Measured value in `unit` (mean over the repeated pickings); none if not yet computed.
     std::optional<double> value;
     std::string unit;    ///< unit of `value`
     bool stale = false;  ///< true: the mesh or the pins changed and the value was not recomputed
     /// Tape only: true if the tape follows the exact geodesic across faces ("geodesic": "exact"), false if it follows edges.
     bool exact = false;
-    /// Repeated pickings of the pins, each with one vertex per entry of `points`.
+    /// Repeated pickings of the end points of the measure; each picking has one vertex per entry of `points`.
     std::vector<std::vector<Index>> repeats = {};
     /// Standard deviation of `value` over the pickings, in `unit`; none if unknown.
     std::optional<double> uncertainty = std::nullopt;
     bool operator==(const Measure&) const = default;
 };
 
-/// A quantity that is not a measure: area, curvature map, thickness ...
+/// A computed quantity of a part that is not a measure between pins: area, curvature map, thickness ...
 struct Descriptor {
     std::vector<double> values;  ///< the numbers; empty if `file` is given
     bool is_list = false;        ///< true: `values` is written as a list even if there is only one value
-    std::string file;            ///< instead of values: map (array: .npy, .txt) or axis (.json), relative to the annotation file
-    std::string unit;            ///< unit of `values`
-    bool stale = false;          ///< true: the mesh or the annotation changed and the values were not recomputed
-    std::string sha256 = {};     ///< checksum of the contents of `file`; empty: unknown
+    /// File that holds the values: a map (array: .npy, .txt) or an axis (.json); path relative to the annotation file.
+    std::string file;
+    std::string unit;         ///< unit of `values`
+    bool stale = false;       ///< true: the mesh or the annotation changed and the values were not recomputed
+    std::string sha256 = {};  ///< checksum of the contents of `file`; empty: unknown
     bool operator==(const Descriptor&) const = default;
 };
 
@@ -69,15 +71,15 @@ struct Information {
 };
 std::string to_string(Information::Kind kind);
 
-/// What an annotation selects on the mesh.
+/// The kind of elements that an annotation selects on the mesh.
 enum class AnnotationType { point, line, region };
 
 /// Colour (grey) of annotations that cover the whole object and thus distinguish no part.
 inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 
-/// Selections are indices into the mesh that the annotation belongs to. Exactly one of `points`, `polylines`, `faces` is used. A
-/// free annotation has its own curves, which need not follow the edges; the selection of a free annotation holds the elements
-/// nearest to the curves (curves.h).
+/// A named part of a mesh. The part is selected by indices of mesh elements, in exactly one of `points`, `polylines` and
+/// `faces`. A free annotation also has curves of its own, which need not follow the edges of the mesh; its indices then select
+/// the elements nearest to the curves (curves.h).
 struct Annotation {
     int id = 0;                                  ///< unique among the annotations of the set
     std::string tag;                             ///< name of the annotated part

@@ -15,10 +15,10 @@ struct ReadAnnotationsOptions {
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
-/// Reads the annotations of `mesh` from a file of ours, of the thesis (no format and no mesh member) or of the prototype (.ant;
-/// notes report what could not be converted). Checks the schema, indices, edges, ids, and whether the file was made for this
-/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Time: linear in the size of the file and the
-/// selections.
+/// Reads the annotations of `mesh` from a file of this toolkit, of the thesis (no members "format" and "mesh") or of the
+/// thesis's prototype (.ant; notes report content that could not be converted). Checks the schema, indices, edges, ids, and
+/// whether the file was made for this mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Time: linear
+/// in the size of the file and the selections.
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options = {});
 
 /// Reads the annotations of `mesh` from a JSON document in memory; `where` names the document in error messages.
@@ -26,9 +26,9 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
                                     const ReadAnnotationsOptions& options = {});
 
 /// Writes an annotation file atomically; the same object, mesh file name and provenance give the same bytes. Only the file name
-/// of `mesh_file` is stored, not its folder. Throws Error if a selection does not fit the mesh.
+/// of `mesh_file` is stored, not its folder. Throws Error if an annotation selects elements that the mesh does not have.
 void write_annotations(const Path& file, AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
-/// The document that `write_annotations` writes.
+/// Builds the JSON document that `write_annotations` writes.
 Json annotations_to_json(AnnotatedMeshView object, const std::string& mesh_file, const Provenance& provenance);
 
 /// Reads a list of attributes from an annotation file or a recipe. `list` must have been validated against a schema; pins are not

@@ -12,17 +12,17 @@ std::array<int, 3> distinct_colour(std::size_t index);
 /// True if the region covers the whole mesh or at least 95 % of its faces.
 bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 
-/// A colour for an annotation about to be added to the set: neutral if it covers nearly all of the mesh, else the first colour
-/// of the palette not used in the set.
+/// A colour for the annotation `joining`, which will be added to the set: grey if the annotation covers nearly all of the mesh,
+/// else the first colour of the palette not used in the set.
 std::array<int, 3> unused_colour(AnnotatedMeshView object, const Annotation& joining);
 
-/// Assigns colours to the regions of a set; no two of these regions may share a face. Result: distinct colours as long as the
-/// palette lasts, different hues for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Time:
+/// Assigns colours to the regions of a set; no two of these regions may share a face. Regions get distinct colours until the
+/// palette is used up, adjacent regions get different hues, and regions that cover nearly all of the mesh get grey. Time:
 /// linear in the size of the mesh.
 void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
-/// The regions of a set, by descending area; of regions of equal area, the later region in the set comes first. Painting the
-/// regions in this order leaves the smallest (then the earliest) region on top.
+/// The regions of a set, by descending area; among regions of equal area, the region that is later in the set comes first.
+/// Painting the regions in this order leaves the smallest (then the earliest) region on top.
 std::vector<const Annotation*> regions_largest_first(AnnotatedMeshView object);
 
 /// Colours each face and each vertex by the smallest region that covers it (grey: none), and the vertices of line and point

@@ -17,8 +17,8 @@ bool any_free(const AnnotationSet& set);  ///< true if at least one annotation i
 /// The curve through the vertices of `path`; a closed curve repeats its first point.
 std::vector<SurfacePoint> vertex_curve(const std::vector<Index>& path, bool closed = false);
 
-/// The curves of a free annotation, with the face in which each straight piece lies. Throws Error (input), naming the annotation,
-/// if the curves do not fit the mesh.
+/// The curves of a free annotation, with the face in which each straight segment lies. Throws Error (input), naming the
+/// annotation, if a point of a curve is not on the mesh or two consecutive points do not lie in a common face.
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation);
 
 /// Classifies each face of the mesh as inside, outside or partly inside a free region.
@@ -51,7 +51,7 @@ struct CutMesh : AnnotatedMesh {
     std::vector<Index> face_origin;
     std::vector<SurfacePoint> points;  ///< for each new vertex: its place on the uncut mesh
     std::size_t old_vertices = 0;      ///< number of vertices of the uncut mesh
-    /// For each curve of `more` (cut_along_curves): the vertices along the curve.
+    /// For each additional curve (argument `more` of cut_along_curves): the vertices along the curve.
     std::vector<std::vector<Index>> more_paths;
 
     /// Values per vertex of the cut mesh from values per vertex of the uncut mesh `before`, interpolated at the new vertices.
@@ -70,8 +70,8 @@ struct CutMesh : AnnotatedMesh {
 /// plus O(k log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
-/// Read-only access to an annotated mesh whose annotations all follow edges: the given one if no annotation is free, otherwise
-/// the mesh cut along the free curves. The constructor's argument must outlive this object.
+/// Read-only access to an annotated mesh whose annotations all follow edges. The view is the given mesh if no annotation is free,
+/// otherwise the mesh cut along the free curves. The constructor's argument must outlive this object.
 class EdgeAlignedAnnotations {
 public:
     explicit EdgeAlignedAnnotations(AnnotatedMeshView given) : given_(given) {
@@ -86,7 +86,7 @@ private:
 };
 
 /// Maps an annotation of the cut mesh back to the original mesh. The annotation becomes free unless it follows edges of the
-/// original mesh. Places in the interior of a straight piece are dropped.
+/// original mesh. Points inside a straight segment are removed from its curves.
 void uncut_annotation(const Mesh& mesh, const CutMesh& cut, Annotation& annotation);
 
 }  // namespace ostraka

@@ -23,8 +23,8 @@ void write_labels(const Path& file, const std::vector<std::int32_t>& labels);
 /// Names of labels: a JSON object {"0": "head", ...} or list ["head", ...]. Throws Error (input).
 std::map<std::int32_t, std::string> read_label_names(const Path& file);
 
-/// One region per label except `no_label`, ascending: id = label, tag = its name or "part N", colours by colour_regions. Time:
-/// linear in the size of the mesh.
+/// One region per label except `no_label`, ascending: the id is the label, the tag is the label's name or "part N", and
+/// colour_regions assigns the colours. Time: linear in the size of the mesh.
 AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
                                   const std::map<std::int32_t, std::string>& names = {});
 

@@ -11,10 +11,10 @@ namespace ostraka {
 /// A closed path of vertices that does not repeat its first vertex; the interior of the region lies to the left of each edge.
 using Outline = std::vector<Index>;
 
-/// The outlines of a set of faces, given as one flag per face. Where an outline touches itself at a vertex, the outline is split
-/// so that the interior stays on the left and the loops stay separate (each fan of selected faces around a vertex is passed
-/// once). Border edges of an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first
-/// halfedge. Time: linear in the number of selected faces, except for one pass over the flags.
+/// The outlines of a set of faces, given as one flag per face. An outline that touches itself at a vertex is split there into
+/// separate loops with the interior on the left (each loop passes one fan of selected faces around the vertex). Border edges of
+/// an open mesh belong to the outline. Loops start at their smallest vertex and are ordered by their first halfedge. Time:
+/// linear in the number of selected faces, except for one pass over the flags.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<bool>& selected);
 /// The outlines of a set of faces, given by their indices.
 std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>& faces);
@@ -35,7 +35,8 @@ std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed);
 /// The faces inside a set of outlines.
 struct Filling {
     std::vector<bool> selected;  ///< one flag per face: true if the face is inside
-    /// Number of faces left of one outline edge and right of another; not 0 if the outlines intersect.
+    /// Number of faces that lie to the left of one outline edge and to the right of another one. The number is above 0 if
+    /// outlines intersect.
     std::size_t conflicts = 0;
 };
 
@@ -49,18 +50,18 @@ Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines);
 Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges);
 
 /// Selects faces by winding number: crossing an edge from right to left adds the net number of its traversals in `edges`. The
-/// result is defined for intersecting outlines too: in each connected component, among the sets "faces with winding number at
-/// least k" and the empty set, the set whose area is closest to `expected_area`. Returns nullopt if the winding numbers
-/// contradict each other (the edges are not a boundary). Time: linear in the size of the mesh.
+/// result is defined for intersecting outlines too. In each connected component, the candidates are the empty set and, for each
+/// k, the set of faces with winding number at least k; the candidate whose area is closest to `expected_area` is selected.
+/// Returns nullopt if the winding numbers contradict each other (the edges are not a boundary). Time: linear in the size of the
+/// mesh.
 std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::vector<Halfedge>& edges, double expected_area);
 
 /// Area and perimeter of a region.
 struct RegionMeasures {
     double area = 0;       ///< sum of the faces' areas
     double perimeter = 0;  ///< sum of the lengths of the outline edges
-    [[nodiscard]] double circularity() const {
-        return area > 0 ? perimeter * perimeter / area : 0;
-    }  ///< perimeter^2 / area: 4 pi for a disc; 0 without area
+    /// perimeter^2 / area: 4 pi for a disc; 0 if the area is 0.
+    [[nodiscard]] double circularity() const { return area > 0 ? perimeter * perimeter / area : 0; }
 };
 /// Area and perimeter of a set of faces.
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces);

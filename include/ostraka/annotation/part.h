@@ -13,7 +13,7 @@ struct CutPart : AnnotatedMesh {
     std::vector<Index> vertices;  ///< for each vertex of the part: its index in `whole`
     /// For each face of the part: its index in `whole`; no_index for faces that close a cut.
     std::vector<Index> faces;
-    std::size_t cuts = 0;    ///< number of borders that are not, or not entirely, borders of the object
+    std::size_t cuts = 0;    ///< number of borders of the part that the cut created, at least in part
     std::size_t closed = 0;  ///< number of cuts closed by triangles
     /// The whole mesh cut along free outlines; none if no annotation is free: indices then refer to the given mesh.
     std::optional<CutMesh> whole;

@@ -1,4 +1,4 @@
-// Mapping of annotations to a changed mesh by index maps, as written by `mesh repair`.
+// Maps annotations to a changed mesh by index maps; `mesh repair` writes such maps.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -19,8 +19,8 @@ AnnotationSet remap_annotations(AnnotatedMeshView before, const Mesh& after, con
                                 const std::vector<Index>& face_map = {});
 
 /// Restricts the annotations of `whole` to a piece of the mesh; `vertices` and `faces` give for each vertex and face of the piece
-/// its index in `whole`. Point annotations with a vertex outside the piece are dropped, as are lines and regions of which neither
-/// a line nor a region remains.
+/// its index in `whole`. Point annotations with a vertex outside the piece are dropped. Lines without an edge in the piece are
+/// dropped, and regions without a face or a line in the piece.
 AnnotationSet annotations_of_piece(AnnotatedMeshView whole, const Mesh& piece, const std::vector<Index>& vertices,
                                    const std::vector<Index>& faces);
 

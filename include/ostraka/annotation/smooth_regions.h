@@ -1,4 +1,4 @@
-// Smooth borders of regions for display, where the regions' outlines zigzag along the edges of the mesh.
+// Smooth borders of regions for display; the outlines of regions zigzag along the edges of the mesh.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"

@@ -16,7 +16,7 @@ struct ShapeOutlier {
     bool left_out = false;  ///< true: the object was left out of the analysis
 };
 
-/// Objects with the landmarks that all of them share.
+/// Objects, and the landmarks that every one of these objects has.
 struct LandmarkShapes {
     /// For each object whose landmarks could be read: its name; its known class label (empty: unknown).
     std::vector<std::string> objects, labels;
@@ -35,9 +35,9 @@ struct LandmarkShapes {
 LandmarkShapes common_landmarks(const Collection& collection, const std::vector<ObjectResult>& read, bool scaling,
                                 const std::string& where);
 
-/// Finds objects whose landmarks are mirrored (the mirror image is less than half as far from the mean of the other objects as
-/// the object itself), and objects whose centroid size is more than three times or less than a third of the median. The objects
-/// found are reported, not removed.
+/// Finds objects whose landmarks are mirrored and objects of unusual size. An object is mirrored if its mirror image is less
+/// than half as far from the mean of the other objects as the object itself. The size is unusual for objects whose centroid
+/// size is more than three times or less than a third of the median. The objects found are reported, not removed.
 std::vector<ShapeOutlier> shape_outliers(const LandmarkShapes& shapes);
 
 /// A copy of `shapes` without the objects listed in `outliers`.

@@ -19,8 +19,8 @@ struct MeasureDirection {
     std::array<double, 3> coordinates{0, 0, 1};  ///< used unless `up`
 };
 
-/// Position of a pin: the point annotation with this tag ("TAG 2": its second point) or the landmark with this name; with
-/// `extreme`, the vertex of the annotation that is farthest along a direction.
+/// Position of a pin of a measure: the point annotation with the tag `name` ("TAG 2": its second point), the landmark of this
+/// name, or, with `extreme`, the vertex of the annotation that is farthest along a direction.
 struct MeasurePlace {
     std::string name;  ///< tag of a point annotation, or name of a landmark
     /// The pin is the vertex of the annotation farthest along this direction; none: the point itself.
@@ -40,13 +40,13 @@ struct MeasureDefinition {
     std::string descriptor;
     /// "max" or "min" clay volume of the whole object (slicing/clay.h); empty for other measures.
     std::string clay;
-    int entry = 1;  ///< 1-based index of the number if the value is a list
+    int entry = 1;  ///< index (from 1) of the number that is used if the value is a list of numbers
 };
 
 /// The content of a *.measures.json file.
 struct MeasureDefinitions {
     std::vector<MeasureDefinition> measures;  ///< the definitions, in the order of the file
-    std::string text;                         ///< text of the file; part of the keys of results that depend on it
+    std::string text;                         ///< text of the file; stored results are found by keys that include this text
 };
 
 /// Reads a *.measures.json (doc/schema/measures.schema.json). Throws Error (input), naming the JSON pointer, if the file does
@@ -59,19 +59,19 @@ MeasureDefinitions measure_definitions_from_text(const std::string& text, const 
 struct ObjectMeasures {
     std::string unit;  ///< unit of the object's lengths; empty if neither a file nor the collection gives it
     std::vector<std::optional<double>> values;  ///< value of each definition; none if the measure cannot be taken
-    std::vector<int> powers;                    ///< one per definition: power of the unit of length
-    std::vector<std::string> units;             ///< one per definition: unit of a value that is not a power of a length
-    std::vector<std::string> notes;             ///< messages that explain missing values
+    std::vector<int> powers;  ///< one per definition: 1 for a length, 2 for an area, 3 for a volume, 0 for other quantities
+    std::vector<std::string> units;  ///< one per definition: unit of a value that is not a length, an area or a volume
+    std::vector<std::string> notes;  ///< messages that explain missing values
 };
 
-/// Takes the measures of an object from its files. The mesh is read only if a measure needs it. A measure that cannot be taken
-/// (no such annotation, no path, no direction) is missing, with a note. Annotations are selected by exact tag; if no annotation
-/// has the tag, `words` selects annotations whose tags have the same meaning. Throws Error (input) if a required file cannot be
-/// read or if no measure can be taken.
+/// Takes the defined measures on an object, which is read from its files. The mesh is read only if a measure needs it. A
+/// measure that cannot be taken (no such annotation, no path, no direction) is missing, with a note. Annotations are selected
+/// by exact tag; if no annotation has the tag, `words` selects annotations whose tags have the same meaning. Throws Error
+/// (input) if a required file cannot be read or if no measure can be taken.
 ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions,
                              const TagMatcher* words = nullptr);
 
-/// Takes the measures of a mesh with annotations in memory; otherwise like `take_measures` of a CollectionObject.
+/// Takes the defined measures on an annotated mesh in memory; otherwise like `take_measures` for a CollectionObject.
 ObjectMeasures take_measures(AnnotatedMeshView object, const MeasureDefinitions& definitions, const TagMatcher* words = nullptr);
 
 /// Measures of an object as JSON for the result store.
@@ -79,9 +79,9 @@ Json object_measures_to_json(const ObjectMeasures& measures);
 /// Inverse of `object_measures_to_json`.
 ObjectMeasures object_measures_from_json(const JsonValue& value);
 
-/// Table of the measures of all objects, in the order of `names`. Objects that failed (nullopt) are left out. If the power of a
-/// measure differs between objects, the measure is missing in the objects that differ from the majority, and `notes` reports the
-/// difference.
+/// Table of the measures of all objects, in the order of `names`. Objects that failed (nullopt) are left out. If a measure is,
+/// for example, a length in some objects and an area in others, it counts as missing in the objects that differ from the
+/// majority, and `notes` reports the difference.
 MeasureTable measure_table(const std::vector<std::string>& names, const std::vector<std::optional<ObjectMeasures>>& objects,
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes);
 

@@ -41,8 +41,9 @@ struct UnifiedMeasures {
 UnifiedMeasures unify_units(const MeasureTable& table);
 
 /// Options of a synthetic population of measures with known proportions, for testing the study. The logarithm of measure j of
-/// object i is centre_j + size_i + own_ij, all normally distributed; the measures of one group share `own_ij` except for the
-/// variation of the planted (fixed) ratio.
+/// object i is the sum of three normally distributed terms: the mean of measure j, the size of object i, and the deviation of
+/// measure j in object i. Within an object, all measures of one group have the same deviation, apart from small random
+/// differences.
 struct SyntheticMeasuresOptions {
     int objects = 40;                 ///< number of objects
     int measures = 8;                 ///< number of measures
@@ -51,7 +52,7 @@ struct SyntheticMeasuresOptions {
     double ratio_deviation = 0.15;    ///< standard deviation of the logarithm of ratios that are not fixed
     double planted_deviation = 0.03;  ///< standard deviation of the logarithm of fixed ratios
     double size_deviation = 0.15;     ///< standard deviation of the logarithm of the objects' size
-    /// The deviations `own` of the measures are multiplied by factors from 1 - spread to 1 + spread.
+    /// The standard deviations of the measures are multiplied by factors from 1 - spread to 1 + spread.
     double spread = 0;
     double missing = 0;      ///< fraction of missing values
     std::uint64_t seed = 1;  ///< random seed
@@ -64,8 +65,8 @@ struct SyntheticMeasures {
     MeasureTable table;
     std::vector<int> groups;  ///< for each measure: index of its group; -1: in no group
 };
-/// Generates a synthetic table of measures. Throws Error (usage) if an option is out of range or if the groups need more measures
-/// than `measures`.
+/// Generates a synthetic table of measures. Throws Error (usage) if an option is out of range or if the groups together have
+/// more measures than the table.
 SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Comparison and grouping of heads, with a summary of each group and head.
+// Compares heads, groups them by mould, and summarises each group and each head.
 #pragma once
 
 #include "ostraka/collection/moulds.h"
@@ -16,7 +16,7 @@ struct MouldStudy {
     std::vector<double> sizes;                ///< size of each head relative to the mean of its group
 
     [[nodiscard]] int group_count() const;  ///< number of groups
-    /// Mean distance of a head to the members of a group, excluding the head itself; NaN if there is no other member.
+    /// Mean distance of a head to the other members of a group; NaN if there are no other members.
     [[nodiscard]] double mean_distance(std::size_t head, int group) const;
     /// Among the groups other than the head's own, the index of the group with the smallest mean distance to the head, and this
     /// distance; -1 if there is no other group.
@@ -24,7 +24,7 @@ struct MouldStudy {
 };
 
 /// Computes the distances from a similarity (mould_similarities), then the groups of heads, the stability of the groups, and the
-/// relative sizes of the heads. Throws the errors of the functions in moulds.h.
+/// relative sizes of the heads. Throws the same errors as `mould_distances` and `group_heads` (moulds.h).
 MouldStudy study_moulds(MouldMatrices matrices, const std::string& similarity, const GroupOptions& group = {},
                         const StabilityOptions& stability = {});
 
@@ -40,7 +40,7 @@ struct MouldGroupSummary {
 };
 std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study);  ///< one per group
 
-/// Adjusted Rand index between groups and known labels, over the heads whose label is known (not empty).
+/// Adjusted Rand index between the computed groups and the known labels. Heads with an empty label are ignored.
 double agreement_with_answers(const std::vector<int>& groups, const std::vector<std::string>& answers);
 
 }  // namespace ostraka

@@ -21,7 +21,8 @@ namespace ostraka {
 struct CompareOptions {
     SiftOptions features;  ///< detection and description of salient points
     MatchOptions matches;  ///< matching of salient points
-    /// Maximum distance ratio (see MatchOptions) of the matches among which geometrically consistent matches are searched.
+    /// Geometrically consistent matches are selected from the matches with a distance ratio (see MatchOptions) up to this
+    /// value.
     double loose_ratio = 0.9;
     ConsistentOptions consistent;  ///< selection of geometrically consistent matches
     AlignOptions align;            ///< registration of two heads
@@ -62,8 +63,9 @@ struct PreparedCollection {
     std::vector<PreparedHead> heads;            ///< one per prepared object
     /// One per object of the collection; the result of an object that failed states the problem.
     std::vector<ObjectResult> results;
-    CompareOptions options;  ///< the options, with the feature size that was used
-    /// "sizes" or "features" if these results of other shards are not available yet; `heads` is then empty.
+    CompareOptions options;  ///< the options used, including the computed feature size
+    /// Name of the intermediate results of other shards ("sizes" or "features") that are not available yet; `heads` is then
+    /// empty. Empty if nothing is missing.
     std::string waits_for;
 };
 
@@ -86,12 +88,13 @@ std::vector<std::string> mould_similarities();
 /// (usage) for an unknown name.
 Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string& similarity);
 
-/// How heads are grouped.
+/// Options of `group_heads`.
 struct GroupOptions {
     enum class Method { linkage, dbscan, embedding } method = Method::linkage;  ///< clustering method
-    std::string epsilon = "nested";  ///< distance within groups: a number, or the name of a rule that chooses it
-    int expected_size = 0;           ///< expected number of heads per mould, for knn; 0: square root of the number of heads
-    int dimensions = 3;              ///< number of dimensions of the spectral embedding
+    std::string epsilon =
+        "nested";           ///< max distance between neighbours in a group: a number, or the name of a rule that computes it
+    int expected_size = 0;  ///< expected number of heads per mould, for knn; 0: square root of the number of heads
+    int dimensions = 3;     ///< number of dimensions of the spectral embedding
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
@@ -100,12 +103,11 @@ struct GroupOptions {
 struct MouldGroups {
     /// For each head: index of its group; groups are numbered 0, 1, ... by decreasing size.
     std::vector<int> labels;
-    double epsilon = 0;  ///< distance within groups that was used
-    double silhouette =
-        /// Mean silhouette of the heads, from the distances that were grouped; if no grouping is clear, of the grouping with the
-        /// largest mean silhouette.
-        0;
-    bool clear = false;                    ///< true if the silhouette is at least 0.2 (method embedding: 0.7)
+    double epsilon = 0;  ///< max distance between neighbours in a group that was used
+    /// Mean silhouette of the heads, computed from the distances that were grouped. If no candidate grouping is distinct: the
+    /// largest mean silhouette of all candidates.
+    double silhouette = 0;
+    bool clear = false;  ///< true if the groups are distinct: the silhouette is at least 0.2 (method embedding: 0.7)
     std::vector<double> head_silhouettes;  ///< silhouette of each head
     /// Coordinates of the heads in the embedding, one row per head, scaled so that the largest distance is 1.
     Eigen::MatrixXd coordinates;

@@ -1,5 +1,5 @@
-// The objects of a collection, and work that is done on each object independently: a failure on one object does not stop the work
-// on others, and finished results are not computed again.
+// The objects of a collection, and computations on each object separately: a failure on one object does not stop the
+// computations on other objects, and finished results are stored and reused.
 #pragma once
 
 #include "ostraka/core/shard.h"
@@ -21,14 +21,15 @@ struct CollectionObject {
     Path landmarks;     ///< 3D Slicer markups (.mrk.json); empty if the object has no landmarks
     std::string unit;   ///< unit of the coordinates; empty if the collection does not give it
     std::string label;  ///< known class label; empty if unknown
-    /// SHA-256 over the contents of the object's files; empty if a file cannot be read, and for objects outside the shard.
+    /// SHA-256 over the contents of the object's files; empty if a file cannot be read or if the object belongs to another
+    /// shard.
     std::string checksum;
 };
 
 /// The objects of a folder or a study file.
 struct Collection {
     std::vector<CollectionObject> objects;  ///< sorted by name
-    /// Files that cannot be objects: printable file name, reason.
+    /// Files that are not read as objects: printable file name and reason.
     std::vector<std::pair<std::string, std::string>> left_out;
     std::vector<std::string> notes;  ///< messages about duplicates and missing labels
 };
@@ -43,8 +44,8 @@ void check_new_collection(const Path& folder);
 /// results cannot be stored (longer than 200 bytes, with control characters or a backslash, not UTF-8) are left out. A file
 /// *.study.json (doc/schema/study.schema.json) lists objects with file paths relative to the study file; an invalid name in a
 /// study file is an error. Files of objects outside the shard `share` are not read. Throws Error (input) if the path is neither a
-/// folder nor a study file, if the collection has no objects, or if two objects have the same name. A missing or damaged file is
-/// reported only by the work on that object.
+/// folder nor a study file, if the collection has no objects, or if two objects have the same name. A missing or damaged file
+/// is reported only when the object is processed.
 Collection read_collection(const Path& folder_or_file, const Share& share = {});
 
 /// Reads the map from object names to labels from a CSV file whose first row names the columns: "name" and `column` (empty:
@@ -55,10 +56,10 @@ std::map<std::string, std::string> read_labels(const Path& file, const std::stri
 /// (input), with examples of both, if no object gets a label; `where` names the source of the labels.
 void set_labels(Collection& collection, const std::map<std::string, std::string>& labels, const std::string& where = "labels");
 
-/// Stores results in a folder, one JSON file per result, under the name of the object and a key: the checksum of everything the
-/// result depends on. Files are written atomically; a file with another key counts as absent, as does a damaged file (each file
-/// has a checksum of its result). Results are written immediately, even while an OutputTransaction is open. Several threads may
-/// use a store at the same time if they use different names.
+/// Stores results in a folder, one JSON file per result. A result is found by the name of the object and by a key, which is a
+/// checksum of all inputs and options of the result. Files are written atomically. A file with another key, or a damaged file
+/// (the file contains a checksum of its result), counts as absent. Results are written immediately, even while an
+/// OutputTransaction is open. Several threads may use a store at the same time if they use different names.
 class ResultStore {
 public:
     /// The folder is created when the first result is stored; without a folder nothing is stored. Temporary files left in the
@@ -81,7 +82,7 @@ private:
     Share share_;
 };
 
-/// The result of the work on one object, or the problem.
+/// The result of processing one object, or the reason why processing failed.
 struct ObjectResult {
     Json result;             ///< null if the work failed
     std::string problem;     ///< message with place and remedy if the work failed; empty otherwise

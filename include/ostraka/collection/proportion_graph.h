@@ -1,4 +1,4 @@
-// Fixed proportions of a collection, proposed as constraints on a template.
+// Proposes the fixed proportions of a collection as constraints on a template.
 #pragma once
 
 #include "ostraka/collection/measure_definitions.h"
@@ -26,11 +26,11 @@ struct Proposals {
 };
 
 /// For each fixed ratio (with option `stable`, also for each stable ratio), proposes a constraint that keeps the ratio of the
-/// smaller to the larger measure between the observed quantiles of this ratio. The part that changes is the annotation of the
-/// smaller measure; the reference is the annotation of the larger measure. Measures that the template's annotations do not have
-/// yet are taken on the template and added. Notes report ratios that cannot be proposed: a measure does not have its own
-/// annotation (the whole object, descriptors, two measures of one annotation) or cannot be taken on the template. `existing` may
-/// be empty; constraints that `existing` already contains are not repeated.
+/// smaller to the larger measure between the observed quantiles of this ratio. The constrained part is the annotation of the
+/// smaller measure; its reference is the annotation of the larger measure. Measures that the template's annotations do not have
+/// yet are taken on the template and added. Notes report ratios that cannot be proposed: one of the measures belongs to the
+/// whole object, is a descriptor, belongs to the same annotation as the other measure, or cannot be taken on the template.
+/// `existing` may be empty; constraints that `existing` already contains are not repeated.
 Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph existing, const MeasureDefinitions& definitions,
                               const ProportionStudy& study, const ProposalOptions& options = {});
 

@@ -17,7 +17,7 @@ namespace ostraka {
 struct TechniqueOptions {
     int slices = 100;              ///< number of slices per object
     double from = 0.02, to = 0.4;  ///< ends of the sliced range, as fractions of the height
-    double min_turn = 0.8;         ///< min fraction of the full turn that an open outline covers
+    double min_turn = 0.8;         ///< open outlines that cover a smaller fraction of the full turn are not used
     int min_slices = 20;           ///< min number of usable slices per object
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
@@ -25,7 +25,7 @@ struct TechniqueOptions {
 
 /// One slice of the body. Lengths are relative to the radius of the circle fitted to its outline. Unknown values are NaN.
 struct TechniqueSlice {
-    /// Value of members that are not known.
+    /// Marks a value that is not known.
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double height = 0;                               ///< height of the slice, as a fraction of the object's height
     double turn = 0;                                 ///< fraction of the full turn covered by the outline; 1 if closed
@@ -53,13 +53,14 @@ struct TechniqueDescriptor {
 /// Slices and descriptors of one object.
 struct TechniqueMeasures {
     std::vector<TechniqueSlice> slices;  ///< the used slices, from bottom to top
-    /// Numbers of slices: requested; without outline; open and skipped; open and used.
+    /// Numbers of slices: requested (asked); without an outline (empty); with an open outline and not used (too_open); with an
+    /// open outline and used (open_used).
     std::size_t asked = 0, empty = 0, too_open = 0, open_used = 0;
     std::vector<TechniqueDescriptor> descriptors;  ///< all descriptors, in the order of technique_descriptors()
     [[nodiscard]] double value(const std::string& descriptor) const;  ///< value of the descriptor of this name
 };
 
-/// A descriptor and its meaning.
+/// A descriptor, with a description of its meaning.
 struct DescriptorMeaning {
     std::string name, words;  ///< name of the descriptor; its meaning in words
     bool positive;            ///< true: the descriptor is positive and compared by its logarithm
@@ -73,9 +74,9 @@ struct DescriptorMeaning {
 const std::vector<DescriptorMeaning>& technique_descriptors();
 
 /// Slices the body across `up` at evenly spaced heights. In each slice the longest contour that is not a hole is the outline of
-/// the body; a separate contour such as an arm is ignored. A closed outline is always used. An open outline is used if it covers
-/// at least `min_turn` of the full turn, but not for descriptors that need a closed outline or a wall. Throws Error (input), with
-/// the reason, for a mesh without faces or height, or if too few slices can be used.
+/// the body; a separate contour such as an arm is ignored. A closed outline is always used. An open outline is used if it
+/// covers at least `min_turn` of the full turn, but not to compute descriptors that need a closed outline or a wall. Throws
+/// Error (input), with the reason, for a mesh without faces or height, or if too few slices can be used.
 TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const TechniqueOptions& options = {});
 
 /// Computes the descriptors from the slices; the last step of measure_technique.

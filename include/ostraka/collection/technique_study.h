@@ -1,5 +1,5 @@
-// Classifies the objects of a collection as wheel-made or hand-made: learnt from objects of known technique, or found without
-// labels (thesis, section 3.2.1).
+// Classifies the objects of a collection as wheel-made or hand-made. The classifier is trained on objects of known technique;
+// without such objects the collection is split into two groups (thesis, section 3.2.1).
 #pragma once
 
 #include "ostraka/collection/technique.h"
@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-/// An object of the study.
+/// One object of a study of forming techniques.
 struct TechniqueObject {
     std::string name;   ///< name of the object
     std::string label;  ///< the known technique; empty if unknown
@@ -49,13 +49,15 @@ struct TechniqueStudyOptions {
 struct ClassifierResult {
     TechniqueClassifier classifier;
     std::size_t objects = 0;  ///< number of labelled objects that have all descriptors of the classifier
-    /// False if a label has fewer than two objects; the members after this one are then undefined.
+    /// False if a label has fewer than two objects; the classifier is then not validated, and the following members are
+    /// undefined.
     bool validated = false;
     CrossValidation validation;  ///< scores on held-out objects
     double trivial_f1 = 0;       ///< F1 of classifying every object as positive
     Interval f1_interval;        ///< 95 % interval of the F1 when objects are resampled within each label
     bool better = false;         ///< true if `f1_interval` lies above `trivial_f1`
-    /// Error rate on held-out objects, (wrong + 1) / (answers + 2) (Laplace), mean over the repeats.
+    /// Error rate on held-out objects: (number of wrong answers + 1) / (number of answers + 2) (Laplace), mean over the
+    /// repeats.
     double error = 1;
     /// ROC curve of the descriptor's values (one descriptor) or of the held-out scores (several descriptors).
     RocCurve roc;
@@ -70,20 +72,21 @@ struct TechniqueSplit {
     std::string descriptor;
     std::size_t objects = 0, lower = 0;  ///< number of objects with a value, and of objects in the lower group
     double threshold = 0;                ///< value halfway between the two groups
-    /// Fraction of the variance that lies between the groups (of logarithms for positive descriptors).
+    /// Between-group variance as a fraction of the total variance (of the logarithms for positive descriptors).
     double share = 0;
-    double p_value = 1;      ///< fraction of collections simulated from one normal distribution that split at least as well
+    /// Fraction of the collections simulated from one normal distribution whose best split has at least this `share`.
+    double p_value = 1;
     std::vector<int> group;  ///< for each object of the study: 0 lower group, 1 upper group, -1 unknown
     /// F1 of the split, with labels assigned to groups so that F1 is larger; none unless both labels occur.
     std::optional<double> f1;
 };
 
-/// The descriptor by which an object is out-of-class, with its value and range.
+/// The descriptor whose value shows that an object is out-of-class, with this value and the range of the labelled objects.
 struct TechniqueOutlier {
     std::string descriptor;
     double value = 0;          ///< value of the object
     double low = 0, high = 0;  ///< min and max value of the labelled objects, excluding the object itself
-    /// Outward distance of the value from the closer of the two class medians, in robust standard deviations.
+    /// Distance of the value from the closer of the two class medians, in robust standard deviations; 0 between the medians.
     double distance = 0;
 };
 
@@ -93,14 +96,16 @@ struct TechniqueAnswer {
     std::string answer;       ///< label or group given by the study; empty if there is no answer
     /// "clear", "likely" or "doubtful"; for no answer "undecided", "unlike" or "not told apart"; empty: unknown.
     std::string certainty;
-    std::optional<TechniqueOutlier> unlike;  ///< descriptor by which the object is out-of-class; none if it is not
-    bool positive = false;                   ///< true: the answer is the positive class
+    /// Descriptor that shows that the object is out-of-class; none if the object is not out-of-class.
+    std::optional<TechniqueOutlier> unlike;
+    bool positive = false;  ///< true: the answer is the positive class
     /// Score of the classifier, in standard deviations of the labelled objects' scores; at least 0 for the positive class.
     double score = 0;
-    double agreement = 0;               ///< fraction of the resampled collections without this object that give the same answer
-    int asked = 0;                      ///< number of the resampled collections without this object
+    /// Fraction of the resampled collections that give the same answer, among those that do not contain the object.
+    double agreement = 0;
+    int asked = 0;                      ///< number of the resampled collections that do not contain the object
     std::optional<Interval> roundness;  ///< 95 % interval of the mean roundness, from resampled blocks of slices
-    std::string words;                  ///< reason for the answer, in one sentence
+    std::string words;                  ///< sentence that gives the reason for the answer
     [[nodiscard]] bool wrong() const { return !answer.empty() && !label.empty() && answer != label; }
 };
 
@@ -124,8 +129,9 @@ struct TechniqueStudy {
 /// absolute deviation from the class medians), or if fewer than half of the resampled collections agree. An answer is clear with
 /// an agreement of at least 0.95 and an error of at most 0.05, likely with an agreement of at least 0.8 and an error of at most
 /// 0.2, and doubtful otherwise. Without labels the objects are split by the first descriptor of `answer_by` ("outside": by the
-/// first principal component), and answers are given only if the split is better than splits of a single group (p at most 0.05).
-/// Throws Error (usage) for an unknown classifier or label; Error (input) without objects or with more than two distinct labels.
+/// first principal component), and answers are given only if a single homogeneous group would rarely be split as clearly (p at
+/// most 0.05). Throws Error (usage) for an unknown classifier or label; Error (input) without objects or with more than two
+/// distinct labels.
 TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options = {});
 
 /// The split of values into two groups with the smallest within-group variance: threshold, and fraction `share` of the variance

@@ -1,4 +1,5 @@
-// The conformance kit: golden cases of every operation, and the evaluation of other programs on them.
+// The conformance kit: test cases with expected results for every operation, and the evaluation of other programs on these
+// cases.
 #pragma once
 
 #include "ostraka/framework/operation.h"
@@ -12,11 +13,12 @@ namespace ostraka {
 
 /// How one output of a case, or its report, is compared with the expected result.
 struct Comparison {
-    /// What is compared: "report", the name of an output, or OUTPUT/FILE for a file in an output folder.
+    /// The compared output: "report", the name of an output, or OUTPUT/FILE for a file in an output folder.
     std::string output;
     std::string method;    ///< "mesh", "annotations", "array", "values", "bytes", "exists"
     double tolerance = 0;  ///< largest difference that counts as agreement, in multiples of `scale`
-    /// What `tolerance` is relative to: "absolute", "diagonal" (of the mesh), "largest" (value) or "value".
+    /// Unit of `tolerance`: "absolute" (the unit of the values), "diagonal" (of the mesh), "largest" (value of the array) or
+    /// "value" (each expected value).
     std::string scale = "absolute";
     std::vector<std::string> freedoms;  ///< properties of a mesh that may differ: "vertex order", "triangulation"
     /// For annotations: the mesh to which the annotations belong, as an input file or the name of an output.
@@ -32,9 +34,10 @@ struct ConformanceCase {
     bool degenerate = false;                     ///< true: the case tests degenerate input
     const JsonValue* with = nullptr;             ///< settings of the operation; file names are relative to the kit's folder
     std::map<std::string, std::string> outputs;  ///< name of each output -> name of its file
-    int code = 0;                                ///< expected exit code: 0, 1 (failed), 2 (wrong usage), 3 (the answer is no)
-    std::vector<std::string> names;              ///< words that the error message must contain
-    std::vector<Comparison> comparisons;         ///< how each output is compared
+    /// Expected exit code: 0 (success), 1 (failure), 2 (wrong usage), 3 (a check found defects, or the answer is no).
+    int code = 0;
+    std::vector<std::string> names;       ///< words that the error message must contain
+    std::vector<Comparison> comparisons;  ///< how each output is compared
 };
 
 /// The kit read from a folder.
@@ -49,7 +52,7 @@ struct ConformanceKit {
 /// outputs are checked against the table.
 ConformanceKit read_kit(const Path& folder, const FindOperation& find);
 
-/// The answer of a backend to one case.
+/// Result of one case as returned by the tested program.
 struct Answer {
     int code = -1;                       ///< exit code; 4: the operation is not supported; -1: crashed
     std::shared_ptr<const Json> result;  ///< result of the report; null if there is none
@@ -73,7 +76,7 @@ std::unique_ptr<Backend> command_backend(std::vector<std::string> words, Argumen
 /// `time_limit`: in seconds per case.
 std::unique_ptr<Backend> json_lines_backend(std::vector<std::string> words, double time_limit);
 
-/// Outcome of a case.
+/// Outcome of the comparison of a program's results with the expected results.
 enum class Outcome { agrees, differs, unsupported };
 /// Result of running a case.
 struct CaseResult {

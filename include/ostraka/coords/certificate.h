@@ -14,12 +14,12 @@ struct CoordinateCertificate {
     std::size_t points = 0, vertices = 0, faces = 0;  ///< number of points, and of vertices and faces of the cage
 
     double partition = 0;  ///< largest |sum of the vertex weights of a point - 1|
-    /// Largest distance between a point and the combination of the undeformed cage with the point's weights.
+    /// Largest distance between a point and the position that its weights reproduce from the undeformed cage.
     double linear = 0;
-    Index worst_linear = no_index;  ///< index of the point with the distance `linear`
+    Index worst_linear = no_index;  ///< index of the point where the distance `linear` occurs
 
-    /// Largest deviation of the weights at cage vertices from 1 (own weight) or 0 (other weights). The weights of coincident
-    /// vertices are added. None for kinds that are not defined on the cage.
+    /// Largest deviation, at the positions of the cage vertices, of the weight of that vertex from 1 or of another weight from
+    /// 0. The weights of coincident vertices are added. None for kinds that are not defined on the cage.
     std::optional<double> lagrange = {};
     /// Largest deviation from linear weights, at three points on each cage edge; none for kinds that are not defined on the cage.
     std::optional<double> edges = {};
@@ -30,9 +30,10 @@ struct CoordinateCertificate {
     double negative_rows = 0;         ///< fraction of the points with a negative weight
     double minimum = 0, maximum = 0;  ///< smallest and largest vertex weight
     double negative_sum = 0;          ///< largest sum of the absolute values of a point's negative weights
-    /// Smallest number of weights that carry 95 % of the sum of absolute weights of a point, mean over the points.
+    /// For each point, the smallest number of weights whose absolute values make up 95 % of the sum over all weights; mean over
+    /// the points.
     double carriers_mean = 0;
-    /// Smallest number of weights that carry 95 % of the sum of absolute weights, maximum over the points.
+    /// As `carriers_mean`, but the maximum over the points.
     Index carriers_max = 0;
 
     /// True if the weights can be used for deformation: `partition` is at most 1e-10 and `linear` at most 1e-9.

@@ -17,7 +17,7 @@ Path normal_weights_file(const Path& weights);     ///< "weights.normal.npy" for
 Path sparse_columns_file(const Path& weights);     ///< "weights.columns.npy" for "weights.npy"
 Path sparse_rows_file(const Path& weights);        ///< "weights.rows.npy" for "weights.npy"
 
-/// Content of a header (doc/schema/coordinates.schema.json).
+/// Content of the header of a coordinate file (doc/schema/coordinates.schema.json).
 struct CoordinateHeader {
     std::string kind;  ///< kind of coordinates
     struct Array {
@@ -51,9 +51,9 @@ void write_coordinates(const Path& weights, const Coordinates& coordinates, cons
 CoordinateHeader read_coordinate_header(const Path& weights);
 
 /// Reads coordinates of this mesh in this cage. Throws Error (input) with the remedy if the header belongs to another mesh or
-/// cage (checksums of the indexed geometry), or if the arrays were changed after writing, have another shape, or contain numbers
-/// that are not finite or rows that do not sum to 1 within 1e-6 (with normal weights also: rows that do not reproduce their point
-/// at rest).
+/// cage (checksums of the indexed geometry), if the arrays were changed after writing or have another shape, if a number is not
+/// finite, or if a row does not sum to 1 within 1e-6 (with normal weights also: if a row does not reproduce its point from the
+/// undeformed cage).
 Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& cage);
 
 }  // namespace ostraka

@@ -25,9 +25,10 @@ using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 struct Coordinates {
     std::string kind;     ///< "mean-value", "green" ...
     WeightMatrix vertex;  ///< weight of each cage vertex (column) for each point (row)
-    /// Weight of each cage face normal (column) for each point (row), in units of length; 0 x 0 for kinds without a normal term.
+    /// Weight of each cage face normal (column) for each point (row), in units of length; for kinds without a normal term a
+    /// matrix of size 0 x 0.
     WeightMatrix normal;
-    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; 0 x 0 for other kinds.
+    /// Sparse copy of `vertex` for kinds whose weights are mostly zero; for other kinds a matrix of size 0 x 0.
     SparseWeights sparse = {};
     /// For kinds computed on tetrahedra: name and seconds of each phase (tetrahedralisation, weights at the nodes, weights of the
     /// points).
@@ -51,8 +52,8 @@ struct CoordinateOptions {
     int iterations = 300;
     /// Local coordinates: stop when ten iterations reduce the total variation by less than this fraction.
     double tolerance = 1e-4;
-    /// For nested cages: distance over which the influence of an inner cage rises from 0 (where the mesh enters the inner cage)
-    /// to 1; relative to the inner cage's diagonal.
+    /// For nested cages: the influence of an inner cage rises from 0, where the mesh enters the inner cage, to 1 over this
+    /// distance; relative to the inner cage's diagonal.
     double fade = 0.15;
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
@@ -64,11 +65,12 @@ struct CoordinateKind {
     bool on_cage = true;      ///< true: defined also for points on the cage and outside
     /// True: has a normal term and cannot be used for constrained deformation (thesis, equation 4.9).
     bool with_normals = false;
-    /// Computes the coordinates; the cage is a closed triangle mesh without garbage, and all numbers are finite.
+    /// Function that computes coordinates of this kind. The caller ensures that the cage is a closed triangle mesh without
+    /// removed elements, and that all coordinates are finite.
     std::function<Coordinates(const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions&)> compute;
 };
 
-/// Registers a kind of coordinates under its name, replacing a kind of the same name. Not thread-safe: do not call while
+/// Registers a kind of coordinates under its name; a kind of the same name is replaced. Not thread-safe: do not call while
 /// coordinates are computed.
 void add_coordinate_kind(CoordinateKind kind);
 /// The names of all kinds of coordinates: "mean-value", "green", "harmonic", "local", "positive-mean-value" and the registered
@@ -79,8 +81,8 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 
 /// Coordinates of `points` in `cage`. Time and memory are proportional to points x (vertices + faces); the result is the same
 /// to the bit for any number of threads. Throws Error (usage) for an unknown kind; Error (input) for a cage that is empty,
-/// open, not a triangle mesh, without volume or not finite, for points that are not finite, and for points where the kind is
-/// not defined (the message names the first of them).
+/// open, not a triangle mesh, without volume or not finite, for points that are not finite, and for points at which coordinates
+/// of this kind are not defined (the message names the first such point).
 ///
 /// mean-value: Ju, Schaefer and Warren, Mean value coordinates for closed triangular meshes, 2005, in vector form; for points
 /// inside, outside and on the cage. On a face, edge or vertex of the cage, mean value coordinates are linear interpolation.
@@ -96,7 +98,7 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
 /// Coordinates of the vertices of a mesh in `cage`. If the cage contains other cages, the coordinates cover all nested cages
-/// (coords/nested.h). Errors and cost are those of `compute_coordinates` for points.
+/// (coords/nested.h). Errors and running time are as for `compute_coordinates` of a list of points.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const Mesh& mesh,
                                 const CoordinateOptions& options = {});
 /// The points of a mesh, in the order of its vertices.
@@ -106,8 +108,8 @@ std::vector<Point> points_of(const Mesh& mesh);
 /// their faces (section 3 of the paper). Throws Error (usage) if the sizes do not match.
 std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
-/// The face normals that the normal weights multiply: the length of a normal is the stretch of its face relative to the
-/// undeformed cage. The normal of a face without area in the undeformed cage is zero.
+/// The face normals to which Green coordinates apply the normal weights. The length of each normal is the stretch of its face
+/// relative to the undeformed cage. The normal of a face without area in the undeformed cage is zero.
 std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<Point>& cage_points);
 
 }  // namespace ostraka

@@ -11,8 +11,8 @@ namespace ostraka {
 enum class InfluenceMeasure { max, sum };
 
 /// Influence of each cage vertex on the points with these indices: the maximum of its weights over the points (the thesis
-/// compares this maximum with a threshold, section 5.2.3) or the sum. Throws Error (usage) for an index out of range, Error
-/// (input) if there are no points.
+/// compares this maximum with a threshold, section 5.2.3) or the sum of its weights. Throws Error (usage) for an index out of
+/// range, Error (input) if there are no points.
 std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points,
                                  InfluenceMeasure by = InfluenceMeasure::max);
 

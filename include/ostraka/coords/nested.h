@@ -15,22 +15,22 @@ struct CageLevel {
 };
 
 /// Splits a cage mesh into levels. The first level is the outermost cage (all components that lie in no other component, and
-/// cavities). The inner cages follow, each after its parent, otherwise in the order of their smallest face indices. A component
-/// lies in another component if most of its vertices lie inside the other and both have the same orientation. A cage mesh that is
+/// cavities). The inner cages follow, each after its parent, otherwise in the order of their smallest face indices. Component A
+/// lies in component B if most vertices of A lie inside B and both components have the same orientation. A cage mesh that is
 /// open or has one component is a single level.
 std::vector<CageLevel> cage_levels(const Mesh& cage);
 
 /// For each level except the first, the mean value coordinates of its vertices in its parent level; with these weights the parent
-/// moves the level. Entry 0 is a 0 x 0 matrix.
+/// moves the level. The matrix of level 0, which has no parent, is empty.
 std::vector<WeightMatrix> carrying_weights(const std::vector<CageLevel>& levels);
 
-/// Coordinates of the vertices of a mesh in all levels together. Let x be the position of a vertex after the deformation by the
-/// parent, h the influence of the level at the vertex, w the weights of the vertex in the level, c the positions of the level's
-/// vertices and c' the positions to which the parent moves them. The level then yields x + h w (c - c'). The influence h is 0
-/// outside the level and in all pieces of the mesh inside the level except the largest piece; in the largest piece h rises from 0
-/// where the mesh enters the level to 1 at a distance of `fade` times the level's diagonal. Expanded, this sum is one row of
-/// weights over all vertices of the cage mesh, which sums to one and reproduces the vertex. Throws Error (usage) for kinds with a
-/// normal term, otherwise as compute_coordinates.
+/// Coordinates of the vertices of a mesh with respect to all levels of nested cages. Let x be the position of a vertex after the
+/// deformation by the parent, h the influence of the level at the vertex, w the weights of the vertex in the level, c the
+/// positions of the level's vertices and c' the positions to which the parent moves them. The level then yields x + h w (c - c').
+/// The influence h is 0 outside the level and in all pieces of the mesh inside the level except the largest piece; in the largest
+/// piece h rises from 0 where the mesh enters the level to 1 at a distance of `fade` times the level's diagonal. Written in terms
+/// of all vertices of the cage mesh, this position is a combination with one row of weights; the row sums to one and reproduces
+/// the vertex from the undeformed cage. Throws Error (usage) for kinds with a normal term, otherwise as compute_coordinates.
 Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLevel>& levels, const Mesh& mesh,
                                const CoordinateOptions& options);
 

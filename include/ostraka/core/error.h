@@ -9,9 +9,9 @@ namespace ostraka {
 /// Kind of an error, which determines the exit code.
 enum class ErrorKind {
     input,     ///< a file or a mesh is invalid (exit code 1)
-    failure,   ///< the work could not be done: no disk space, no memory, no solution (exit code 1)
+    failure,   ///< the computation failed: no disk space, no memory, no solution (exit code 1)
     usage,     ///< the arguments or options are invalid (exit code 2)
-    cancelled  ///< the caller cancelled the work (exit code 130)
+    cancelled  ///< the caller cancelled the computation (exit code 130)
 };
 
 /// An error for the user: the problem, its location (file, line, element) and the remedy.

@@ -1,5 +1,5 @@
-// One list of options per operation or options struct; flags, JSON keys, help, checks, provenance and schemas are derived from
-// it.
+// Option lists. Each operation and each options struct has one list; flags, JSON keys, help, checks, provenance and schemas are
+// derived from this list.
 //
 // An options struct has a member
 //     void list_options(OptionList& list);
@@ -36,7 +36,7 @@ struct Choices {
     Choices(std::initializer_list<const char*> choices) : names(choices.begin(), choices.end()) {}
     explicit Choices(std::vector<std::string> choices) : names(std::move(choices)) {}
 };
-/// Rule of an option: these words are allowed besides other values. Help and completion offer the words.
+/// Rule of an option: these words are allowed, and also other values. Help and completion offer the words.
 struct Words {
     std::vector<std::string> names;
     std::string others;  ///< description of the other values: "three numbers"
@@ -100,7 +100,9 @@ struct Option {
     /// False: the option does not affect the result and is not recorded in the provenance.
     bool affects_result = true;
     bool takes_words = false;  ///< true: a list option whose flag may be followed by several words
-    bool from_files = true;    ///< false: only the caller may set it, not a study, a kit or a session (doc/security.md)
+    /// False: the option is ignored in studies, conformance kits and sessions; only the calling user may set it
+    /// (doc/security.md).
+    bool from_files = true;
 
     /// Marks an option that must be given.
     Option& required() { return needed = true, initial.clear(), *this; }
@@ -200,7 +202,7 @@ void set_option(Options& options, const std::string& name, const std::string& wo
     options_of(options).find(name)->set(std::vector{word});
 }
 
-/// All options as one text, which is equal for equal options.
+/// All options as one text; equal options give equal texts.
 template <class Options>
 std::string options_text(const Options& options) {
     std::string text;

@@ -7,16 +7,18 @@
 
 namespace ostraka {
 
-/// Receives the progress of the work of one thread (with the parallel loops that the thread starts), and cancels the work.
+/// Receives the progress of the computations of one thread and of the parallel loops that this thread starts, and can cancel
+/// these computations.
 class Watch {
 public:
     /// Called with the current phase and the completed fraction (0 to 1), at most ten times per second, from any thread.
     std::function<void(const std::string& phase, double share)> on_progress;
 
-    /// Limit in bytes of the memory of the process during the work; 0: the memory of the machine (core/memory.h).
+    /// Limit of the memory of the process during the computations, in bytes; 0: the memory of the machine (core/memory.h).
     double memory_limit = 0;
 
-    /// Makes the work stop with an Error (cancelled) at its next check. May be called from any thread or from a signal handler.
+    /// Makes the computation throw Error (cancelled) at its next check for cancellation. May be called from any thread or from
+    /// a signal handler.
     void cancel() { cancelled_ = true; }
     [[nodiscard]] bool is_cancelled() const { return cancelled_; }  ///< true after cancel()
 
@@ -41,8 +43,8 @@ Watch* current_watch();
 /// Throws Error (cancelled) if the watch of the current thread is cancelled.
 void check_cancelled();
 
-/// Checks for cancellation at every 1024th call only; for inner loops and functors of other libraries. An object must not be
-/// shared between threads.
+/// Function object that checks for cancellation at every 1024th call; for inner loops and for functors passed to other
+/// libraries. Each thread needs its own CancelCheck.
 class CancelCheck {
 public:
     void operator()() {

@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// How a child process is started.
+/// Options for starting a child process.
 struct ChildOptions {
     Path folder = {};  ///< working directory; empty: the working directory of this process
     /// Files for stdout and stderr; both may be the same file, which then keeps the order of printing.
@@ -37,7 +37,7 @@ public:
     void signal(int number) const;
     /// Exit code of the ended program; 128 + N if signal N ended the program.
     [[nodiscard]] int code() const;
-    /// How the program ended, as text: "ended with code 3", "ended by signal 11".
+    /// Description of how the program ended: "ended with code 3", "ended by signal 11".
     [[nodiscard]] std::string ending() const;
 
     /// File descriptor that writes to the program's stdin; -1 without pipes.

@@ -1,4 +1,4 @@
-// Makes calls of library functions cancellable that cannot be interrupted themselves.
+// Makes calls of library functions cancellable although these functions do not check for cancellation.
 #pragma once
 
 #include <functional>

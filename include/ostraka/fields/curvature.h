@@ -24,18 +24,19 @@ struct Curvature {
     std::vector<double> gaussian;  ///< Gaussian curvature k1 k2 in 1/length^2
 };
 
-/// Curvature at the vertices. scale 0: the measures of Cohen-Steiner and Morvan (2003) over the faces around a vertex (edges on
-/// the outline of these faces count half), divided by the area of these faces. scale r > 0: H = (sum w h . sum w a) / |sum w a|^2
-/// over the part of the ball of radius r that is connected with the vertex, where h is the mean curvature vector of an edge
-/// (Sullivan 2008), a the area vector of a face and w falls smoothly to zero at r; This H is exact on spheres and cylinders for
-/// any r, and insensitive to noise to first order. K = sum w (angle deficit) / sum w A. Border edges and border vertices carry no
-/// curvature. Time: vertices times vertices in a ball. Throws Error (usage) for a scale out of range.
+/// Curvature at the vertices. scale 0: the curvature measures of Cohen-Steiner and Morvan (2003), integrated over the faces
+/// around a vertex (edges on the outline of these faces count half) and divided by the area of these faces. scale r > 0: H =
+/// (sum w h . sum w a) / |sum w a|^2 over the part of the ball of radius r that is connected with the vertex, where h is the
+/// mean curvature vector of an edge (Sullivan 2008), a is the area vector of a face, and the weight w falls smoothly to zero at
+/// distance r. This estimate of H is exact on spheres and cylinders for any r, and insensitive to noise to first order. K = sum
+/// w (angle deficit) / sum w A. Border edges and border vertices carry no curvature. Time: number of vertices times the number
+/// of vertices in a ball. Throws Error (usage) for a scale out of range.
 Curvature curvature(const Mesh& mesh, const CurvatureOptions& options = {});
 
 /// Curvature integrals over each face; the integral over a region is the sum over its faces. An edge of length l and dihedral
 /// angle b (positive where convex) has the mean curvature integral l b / 2, half for each of its two faces; the angle deficit of
-/// a vertex is distributed over its faces by their angles (Cohen-Steiner and Morvan 2003). Border edges and border vertices
-/// contribute nothing, because their curvature belongs to the border.
+/// a vertex is distributed over its faces by their angles (Cohen-Steiner and Morvan 2003). Border edges and border vertices are
+/// not included.
 struct CurvatureIntegrals {
     std::vector<double> mean;      ///< per face: integral of the mean curvature, in units of length
     std::vector<double> gaussian;  ///< per face: integral of the Gaussian curvature, in radians

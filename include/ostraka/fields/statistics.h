@@ -12,9 +12,9 @@ namespace ostraka {
 /// Checks the faces of a region. Throws Error (usage) for the index of a face that the mesh does not have.
 void check_region(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// Statistics of a vertex map over a region: each selected face gives a third of its area to each of its corners. Throws Error
-/// (input) unless the map has one value per vertex, finite on the region, and Error (usage) for a region without faces or a
-/// face out of range.
+/// Statistics of vertex values over a region, weighted by area: each selected face adds a third of its area to the weight of
+/// each of its corners. Throws Error (input) unless the map has one value per vertex, finite on the region, and Error (usage)
+/// for a region without faces or a face out of range.
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where = "map");
 

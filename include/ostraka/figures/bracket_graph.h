@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// A drawing of annotations as rows and of relationships as brackets.
+/// A drawing with one row per annotation and one bracket per relationship.
 struct BracketGraph {
     std::string title;  ///< title of the drawing
     struct Row {

@@ -18,8 +18,8 @@ struct Dendrogram {
     std::string label = "distance";  ///< label of the distance axis
     std::optional<double> cut = {};  ///< distance at which a dashed line is drawn; none: no line
     std::string cut_label = {};      ///< text at the dashed line of `cut`
-    /// For each sample: index of its group, from 0 (displayed from 1). Empty: the groups given by the cut, or without a cut one
-    /// group per sample.
+    /// For each sample: index of its group, from 0 (displayed from 1). Empty: the groups that result from cutting the tree at
+    /// `cut`, or one group per sample if there is no `cut`.
     std::vector<int> groups = {};
     /// For each sample: its known class, shown as a coloured mark beside the name; empty: no classes.
     std::vector<std::string> classes = {};

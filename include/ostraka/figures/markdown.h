@@ -1,4 +1,4 @@
-// Escaping of untrusted text in Markdown, so that the text stays text, also when the Markdown is converted to HTML.
+// Escapes untrusted text in Markdown, so that the text cannot act as markup, also when the Markdown is converted to HTML.
 #pragma once
 
 #include <string>

@@ -35,7 +35,7 @@ struct PlotSeries {
     std::vector<std::optional<std::array<double, 2>>> intervals = {};
     std::optional<std::size_t> colour = {};  ///< index of the colour of the series; none: the index of the series
     double thickness = 1.8;                  ///< line width
-    Mark mark = Mark::dots;                  ///< bars start at y = 0, or at the lower end of the axis
+    Mark mark = Mark::dots;                  ///< shape of the points; bars start at y = 0, or at the lower end of the axis
 };
 
 /// A straight line across the whole plot, with text at its end.

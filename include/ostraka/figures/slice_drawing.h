@@ -16,7 +16,7 @@ struct DrawnSlice {
     const SliceDescriptors* descriptors = nullptr;  ///< fitted circle and barycentre; null: not drawn
     /// Poly-lines drawn over the slice, for example a medial axis.
     std::vector<std::vector<Eigen::Vector2d>> lines = {};
-    std::size_t number = 0;  ///< number displayed at the slice; 0: position of the slice on the sheet
+    std::size_t number = 0;  ///< number displayed beside the slice; 0: the slice's position on the sheet is displayed
 };
 
 /// A sheet of drawn slices.

@@ -13,7 +13,7 @@ namespace ostraka {
 /// A cell of a table: the displayed text and the CSV values. In the CSV, numbers have all digits and missing values are empty.
 struct TableCell {
     std::string text;              ///< displayed text
-    std::vector<std::string> csv;  ///< one value for each CSV column that belongs to the cell's column
+    std::vector<std::string> csv;  ///< CSV values of the cell, one for each CSV column of its table column
 
     TableCell(std::string content) : text(std::move(content)), csv{text} {}
     TableCell(const char* content) : TableCell(std::string(content)) {}
@@ -73,8 +73,9 @@ private:
     std::vector<std::vector<std::string>> rows_, csv_rows_;
 };
 
-/// Formats rows for a terminal; the first is the header. Columns are padded with blanks and no text is cut; a cell of more than
-/// 100 characters shifts only the rest of its own row. right(row, column): true if the cell is right-aligned.
+/// Formats rows for a terminal; the first is the header. Columns are padded with blanks, and no text is truncated; a cell of
+/// more than 100 characters does not widen its column but shifts the rest of its row. right(row, column): true if the cell is
+/// right-aligned.
 std::string aligned_rows(const std::vector<std::vector<std::string>>& rows,
                          const std::function<bool(std::size_t, std::size_t)>& right);
 /// Display width of a text in terminal columns, not bytes: continuation bytes of UTF-8 have no width.

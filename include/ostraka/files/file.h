@@ -1,5 +1,5 @@
-// Files: read as a whole, written atomically. A name that begins with "memory:" denotes a file in the memory of this process:
-// it is read and written like any other file but never touches the disk.
+// Files are read as a whole and written atomically. A name that begins with "memory:" denotes a file in the memory of this
+// process: it is read and written like any other file but never touches the disk.
 #pragma once
 
 #include <cstdio>
@@ -83,10 +83,10 @@ private:
     std::string memory_;  ///< contents of a file in memory
 };
 
-/// Makes several outputs appear together or not at all. While a transaction is open on this thread, files that AtomicFile commits
-/// on this thread and in parallel loops started by this thread stay on disk under temporary names until the transaction's
-/// `commit` renames them all. Without `commit` the temporary files are removed, as are empty folders that were created for them.
-/// If one file cannot be renamed, replaced files are restored (except on file systems without hard links).
+/// Writes several files as one transaction: either all of them appear or none. While a transaction is open on this thread,
+/// files that AtomicFile commits on this thread and in parallel loops started by this thread stay on disk under temporary names
+/// until the transaction's `commit` renames them all. Without `commit` the temporary files and the empty folders created for
+/// them are removed. If one file cannot be renamed, replaced files are restored (except on file systems without hard links).
 class OutputTransaction {
 public:
     OutputTransaction();
@@ -112,16 +112,17 @@ private:
 /// changed after they were written, stay. Throws std::logic_error if no transaction is open.
 void replace_outputs(const Path& folder, const std::string& owner);
 
-/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files with the names of
-/// temporary files that no process holds locked; where files cannot be locked, temporary files that were not modified for a day.
-/// AtomicFile calls this function when its process first writes to a folder. Returns the number of files removed.
+/// Removes the temporary files of AtomicFile that a killed process left in `folder`. A regular file with the name of a
+/// temporary file is removed if no running process has locked it; on file systems without locks, if it was not modified for a
+/// day. AtomicFile calls this function when its process first writes to a folder. Returns the number of files
+/// removed.
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.
 void write_file(const Path& file, std::string_view bytes, FileAccess access = FileAccess::usual);
 
-/// For a process that exits while its threads still work: waits for a commit in progress, then removes all temporary files,
-/// scratch folders and empty folders that this process created. No more files can be created afterwards.
+/// For a process that exits while some of its threads are still running: waits for a commit in progress, then removes all
+/// temporary files, scratch folders and empty folders that this process created. No more files can be created afterwards.
 void abandon_outputs();
 
 /// A new folder, private to this process, in the system's folder for temporary files; the destructor removes it with its

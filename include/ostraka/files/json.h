@@ -84,8 +84,8 @@ std::string text_of(const JsonValue& value);
 /// The numbers of a JSON array of three numbers.
 std::array<double, 3> triple_of(const JsonValue& values);
 
-/// Throws Error (input) with `remedy` if the document states a format other than `format`. A document without a format is
-/// accepted.
+/// Throws Error (input) with `remedy` if the document has a member "format" with a value other than `format`. A document
+/// without a format is accepted.
 void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy);
 
 }  // namespace ostraka

@@ -56,7 +56,7 @@ void add_nonempty_members(JsonValue& object, JsonAllocator& allocator, std::stri
     if (nonempty) add_members(object, allocator, name, std::forward<Value>(value));
     if constexpr (sizeof...(rest) > 0) add_nonempty_members(object, allocator, std::forward<Rest>(rest)...);
 }
-/// Copies those members of `from` to `object` whose names are listed.
+/// Copies the members with the given names from `from` to `object`.
 void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names);
 /// The JSON object {name: value, ...} from alternating names and values.
 template <class... Members>

@@ -34,7 +34,7 @@ struct NpyView {
 
 /// Reads the header of a .npy file. Throws Error (input), with the remedy, if the bytes are no .npy file, if the header is not
 /// the dictionary with three members that NumPy writes, if the array does not have one or two dimensions, or if its shape does
-/// not match the number of bytes. Allocates no memory that depends on the header.
+/// not match the number of bytes. The amount of memory allocated does not depend on the header.
 NpyView view_npy(std::string_view bytes, const std::string& where);
 
 /// An array in memory, in row-major order.

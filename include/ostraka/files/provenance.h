@@ -12,12 +12,12 @@ namespace ostraka {
 /// Version of the toolkit, "major.minor.patch".
 std::string version();
 
-/// How a result was made; written into every result file. Provenance contains nothing that may differ between two runs of the
-/// same work: no time, host name, number of threads or absolute path.
+/// Command, options and inputs of a result; written into every result file. Provenance contains nothing that may differ between
+/// two runs of the same work: no time, host name, number of threads or absolute path.
 struct Provenance {
     std::string command;  ///< command that wrote the result, e.g. "annotation transfer"
-    std::vector<std::pair<std::string, std::string>>
-        options;  ///< options that affect the result, as text; repeated: "a; b" in JSON
+    /// Options that affect the result, as text; repeated: "a; b" in JSON.
+    std::vector<std::pair<std::string, std::string>> options;
     /// For each input: file name without folder, SHA-256 of the file's bytes.
     std::vector<std::pair<std::string, std::string>> inputs;
 

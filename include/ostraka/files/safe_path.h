@@ -35,9 +35,9 @@ bool is_inside_any(const Path& path, const std::vector<Path>& folders);
 /// Throws Error (input) if writing to `file` would leave `folder` through a link, or would write to a device or a pipe.
 void require_writable_inside(const Path& file, const Path& folder);
 
-/// During the lifetime of this object, this thread and the parallel loops that it starts may create files and folders inside
-/// `folder` only (after resolving links); creating any other file throws Error (input). A WriteScope protects work on folders of
-/// unknown origin, which may contain links.
+/// Restricts writing to one folder. During the lifetime of this object, this thread and the parallel loops that it starts may
+/// create files and folders only inside `folder` (after resolving links); creating any other file throws Error (input). Use a
+/// WriteScope when writing to folders of unknown origin, which may contain links.
 class WriteScope {
 public:
     explicit WriteScope(Path folder);
@@ -45,7 +45,7 @@ public:
     WriteScope(const WriteScope&) = delete;
     WriteScope& operator=(const WriteScope&) = delete;
 
-    /// The scope of this thread; null if there is none.
+    /// The WriteScope of this thread; null if there is none.
     static const WriteScope* current();
     /// Sets the scope of this thread (null: none) during the lifetime of this object.
     class Within {

@@ -1,4 +1,4 @@
-// Output transactions across threads, and inputs among earlier outputs.
+// Output transactions that span several threads, and protection of inputs that earlier runs wrote as outputs.
 #pragma once
 
 #include "ostraka/files/file.h"

@@ -19,7 +19,8 @@ struct PatchSamples {
 /// For each patch: the samples (PatchSamples) in a neighbourhood of the patch.
 struct Neighbourhoods {
     double radius = 0;  ///< radius of the neighbourhoods
-    /// For each patch: position in `samples` of its first entry; one more entry for the end.
+    /// Entries first[p] to first[p + 1] - 1 of `samples` belong to patch p; the vector has one entry more than there are
+    /// patches.
     std::vector<std::size_t> first;
     std::vector<Index> samples;  ///< indices of sample points, patch by patch
 };
@@ -31,10 +32,10 @@ struct FacetEvidence {
     Walls walls;
     PatchSamples samples;
     std::array<Neighbourhoods, 4> around;  ///< neighbourhoods of each patch at four radii, smallest radius first
-    /// For each patch: index of its part (convex_parts), once with parts bounded by sharp convex edges, once also by less sharp
-    /// edges.
+    /// For each patch: index of its part (convex_parts) in two segmentations: parts bounded by sharp convex edges, and smaller
+    /// parts bounded also by less sharp convex edges.
     std::array<std::vector<std::size_t>, 2> parts;
-    std::vector<double> convexity;  ///< for each patch: how sharply the surface turns outward around the patch
+    std::vector<double> convexity;  ///< for each patch: measure of how convex the surface is around the patch
     FeatureTable features;          ///< features of the patches, one row per patch
 };
 
@@ -43,8 +44,8 @@ FacetEvidence facet_evidence(const Mesh& mesh);
 /// Names of the features of `facet_evidence`, in the order of the columns.
 const std::vector<std::string>& facet_feature_names();
 
-/// The features with context features appended: the log odds of patches aggregated over the neighbourhood and the part of each
-/// patch and over the whole fragment.
+/// Appends context features to the features of each patch. The context features are aggregates of `log_odds` (of fracture
+/// surface, one per patch) over the patch's neighbourhoods, over its part, and over the whole fragment.
 FeatureTable with_context(const FacetEvidence& evidence, const std::vector<double>& log_odds);
 /// Names of the context features, in the order of the columns.
 const std::vector<std::string>& facet_context_names();
@@ -56,7 +57,7 @@ struct FacetModel {
     /// Second stage: uses the features of the patch and the context features computed from the log odds of `alone` (Tu and Bai
     /// 2010).
     BoostedTrees trees;
-    double shift = 0, slope = 1;  ///< calibrated log odds: shift + slope * log odds of `trees`
+    double shift = 0, slope = 1;  ///< the calibrated log odds are shift + slope * (log odds predicted by `trees`)
 
     /// Calibrated log odds of fracture surface, per patch.
     [[nodiscard]] std::vector<double> log_odds(const FacetEvidence& evidence) const;

@@ -7,15 +7,15 @@
 
 namespace ostraka {
 
-/// Patches of a surface and their adjacency. A patch is a face; in a mesh with many faces, a group of close faces with similar
-/// normals.
+/// Patches of a surface and their adjacency. In a mesh with few faces each patch is one face; in a mesh with many faces a patch
+/// is a group of neighbouring faces with similar normals.
 struct FacetGraph {
     std::vector<Index> patch_of_face;  ///< for each face: index of its patch
     std::vector<Point> places;         ///< centroid of each patch
     /// For each patch: unit normal, averaged with neighbours of similar normal; null vector if the area is 0.
     std::vector<Vector> normals;
     std::vector<double> areas;  ///< area of each patch
-    /// For each patch: 1 minus the mean cosine between the normals of its faces and its own normal.
+    /// For each patch: 1 minus the mean cosine of the angles between the normals of its faces and the normal of the patch.
     std::vector<double> ruffle;
     /// A pair of adjacent patches.
     struct Contact {
@@ -26,7 +26,7 @@ struct FacetGraph {
     };
     std::vector<Contact> contacts;  ///< pairs of adjacent patches, sorted by a, then by b
     double area = 0;                ///< area of the surface
-    double size = 0;                ///< square root of the area: the unit of length
+    double size = 0;                ///< square root of `area`: unit in which lengths of the fragment are measured
     double edge = 0;                ///< mean edge length of the mesh
     double border = 0;              ///< total length of the borders
     bool closed = true;             ///< true: the mesh has no border except pinholes
@@ -37,22 +37,23 @@ struct FacetGraph {
 /// Divides the surface of a mesh into about `max_patches` patches at most. Throws Error (input) for a mesh without area.
 FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches = 24000);
 
-/// Wall thickness of a fragment: results of rays cast from each patch into the solid.
+/// Wall thickness of a fragment, measured with rays cast from each patch into the solid.
 struct Walls {
     /// For each patch: median distance at which rays leave the solid; infinite if fewer than half of the rays do.
     std::vector<double> depth;
-    /// For each patch: mean of -cos of the angle between the normals at both ends of the rays, -1 to 1.
+    /// For each patch: mean over its rays of -cos(angle between the surface normals at both ends of the ray), from -1 to 1; 1
+    /// for parallel sides.
     std::vector<double> opposite;
     std::vector<Index> behind;  ///< for each patch: the patch hit by its middle ray; no_index: none
-    double typical = 0;         ///< median depth over the area that has an opposite side (a wall); 0: no wall
-    double share = 0;           ///< fraction of the area that lies over a wall of about the typical depth
+    double typical = 0;         ///< median `depth` over the area that has an opposite side (a wall); 0: no wall
+    double share = 0;           ///< fraction of the area where `depth` is close to `typical`
 };
 /// Casts rays from each patch into the solid.
 Walls measure_walls(const Mesh& mesh, const FacetGraph& graph);
 
-/// Segments the patches into parts whose mutual boundary turns outward by more than `sharpest` (radians) on average. Small parts
-/// are merged first, over boundaries of the smallest turn, then the pairs of parts with the smallest mean turn. Returns for each
-/// patch the index of its part.
+/// Segments the patches into parts whose mutual boundary turns outward by more than `sharpest` (radians) on average. Small
+/// parts are merged first, each with the neighbour across the boundary of smallest mean dihedral angle; then the pairs of parts
+/// with the smallest mean dihedral angle are merged. Returns for each patch the index of its part.
 std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest);
 
 /// For each patch, the label of the labelling that minimises the sum of `costs[label][patch]` plus `boundary[contact]` over

@@ -1,4 +1,4 @@
-// Classifies the surface of a fragment by its shape: outer, inner or fracture surface.
+// Classifies the faces of a fragment as outer, inner or fracture surface, from the shape of the mesh alone.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -12,10 +12,10 @@ namespace ostraka {
 
 /// Options of `find_facets`.
 struct FacetOptions {
-    double edge = 40;  ///< dihedral angle in degrees at which an edge may bound a fracture
+    double edge = 40;  ///< edges with a dihedral angle above this value, in degrees, may bound a fracture surface
     /// Max wall thickness of a shell, as a fraction of the square root of the fragment's area.
     double wall = 0.25;
-    /// Weight of the agreement of neighbouring faces, relative to the features of the face itself.
+    /// Weight of the smoothness term (neighbouring faces get equal classes) relative to the data term (features of each face).
     double coherence = 0.3;
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
@@ -29,32 +29,33 @@ struct FacetSegment {
     double confidence = 0;     ///< how well the features of the faces support the class: mean over the area, 0 to 1
 };
 
-/// Facet class of each face of a fragment, and the answer whether the object is broken.
+/// Facet class of each face of a mesh, and the decision whether the mesh is a fragment of a broken object.
 struct Facets {
-    /// Whether the object is broken. broken: a fracture was found; whole: there is no evidence of a fracture; unclear: a fracture
-    /// that was found may not be one, or a fracture may have been missed.
+    /// Decision whether the object is broken. broken: a fracture surface was found; whole: there is no evidence of a fracture
+    /// surface; unclear: the evidence for or against a fracture surface is weak.
     enum class Answer { broken, whole, unclear };
 
     std::vector<Facet> of_face;  ///< class of each face
-    /// For each face: probability of being fracture surface, from the features of its own patch.
+    /// For each face: probability that it is fracture surface, from the features of its patch alone.
     std::vector<double> probability;
     std::vector<FacetSegment> segments;  ///< connected components of equal class, largest area first
     Answer answer = Answer::unclear;
-    bool shell = false;                            ///< true: the fragment is a wall with two sides
-    double thickness = 0;                          ///< thickness of the wall, if `shell`
-    double confidence = 0;                         ///< confidence of the classes, mean over the area
-    std::vector<std::string> notes;                ///< messages about the classification
+    bool shell = false;              ///< true: the fragment is a shell, that is a wall with an outer and an inner side
+    double thickness = 0;            ///< thickness of the wall, if `shell`
+    double confidence = 0;           ///< mean confidence of the classes over the area, 0 to 1
+    std::vector<std::string> notes;  ///< messages about the classification, for the user
     [[nodiscard]] double area(Facet facet) const;  ///< total area of a class
 };
 
 std::string to_string(Facets::Answer answer);
 
 /// Classifies the faces of a fragment. The faces are grouped into at most about 24 000 patches. A model (data/facets.model.json)
-/// trained on broken objects, synthetic and scanned, gives each patch its probability of being fracture. The labels minimise the
-/// data cost of the patches plus the length of their boundaries, which is cheap along sharp convex edges (alpha expansion;
-/// Boykov, Veksler and Zabih 2001). If most of the intact surface lies over a thin wall whose other side is intact too, the
-/// intact surface is split into an outer and an inner side: the outer side faces away from the axis of rotation (axis/axis.h) or,
-/// without an axis, from the point closest to the lines along all normals. Throws Error (input) for a mesh without area.
+/// trained on broken objects, synthetic and scanned, gives each patch its probability of being fracture. The classes minimise
+/// the sum of the data costs of the patches and of the lengths of the boundaries between classes; the cost per length is low
+/// along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). If most of the intact surface lies over a thin
+/// wall whose other side is intact too, the intact surface is split into an outer and an inner side: the outer side faces away
+/// from the axis of rotation (axis/axis.h) or, without an axis, from the point closest to the lines along all normals. Throws
+/// Error (input) for a mesh without area.
 Facets find_facets(const Mesh& mesh, const FacetOptions& options = {});
 
 /// Classifies the faces of a fragment from its patch features and given log odds of fracture surface for each patch.

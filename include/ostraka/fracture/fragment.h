@@ -1,4 +1,4 @@
-// A scanned fragment of an object.
+// Fragments of broken objects.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -21,8 +21,7 @@ struct Fragment : AnnotatedMesh {
     std::vector<Facet> facets;  ///< class of each face; empty: all faces are outer surface
 };
 
-/// The facet class that the tag of a region names: "outer", "inner" or "fracture" (case-insensitive); none for any other
-/// annotation.
+/// The facet class of a region with the tag "outer", "inner" or "fracture" (case-insensitive); none for any other annotation.
 std::optional<Facet> named_facet(const Annotation& annotation);
 
 /// The facet class of each face, from annotations that name a facet (`named_facet`); all other faces get the class `other`.

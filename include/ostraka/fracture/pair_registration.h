@@ -17,21 +17,21 @@ namespace ostraka {
 struct PairOptions {
     int frames = 160;    ///< number of frames along the rim of each fracture
     int samples = 2000;  ///< number of points on each fracture, and on the intact surface of each fragment
-    int starts = 200;    ///< number of initial poses with the highest scores that are refined coarsely
-    int refined = 32;    ///< number of poses that are refined to convergence
+    int starts = 200;    ///< number of initial poses (those with the highest scores) that are refined coarsely
+    int refined = 32;    ///< number of poses (the best after coarse refinement) that are refined to convergence
     /// Initial max distance of facing fracture points, as a fraction of the smaller fragment's size.
     double search_radius = 0.05;
     /// Final max distance of facing fracture points, as a fraction of join_scale.
     double last_search_radius = 0.025;
-    double edges = 1;             ///< weight of the rims relative to the fracture surfaces
-    double min_confidence = 0.5;  ///< min confidence of an answer; with a lower confidence the pair is undecided
+    double edges = 1;             ///< weight of matches between rims relative to matches between fracture surfaces
+    double min_confidence = 0.5;  ///< min confidence of an answer; below it the pair is reported as undecided
     int candidates = 5;           ///< max number of candidates reported
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// Data for matching a fragment's fracture, precomputed once: samples of the fracture and of the intact surface, frames along the
-/// rim, search trees. The object holds a copy of the mesh; its other data have a fixed size.
+/// rim, search trees. The object stores a copy of the mesh; the size of all other data does not depend on the mesh.
 class PreparedFracture {
 public:
     /// Prepares a fragment whose facets are known (facets.h, or annotations). Throws Error (input) if the fragment has no area,
@@ -61,23 +61,24 @@ private:
 
 /// Length scale for comparing two fracture surfaces: the size of the smaller fragment, or six times the width of the narrower
 /// fracture if that is less, so that the contact tolerance stays below the thickness of a thin wall. The scale is at least 240
-/// times the noise of the two intact surfaces, so that noisy or coarse fractures can still touch.
+/// times the noise of the two intact surfaces, so that noisy or coarse fracture surfaces can still be in contact.
 double join_scale(const PreparedFracture& a, const PreparedFracture& b);
 
 /// A candidate pose of the second fragment relative to the first.
 struct PairCandidate {
     Motion pose;       ///< rigid motion that maps the second fragment onto the first
-    double score = 0;  ///< score of the pose: contact + rim - penetration
+    double score = 0;  ///< score of the pose: contact + rim - penetration (dimensionless)
     /// Fraction of the smaller fracture's area that faces the other fracture within the last search radius.
     double contact = 0;
     /// Fraction of the shorter rim that lies within the last search radius of the other rim, where the other fragment continues
     /// the intact side.
     double rim = 0;
-    double residual = 0;  ///< root mean square distance of the area in contact, in the unit of the fragments
-    /// Area of each fragment that is deeper inside the other fragment than the last search radius, as a fraction of the smaller
-    /// fracture's area.
+    /// Root mean square distance between the fracture surfaces where they are in contact, in the unit of the fragments.
+    double residual = 0;
+    /// Area of both fragments that lies inside the other fragment by more than the last search radius, as a fraction of the
+    /// smaller fracture's area.
     double penetration = 0;
-    /// Depth of the point of one fragment that lies deepest inside the other fragment, in the unit of the fragments.
+    /// Largest depth of a point of one fragment inside the other fragment, in the unit of the fragments.
     double depth = 0;
     JoinEvidence evidence;  ///< features of the join
     double log_odds = 0;    ///< log odds of a true join from the evidence alone
@@ -85,7 +86,7 @@ struct PairCandidate {
 
 /// Result of the registration of two fragments.
 struct PairRegistration {
-    std::vector<PairCandidate> candidates;  ///< candidate poses, most likely first; all differ clearly
+    std::vector<PairCandidate> candidates;  ///< candidate poses, most likely first; near-duplicates are removed
     double confidence = 0;                  ///< 0 to 1: calibrated probability that the first candidate is correct
     std::string undecided;                  ///< reason why the pair cannot be decided; empty: the first candidate is the answer
     double fracture_a = 0, fracture_b = 0;  ///< areas of the fractures
@@ -95,14 +96,14 @@ struct PairRegistration {
     [[nodiscard]] bool decided() const { return undecided.empty(); }
 };
 
-/// Registers two fragments along their fractures. Frames are placed along the rims: normals of the outer (or inner) surface and
-/// of the fracture, and the rim direction. Each frame of the second fragment is aligned with each frame of the first on the same
-/// side, so that the fractures face each other; this gives the initial poses. An initial pose is scored by the fracture area that
-/// comes into contact less the area that would lie inside the other fragment. The poses with the highest scores are refined by
-/// ICP (point to plane) between fractures that face each other and between rims whose sides continue each other, while the search
-/// radius falls to its last value. The evidence of each refined pose (join_evidence.h) gives its probability. The result is
-/// deterministic and does not depend on the poses of the fragments or on their order: swapping the fragments gives the inverse
-/// poses.
+/// Registers two fragments along their fractures. Frames are placed along the rims. A frame consists of the normal of the outer
+/// (or inner) surface, the normal of the fracture surface and the direction of the rim. Each frame of the second fragment is
+/// aligned with each frame of the first on the same side, so that the fractures face each other; this gives the initial poses.
+/// The score of an initial pose is the fracture area in contact minus the area that lies inside the other fragment. The poses
+/// with the highest scores are refined by ICP (point to plane) between fractures that face each other and between rims whose
+/// sides continue each other, while the search radius decreases to its last value. The features of each refined pose
+/// (join_evidence.h) determine its probability. The result is deterministic and does not depend on the poses of the fragments
+/// or on their order: swapping the fragments gives the inverse poses.
 PairRegistration register_fractures(const PreparedFracture& a, const PreparedFracture& b, const PairOptions& options = {});
 /// Prepares two fragments and registers them along their fractures.
 PairRegistration register_fractures(const Fragment& a, const Fragment& b, const PairOptions& options = {});
@@ -112,12 +113,13 @@ PairRegistration register_fractures(const Fragment& a, const Fragment& b, const 
 double initial_pair_score(const PreparedFracture& a, const PreparedFracture& b, const PairOptions& options = {},
                           std::size_t places = 64);
 
-/// Features of the join of two fragments when `pose` maps b onto a; `tolerance` is a length. At most `samples` points of each
-/// fracture, and of the surface that is tested for penetration, are used.
+/// Features of the join of two fragments when `pose` maps b onto a; `tolerance` is a length. `samples`: max number of sample
+/// points of each fracture, and of the surface that is tested for penetration.
 JoinEvidence measure_join(const PreparedFracture& a, const PreparedFracture& b, const Motion& pose, double tolerance,
                           std::size_t samples = std::numeric_limits<std::size_t>::max());
 
-/// A point of fragment b's fracture or rim matched to a plane of fragment a's, each in the frame of its own fragment.
+/// A point on the fracture or rim of fragment b, matched to a tangent plane of the fracture or rim of fragment a. Each is given
+/// in the coordinates of its own fragment.
 struct ContactPoint {
     Eigen::Vector3d on_a, normal, on_b;  ///< point on a; unit normal of the plane on a; point on b
     double weight = 1;                   ///< weight of the match; falls from 1 to 0 with the distance

@@ -22,16 +22,17 @@ public:
     const MeshFile& operator*() const { return get(0); }
     const MeshFile* operator->() const { return &get(0); }
     [[nodiscard]] const MeshFile& get(std::size_t i) const;  ///< the i-th mesh, read at the first call
-    /// The i-th mesh by value, without a copy if nothing else holds the mesh. Invalidates references obtained from `get`.
+    /// The i-th mesh by value; it is not copied if there is no other reference to the mesh. Invalidates references obtained
+    /// from `get`.
     [[nodiscard]] MeshFile take(std::size_t i = 0) const;
     /// The i-th mesh as polygons of any topology, for operations that do not need a manifold.
     [[nodiscard]] const PolygonSoup& polygons(std::size_t i = 0) const;
-    /// The i-th mesh as polygons by value, without a copy if nothing else holds the polygons. Invalidates references obtained
-    /// from `polygons`.
+    /// The i-th mesh as polygons by value; they are not copied if there is no other reference to them. Invalidates references
+    /// obtained from `polygons`.
     [[nodiscard]] PolygonSoup take_polygons(std::size_t i = 0) const;
 };
 
-/// Checksum of annotations in memory: the checksum that their annotation file would have if it were written without provenance.
+/// Checksum of annotations in memory: SHA-256 of the annotation file that would be written for them without provenance.
 std::string checksum_of(AnnotatedMeshView object);
 
 /// An annotation input; adds the option --force-mesh.
@@ -86,7 +87,7 @@ public:
 class FileInput : public Slot {
 public:
     /// The i-th object in memory if its type is T; otherwise the result of `read` for the i-th file, cached for later calls.
-    /// `key`: whatever else the result depends on, such as options_text(options) of the reader.
+    /// `key`: text of all other data on which the result depends, such as options_text(options) of the reader.
     template <class T>
     [[nodiscard]] const T& load(const std::function<T(const Path&)>& read, std::size_t i = 0, const std::string& key = {}) const {
         if (const auto object = sources.at(i).object.as<T>()) return check_checksum(i), *object;

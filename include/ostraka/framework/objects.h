@@ -1,5 +1,5 @@
-// Objects and slots: an input or output of an operation stands for a file or for an object in memory; `Operation::run` works
-// with objects only.
+// Objects and slots. A slot is an input or output of an operation; the caller gives a file or an object in memory for it.
+// `Operation::run` uses objects only.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -43,7 +43,7 @@ enum class Kind {
     table,
     report,
     text,
-    folder,       ///< several files, which the page of the operation describes
+    folder,       ///< several files; the documentation page of the operation describes them
     point_cloud,  ///< points without faces
 };
 std::string to_string(Kind kind);
@@ -68,7 +68,7 @@ public:
     [[nodiscard]] std::shared_ptr<const T> as() const {
         return type_ == typeid(T) ? std::static_pointer_cast<const T>(data_) : nullptr;
     }
-    /// True if there are data.
+    /// True if the object holds data.
     explicit operator bool() const { return data_ != nullptr; }
 
     std::string name;  ///< the file name used in reports and in files that refer to the object
@@ -122,7 +122,7 @@ public:
     bool repeated = false;                  ///< true: several files or objects may be given
     bool is_positional = true;              ///< true: given by its position on the command line, not by its name
     bool takes_words = false;               ///< true: several file names may follow the flag
-    bool may_be_new = false;                ///< true: an input that is updated and need not exist yet
+    bool may_be_new = false;                ///< true: the input is updated by an output, and its file need not exist yet
     Slot* updated = nullptr;                ///< for an output: the input slot that it updates; null: none
     bool is_named = false;                  ///< true: files are given as NAME=FILE
     bool takes_none = false;                ///< true: the word "none" stands for an absent file
@@ -135,11 +135,11 @@ public:
     Slot& many() { return repeated = true, *this; }
     Slot& words() { return takes_words = repeated = true, *this; }
     /// Declares an output as the updated version of an input. An output without its own file is written in place of the input's
-    /// file. The output is produced whenever the input is required or given. The input file need not exist yet (`exists`), and a
-    /// program may omit the input.
+    /// file. The output is written if the input is required or given. The input file need not exist yet (`exists`), and a
+    /// calling program may omit the input.
     Slot& updates(Slot& input) { return updated = &input, input.may_be_new = true, *this; }
     Slot& named() { return is_named = true, *this; }  ///< NAME=FILE
-    /// Declares that the slot may be repeated and that "none" stands for an absent entry; `has(i)` tells which entries are
+    /// Declares that the slot may be repeated and that "none" stands for an absent entry; `has(i)` is true for entries that are
     /// present.
     Slot& many_or_none() { return repeated = takes_none = true, *this; }
 

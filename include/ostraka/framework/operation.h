@@ -73,8 +73,8 @@ public:
     /// Checks options before any input is read: throws Error (usage) if options contradict each other. Ranges and file names have
     /// been checked already.
     virtual void check() const {}
-    /// Estimated memory in bytes, given the total size of the input files; used to refuse work that would exceed the memory
-    /// limit. A mesh with its search trees takes about a dozen times the size of its file.
+    /// Estimated memory use in bytes, from the total size of the input files. A call that would exceed the memory limit is
+    /// refused. A mesh with its search trees takes about a dozen times the size of its file.
     [[nodiscard]] virtual double memory_needed(double input_bytes) const { return 12 * input_bytes; }
     /// Does the work: reads inputs from the slots, writes outputs to the slots and fills the report.
     virtual void run(Context& context, Report& report) = 0;
@@ -85,7 +85,8 @@ struct OperationEntry {
     const char* name;                      ///< name of the operation, such as "annotation transfer"
     const char* help;                      ///< help text
     std::unique_ptr<Operation> (*make)();  ///< creates an instance
-    /// Raised when the operation gives different results for the same inputs, so that earlier results are computed again.
+    /// Version of the results. The version is increased when the operation gives different results for the same inputs, so that
+    /// stored results are computed again.
     int version = 1;
     /// True if the operation runs other operations or programs named in files; such operations are refused as steps of studies
     /// and sessions.
@@ -136,19 +137,20 @@ public:
     /// Records the name and checksum of an input that is read elsewhere, such as the objects of a collection read by several
     /// threads.
     void record_input(const std::string& name, const std::string& sha256);
-    /// Sets the checksum of the i-th object of a slot, which is in memory and has no checksum of its own.
+    /// Sets the checksum of the i-th object of a slot; for an object in memory without a checksum.
     void record_object(const Slot& slot, std::size_t i, const std::string& sha256);
-    /// Checksum of the i-th object of a slot, which is in memory; empty if unknown.
+    /// Checksum of the i-th object of a slot, for an object in memory; empty if unknown.
     std::string checksum_of_object(const Slot& slot, std::size_t i);
     /// Adds a note to the report of the current call.
     void note(const std::string& text);
     /// Adds notes about a file to the report of the current call.
     void notes(const std::string& file, const std::vector<std::string>& texts);
-    /// A new path for a file or folder in memory that ends in `name`.
+    /// Returns a new path, ending in `name`, for a file or folder in memory.
     Path memory(const std::string& name);
     /// Checks an output file: throws Error (usage) if the file was read as an input.
     void check_output(const Path& file) const;
-    /// Checks outputs that do not belong to a slot: throws Error (usage) if such a file is an input or output of a slot.
+    /// Checks output files that do not belong to a slot: throws Error (usage) if one of them is also an input or output of a
+    /// slot.
     void check_outputs(const std::vector<Path>& further) const;
 
 private:
@@ -189,7 +191,8 @@ public:
     void set_file(const std::string& slot, const Path& file);
     /// Sets the object of a slot; a repeatable slot gets a further object. Throws Error (usage) if the slot does not exist.
     void set_object(const std::string& slot, Object object);
-    /// Sets options and files from a JSON object of names and values; the value true for an output requests the output in memory.
+    /// Sets options and files from a JSON object of names and values. For an output, the value true requests the output in
+    /// memory.
     void set(const JsonValue& values, const std::string& where = {});
     /// Requests an output in memory; `object_name`: file name by which other outputs refer to this output.
     void want(const std::string& output, const std::string& object_name = {});
@@ -225,7 +228,7 @@ private:
     Parameters parameters_;
 };
 
-/// Calls `work`; an Error of kind input that `work` throws is rethrown with the file name in front of the error's location.
+/// Calls `work`. If `work` throws an Error of kind input, the file name is added in front of the error's location.
 template <class Work>
 auto in_file(const std::string& file, Work&& work) {
     try {

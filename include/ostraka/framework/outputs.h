@@ -19,7 +19,8 @@ namespace ostraka {
 /// An output that is a mesh.
 class MeshOutput : public Slot {
 public:
-    /// Writes the mesh with the provenance as the file's comment. Notes report data that the file format cannot represent.
+    /// Writes the mesh with the provenance as the file's comment. Notes of the report list data that the file format cannot
+    /// represent.
     void write(Mesh mesh, MeshExtras extras = {}, WriteOptions options = {}) const;
     /// Writes triangles of any topology, with the provenance as the file's comment.
     void write(TriangleSoup soup, MeshExtras extras, WriteOptions options = {}) const;
@@ -103,14 +104,14 @@ public:
 class FileOutput : public Slot {
 public:
     explicit FileOutput(std::string memory_extension = {}) : extension_(std::move(memory_extension)) {}
-    /// Path to which the file is to be written; to be called when all work is done.
+    /// Path of the file to write; call this function only when the result is complete.
     [[nodiscard]] Path path() const;
     void finish() override;
     void write(std::string_view bytes) const { write_file(path(), bytes); }
 
 private:
     friend class Call;
-    std::string extension_;  ///< extension of the in-memory file, by which writers choose the format
+    std::string extension_;  ///< extension of the in-memory file; writers choose the format by the extension
     mutable Path memory_;
 };
 

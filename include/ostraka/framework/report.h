@@ -1,4 +1,4 @@
-// The report of an operation: filled once, and written as a table, JSON, CSV or Markdown.
+// The report of an operation. The operation fills it once; it can be written as a table, JSON, CSV or Markdown.
 #pragma once
 
 #include "ostraka/core/finding.h"
@@ -26,10 +26,10 @@ enum class FieldType { boolean, integer, number, text, numbers, texts, any };
 
 /// Declares a value of a report, or a column of one of its tables.
 struct Field {
-    std::string key;                   ///< JSON key ('.' separates nested members); empty: for people only
+    std::string key;                   ///< JSON key ('.' separates nested members); empty: the field is shown to people only
     FieldType type = FieldType::text;  ///< type of the values
     std::string title = {};            ///< title for people; empty: the field is shown to programs only
-    std::string unit = {};             ///< unit of the values; "length", "length^2", ... become the unit of Report::set_unit
+    std::string unit = {};  ///< unit of the values; "length", "length^2", ... are replaced by the unit of Report::set_unit
 };
 
 /// Helpers to declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
@@ -49,7 +49,7 @@ inline Field texts(std::string key, std::string title = {}) { return {std::move(
 inline Field any(std::string key, std::string title = {}, std::string unit = {}) {
     return {std::move(key), FieldType::any, std::move(title), std::move(unit)};
 }
-/// A column for people only; an empty cell of a number column is shown as "-".
+/// A column that is shown to people only, not in the JSON; an empty cell of a number column is shown as "-".
 inline Field people(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
     return {{}, type, std::move(title), std::move(unit)};
 }
@@ -79,7 +79,7 @@ struct ReportLayout {
     }
     /// Declares a table.
     void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
-    /// Declares a table for people only; `title` is also the name by which its rows are filled.
+    /// Declares a table that is shown to people only; `title` is also the name of the table in calls of Report::row.
     void people_table(std::string title, std::initializer_list<const char*> columns) {
         tables.push_back({{}, {}, std::move(title)});
         for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
@@ -101,7 +101,7 @@ struct ReportText {
     std::string text;
 };
 
-/// A value of a report. Numbers that are not finite and empty optionals give an absent value.
+/// A value of a report. The value is absent if it is a number that is not finite or an empty optional.
 class ReportValue {
 public:
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
@@ -158,7 +158,8 @@ public:
     public:
         /// Sets the cell of a column; `shown`: text for people, if different from the default text.
         Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-        /// Sets the text for people of a cell: in a column for people only (by title) or of an absent value (by key).
+        /// Sets the text that is shown to people in a cell. The column is given by its title (columns for people only) or by
+        /// its key (if the value is absent).
         Row& shown(std::string_view title_or_key, ReportText text);
 
     private:
@@ -168,16 +169,16 @@ public:
         std::size_t table_, row_;
     };
     Row row(const std::string& table);  ///< adds an empty row to a table
-    /// Adds a complete row to a table for people only, one cell per column.
+    /// Adds a complete row, one cell per column, to a table that is shown to people only (not in the JSON).
     void row(const std::string& table, std::initializer_list<ReportText> cells);
-    /// Adds a table without rows; `shown`: true if its header is shown to people.
+    /// Adds a table that has no rows; `shown`: true if its header is shown to people.
     void empty_table(const std::string& table, bool shown = true);
 
-    /// Adds a value for people only, below the previous values.
+    /// Adds a value that is shown to people only (not in the JSON), below the previous values.
     void people(const std::string& title, const std::string& text);
     /// Adds a table for people only, which the operation also writes to files.
     void table(const TextTable& table);
-    /// Adds a line for people; values, tables and lines are shown in the order of the calls.
+    /// Adds a line of text for people; values, tables and lines are shown in the order in which they were added.
     void line(std::string text);
     /// Adds a note to the result; notes are printed on standard error and are in the JSON as result.notes.
     void note(std::string text);

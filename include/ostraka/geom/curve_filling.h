@@ -19,7 +19,8 @@ struct CurveFilling {
     /// For each face cut by curves, ascending: index, and fraction of its area inside the region.
     std::vector<std::pair<Index, double>> cut;
     double border = 0;  ///< length of the mesh border inside the region
-    /// Number of contradictions between curves: faces to the left of one curve and to the right of another, and crossings.
+    /// Number of contradictions between curves: faces that lie to the left of one curve and to the right of another, plus
+    /// crossings of curves.
     std::size_t conflicts = 0;
 
     /// Area of the region.
@@ -29,9 +30,9 @@ struct CurveFilling {
 };
 
 /// Computes the region to the left of the curves, plus the connected components that contain a face of `seeds`. Each curve is
-/// closed (its last node is its first) or ends at the border of the mesh. A face of which curves traverse only edges, not the
-/// interior, is `in` or `out`. Time: O(n) for the flags; O(k) for the k pieces of the curves, except for faces that several
-/// stretches of curves traverse, which cost O(k log k).
+/// closed (its last node is its first) or ends at the border of the mesh. If curves run along edges of a face but not through
+/// its interior, the face is `in` or `out`. Time: O(n + k) for n faces and k segments of curves, or O(n + k log k) if several
+/// stretches of curves traverse the same faces.
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds = {});
 
 /// Classifies points in cut faces as inside or outside.

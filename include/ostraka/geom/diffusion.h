@@ -1,4 +1,4 @@
-// Diffusion on a surface: smoothing whose strength is a length, independent of the triangulation.
+// Diffusion on a surface: Gaussian smoothing of a given standard deviation (a length), independent of the triangulation.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"

@@ -20,13 +20,13 @@ namespace ostraka {
 std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index>& sources,
                                        double limit = std::numeric_limits<double>::infinity());
 
-/// For each vertex, the length of the shortest edge path from the vertices in `start`, each of which comes with its initial
-/// length; infinite if no path of length up to `limit` reaches the vertex.
+/// For each vertex, the length of the shortest path along edges from a vertex in `start`. Each start vertex has an initial
+/// length, which is added to the length of the path; infinite if no path of length up to `limit` reaches the vertex.
 std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start,
                                    double limit = std::numeric_limits<double>::infinity());
 
-/// Geodesic distance between two points on the surface; infinite if the points are not connected. Only the faces that a curve no
-/// longer than the shortest edge path can meet are processed. Throws Error (usage) for a point that is not on the mesh.
+/// Geodesic distance between two points on the surface; infinite if the points are not connected. Only faces that can lie on a
+/// curve no longer than the shortest edge path are processed. Throws Error (usage) for a point that is not on the mesh.
 double geodesic_distance(const Mesh& mesh, const SurfacePoint& from, const SurfacePoint& to);
 
 /// Shortest curve on the surface between two points, straight in each face; nullopt if the points are not connected. If a

@@ -9,7 +9,8 @@ namespace ostraka {
 
 /// A line fitted to points.
 struct LineFit {
-    /// Mean of the points; unit vector of largest variance, of either sign.
+    /// A point of the line (the weighted mean of the points), and its unit direction (of largest variance; the sign is
+    /// arbitrary).
     Eigen::Vector3d point{0, 0, 0}, direction{0, 0, 1};
     double rms = 0;  ///< root mean square distance of the points from the line
 };

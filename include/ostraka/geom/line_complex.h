@@ -1,4 +1,4 @@
-// Axis of a surface of revolution from its normals.
+// Computes the axis of a surface of revolution from its normals.
 #pragma once
 
 #include "ostraka/algebra/dense.h"
@@ -44,7 +44,7 @@ public:
         return result;
     }
 
-    /// The axis of minimum error with |a| = 1, where the pitch of the line complex is dropped.
+    /// The axis of minimum error with |a| = 1; the pitch of the line complex is ignored.
     struct Axis {
         Eigen::Vector3d place, direction;  ///< point on the axis, and unit direction
         /// Weighted sum of squares of (distance between normal and axis, times the sine of the angle between them).

@@ -15,9 +15,10 @@ struct OrientedBox {
     [[nodiscard]] double volume() const { return sides[0] * sides[1] * sides[2]; }
 };
 
-/// A small bounding box of the points: the smallest rectangle (rotating calipers, Toussaint 1983) is computed perpendicular to
-/// each of a fixed set of directions (including the principal axes), and the boxes of smallest volume are refined. The volume is
-/// close to, but not always equal to, the minimum. Without points, all sides have length 0.
+/// Computes a bounding box of small volume. For each of a fixed set of directions (including the principal axes) the smallest
+/// bounding rectangle perpendicular to the direction is computed (rotating calipers, Toussaint 1983). The boxes of smallest
+/// volume are then refined. The volume is close to, but not always equal to, the minimum. Without points, all sides have length
+/// 0.
 OrientedBox oriented_box(const std::vector<std::array<double, 3>>& points);
 
 }  // namespace ostraka

@@ -21,7 +21,7 @@ public:
         right_.setZero();
     }
 
-    /// Adds a point at the distance `off` below the plane with this unit normal.
+    /// Adds a point and its plane. `off`: distance of the point below the plane, measured against the unit normal.
     void add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double off, double weight = 1) {
         const Eigen::Vector3d arm = (point - centre_) / unit_;
         Row row;
@@ -30,7 +30,7 @@ public:
         right_ += weight * off / unit_ * row;
     }
 
-    /// A motion about the centre, as parameters.
+    /// Parameters of a small motion about the centre.
     struct Step {
         Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< rotation axis times angle in radians
         Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< translation in the mesh's unit

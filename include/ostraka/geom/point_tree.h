@@ -9,8 +9,8 @@
 
 namespace ostraka {
 
-/// A k-d tree that holds a copy of the points. Queries may run in parallel; of points at equal distance, the point with the lower
-/// index comes first.
+/// A k-d tree that holds a copy of the points. Queries may run in parallel. Among points at equal distance, the point with the
+/// lower index comes first.
 class PointTree {
 public:
     explicit PointTree(const std::vector<Point>& points = {});
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] std::vector<Near> neighbours(const Point& place, std::size_t count) const;
     /// Sets `found` to the indices of all points within `search_radius` of `place`, ascending.
     void within(const Point& place, double search_radius, std::vector<Index>& found) const;
-    /// Squared distance of the point farthest from `place`; 0 if there are no points.
+    /// Squared distance from `place` to the farthest point; 0 if there are no points.
     [[nodiscard]] double farthest_squared(const Point& place) const;
 
 private:

@@ -1,4 +1,4 @@
-// Distances between curves given as segments.
+// Distances between curves that are given as lists of segments.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"

@@ -12,8 +12,9 @@ namespace ostraka {
 /// Cost of a step from a vertex to an adjacent vertex (thesis, section 2.4.1).
 enum class PathMetric {
     euclidean,  ///< length of the edge
-    segment,    ///< distance of the adjacent vertex from the guide (by default the straight segment between the ends of the path)
-    combined    ///< sum of `euclidean` and `segment`
+    /// Distance of the adjacent vertex from Query::guide (by default the straight segment between the ends of the path).
+    segment,
+    combined  ///< sum of `euclidean` and `segment`
 };
 /// The metric of this name; throws Error (usage) for an unknown name.
 PathMetric path_metric(const std::string& name);
@@ -26,7 +27,8 @@ public:
 
     struct Query {
         PathMetric metric = PathMetric::euclidean;  ///< cost of a step
-        /// Poly-line from which the metric `segment` measures; empty: the straight segment between the ends of the path.
+        /// Poly-line from which the metric `segment` measures distances; empty: the straight segment between the ends of the
+        /// path.
         std::vector<Point> guide;
         /// True for vertices that the path must not enter (never called for the ends); may be empty.
         std::function<bool(Vertex)> blocked;

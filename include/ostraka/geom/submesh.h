@@ -14,13 +14,13 @@ struct SubMesh {
     std::vector<Index> faces;     ///< for each face of `mesh`: its index in the whole mesh; ascending
 };
 
-/// The faces marked in `keep` (one flag per face) as a separate mesh. With `largest_only`: only the edge-connected piece of the
-/// largest area (of pieces of equal area, the piece with the smallest face index). A vertex at which the kept faces form several
-/// fans is duplicated for each fan. The mesh is empty if no face is marked. Throws Error (usage) unless there is one flag per
-/// face.
+/// The faces marked in `keep` (one flag per face) as a separate mesh. With `largest_only`, only the edge-connected component of
+/// the largest area is kept (among components of equal area, the one with the smallest face index). A vertex at which the kept
+/// faces form several fans is duplicated for each fan. The mesh is empty if no face is marked. Throws Error (usage) unless
+/// there is one flag per face.
 SubMesh keep_faces(const Mesh& mesh, const std::vector<bool>& keep, bool largest_only = false);
 
-/// For each hole: the border halfedge with the smallest index.
+/// One halfedge per hole of the mesh: the border halfedge with the smallest index.
 std::vector<Halfedge> holes_of(const Mesh& mesh);
 /// Closes the hole at a border halfedge by triangles between the vertices of the hole, with minimum dihedral angles and area
 /// (Liepa 2003). Returns the number of triangles. If there is no such triangulation, the mesh is unchanged and the result is 0.

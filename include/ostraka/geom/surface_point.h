@@ -17,9 +17,10 @@ namespace ostraka {
 struct SurfacePoint {
     enum class Kind : std::uint8_t { vertex, edge, face };
     Kind kind = Kind::vertex;
-    /// Index of the vertex; indices of the two ends of the edge, in either order; index of the face.
+    /// By kind: the index of the vertex; the vertex indices of the two ends of the edge, in either order; the index of the
+    /// face. Unused entries are no_index.
     std::array<Index, 2> element{no_index, no_index};
-    /// Weights of the vertex, of both ends of the edge, or of corners(mesh, face), with sum 1.
+    /// Barycentric weights of the vertex, of both ends of the edge, or of corners(mesh, face). Their sum is 1.
     std::array<double, 3> weights{1, 0, 0};
 
     [[nodiscard]] bool is_vertex() const { return kind == Kind::vertex; }
@@ -76,7 +77,7 @@ double fraction_along(const Mesh& mesh, Edge edge, const SurfacePoint& p);
 /// The one, two or three vertices of the point's element, with weights. The vertices of an edge are the source and the target of
 /// halfedge(edge, 0), so that interpolated values do not depend on the face.
 std::vector<std::pair<Vertex, double>> weighted_vertices(const Mesh& mesh, const SurfacePoint& p);
-/// The value at a point of a function that is linear in each face; `value(vertex)` gives its values at the vertices.
+/// Linear interpolation of vertex values at a point; `value(vertex)` returns the value at a vertex.
 template <class Value>
 auto interpolate(const Mesh& mesh, const SurfacePoint& p, const Value& value) {
     const auto vertices = weighted_vertices(mesh, p);

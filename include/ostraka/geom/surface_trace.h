@@ -1,4 +1,4 @@
-// Straight lines traced over a mesh from face to face.
+// Curves on a mesh that are straight in each face, and tracing of plane sections from face to face.
 #pragma once
 
 #include "ostraka/geom/surface_point.h"

@@ -1,4 +1,4 @@
-// How the surface of a mesh looks: materials with images, and the colour of the surface at texture coordinates.
+// Appearance of a mesh: materials with images, and the colour of a material at texture coordinates.
 #pragma once
 
 #include "ostraka/image/image.h"
@@ -10,11 +10,12 @@
 
 namespace ostraka {
 
-/// What an image shows outside its square: the image repeated, its border pixels, or the image mirrored at each border.
+/// Colour at texture coordinates outside 0 to 1: the image is repeated (repeat), its border pixels are extended (clamp), or the
+/// image is mirrored at each border (mirror).
 enum class TextureWrap { repeat, clamp, mirror };
 
-/// Texture coordinates: u from left to right, v from the bottom to the top of the image (as in OBJ and PLY; glTF has v from the
-/// top), both 0 to 1 over the image.
+/// Texture coordinates: u increases from left to right, v from the bottom to the top of the image (as in OBJ and PLY; in glTF v
+/// increases downwards). Both are 0 to 1 over the image.
 using TexturePoint = std::array<float, 2>;
 
 /// A material of a surface. The colour of a point is base_colour times the image's colour there, in linear light.
@@ -27,17 +28,17 @@ struct Material {
     enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;  ///< how the opacity is used (glTF 2.0, section 3.9.4)
     float alpha_cutoff = 0.5F;                                       ///< mask: opacity below which nothing is drawn
     bool double_sided = true;                                        ///< true: the back of a face is drawn too
-    /// What the file says of the material beyond the members above, kept for files of the same kind: a JSON object of a glTF
-    /// material, whose texture indices are indices of Appearance::images; empty: nothing.
+    /// Further properties of the material in a glTF file, which are kept and written to glTF files again: a JSON object, whose
+    /// texture indices are indices of Appearance::images. Empty: no further properties.
     std::string gltf_rest;
-    /// Likewise the lines of an MTL material, which name images by their file names.
+    /// Further properties of the material in an MTL file, as lines; they refer to images by file names.
     std::vector<std::string> mtl_rest;
 };
 
 /// The materials of a mesh and their images.
 struct Appearance {
     std::vector<Material> materials;
-    std::vector<SharedImage> images;  ///< null: an image that is missing or unreadable; a note says so
+    std::vector<SharedImage> images;  ///< null: the image is missing or unreadable, and a note reports it
     [[nodiscard]] bool empty() const { return materials.empty(); }  ///< true if there is no material
 };
 
@@ -46,19 +47,20 @@ float linear_from_srgb(std::uint8_t channel);
 /// Linear light, clamped to 0 to 1, as the nearest sRGB channel.
 std::uint8_t srgb_from_linear(float light);
 
-/// Reads the colour of a material at texture coordinates from decoded images. Images are decoded and reduced (a pyramid of images
-/// of half the size, means in linear light of each channel, as graphics processors make them) once, at construction; safe to use
-/// from several threads.
+/// Reads the colour of a material at texture coordinates from decoded images. At construction the images are decoded, and a
+/// pyramid of reduced images is built (mipmaps: each level has half the size and holds the means of each channel in linear
+/// light). May be used by several threads.
 class TextureSampler {
 public:
     /// Decodes the images of materials. `where`: file for messages. Throws Error (input) as `decode` does, and Error (failure) if
-    /// the images do not fit into memory: 6.7 bytes for each pixel.
+    /// the images do not fit into memory: 6.7 bytes per pixel are needed.
     TextureSampler(const Appearance& appearance, const std::string& where);
 
-    /// Linear red, green, blue and opacity of a material at `at`, base colour included. `footprint`: width of the area whose mean
-    /// colour is asked for, in texture coordinates (up to a pixel of the image: bilinear in the image, or its nearest pixel if
-    /// the material says so; else trilinear in the pyramid). Without a readable image: the base colour. `material` no_index:
-    /// white.
+    /// Linear red, green, blue and opacity of a material at the texture coordinates `at`, multiplied by the base colour.
+    /// `footprint`: width, in texture coordinates, of the area over which the colour is averaged. If the footprint is at most
+    /// one pixel, the image is interpolated bilinearly (or its nearest pixel is used, if Material::nearest is set); otherwise
+    /// trilinearly in the pyramid. The base colour is returned if there is no readable image, and white if `material` is
+    /// no_index.
     [[nodiscard]] std::array<float, 4> colour(Index material, TexturePoint at, float footprint = 0) const;
     /// Size of the material's image in pixels; {0, 0} without an image.
     [[nodiscard]] std::array<int, 2> size(Index material) const;
@@ -72,7 +74,7 @@ private:
     };
     struct Pyramid {
         Pixels full;                ///< no pixels: no image
-        std::vector<Level> levels;  ///< the smaller ones, to 1 x 1 pixel
+        std::vector<Level> levels;  ///< the reduced images, down to 1 x 1 pixel
     };
     [[nodiscard]] const Pyramid* pyramid_of(Index material) const;  ///< null without an image
 

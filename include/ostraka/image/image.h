@@ -20,11 +20,11 @@ std::string media_type(ImageFormat format);
 /// File extension of a format with its dot, such as ".png".
 std::string extension_of(ImageFormat format);
 
-/// An image file in memory, as it came: the bytes are decoded only where pixels are needed, and written back unchanged.
+/// An image file in memory. Its bytes are decoded only if pixels are needed, and are written to other files unchanged.
 struct Image {
     std::string name;                       ///< file name without folder, or name in the file that contains it; may be empty
     std::string bytes;                      ///< content of the image file
-    ImageFormat format = ImageFormat::png;  ///< found in the content, not in the name
+    ImageFormat format = ImageFormat::png;  ///< format, determined from the content and not from the file name
     int width = 0, height = 0;              ///< pixels
 };
 using SharedImage = std::shared_ptr<const Image>;
@@ -33,9 +33,9 @@ using SharedImage = std::shared_ptr<const Image>;
 inline constexpr int max_image_side = 32768;
 inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 28;
 
-/// An image from the bytes of an image file; reads only the header. `where`: file for messages. Throws Error (input) for bytes
-/// that are no JPEG, PNG, WebP or GIF file (names KTX2, TIFF, BMP, TGA, DDS and Basis if the bytes show one), for a damaged
-/// header and for an image above the limits.
+/// Makes an Image from the bytes of an image file; only the header is parsed. `where`: file for messages. Throws Error (input)
+/// if the bytes are not a JPEG, PNG, WebP or GIF file (the message names the format if it is KTX2, TIFF, BMP, TGA, DDS or
+/// Basis), if the header is damaged, or if the image exceeds the limits above.
 Image parse_image(std::string bytes, const std::string& name, const std::string& where);
 /// Reads an image file. Throws Error (input) as parse_image does.
 Image read_image(const Path& file);
@@ -51,21 +51,22 @@ struct Pixels {
     }
 };
 
-/// Decodes an image: greyscale, palettes, 16 bits (rounded to 8), interlaced PNG, progressive and CMYK JPEG (Adobe's inverted
-/// CMYK included), the first picture of a GIF. Colour profiles and orientation tags are not applied, as the viewers of the field
-/// do for textures. Bytes that are cut off give an Error (input) that names `where`.
+/// Decodes an image. Supported are greyscale images, palettes, 16 bits per channel (rounded to 8), interlaced PNG, progressive
+/// and CMYK JPEG (also Adobe's inverted CMYK), and the first picture of a GIF. Colour profiles and orientation tags are
+/// ignored, as mesh viewers ignore them in textures. Throws Error (input), naming `where`, if the bytes are truncated.
 Pixels decode(const Image& image, const std::string& where);
 
 /// Encodes pixels as an image file in memory. `quality` (1 to 100) is for JPEG and WebP (100: lossless WebP); JPEG drops alpha.
-/// Throws Error (usage) for GIF and for pixels whose list does not fit width and height.
+/// Throws Error (usage) for GIF, and if the number of pixels is not width times height.
 Image encode(const Pixels& pixels, ImageFormat format, const std::string& name, int quality = 90);
 
 /// Reduces an image to `width` x `height` pixels by area averages in linear light, colours weighted by alpha. Throws Error
 /// (usage) unless 1 <= width <= pixels.width, likewise for the height.
 Pixels reduced(const Pixels& pixels, int width, int height);
 
-/// An image whose longer side is at most `max_side` pixels and whose file has at most `max_bytes` bytes: the image itself if it
-/// fits, else reduced and encoded again (JPEG; PNG if a pixel is translucent) with falling quality (90 to 60), then size.
+/// Returns an image whose longer side is at most `max_side` pixels and whose file has at most `max_bytes` bytes. An image
+/// within these limits is returned unchanged. Otherwise the image is reduced and encoded again (as JPEG, or as PNG if a pixel
+/// is translucent), first with decreasing quality (90 to 60), then with decreasing size.
 Image within_budget(const Image& image, int max_side, std::size_t max_bytes, const std::string& where);
 
 }  // namespace ostraka

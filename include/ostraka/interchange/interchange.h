@@ -30,23 +30,23 @@ struct ExportedAnnotations {
     std::size_t annotations = 0;     ///< number of annotations in the file
 };
 
-/// Exports a annotations of annotations in the format. The same object, mesh file name and provenance give the same bytes. Throws
-/// Error (usage) for an unknown format, Error (input) if the annotations do not fit the mesh.
+/// Exports the annotations of a mesh in the given format. The same object, mesh file name and provenance give the same bytes.
+/// Throws Error (usage) for an unknown format, Error (input) if an annotation refers to elements that the mesh does not have.
 ExportedAnnotations export_annotations(AnnotatedMeshView object, const std::string& format, const std::string& mesh_file,
                                        const Provenance& provenance, const ExportOptions& options = {});
 
 /// Options of `import_annotations`.
 struct ImportOptions {
     LandmarkFileOptions landmarks;  ///< options for the landmark formats
-    PlaceOptions place;             ///< how points are placed on the mesh
+    PlaceOptions place;             ///< options for placing points on the mesh
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
-/// Reads annotations from the `bytes` of a file and places them on the mesh. `onto`: existing set to which a table of attributes
-/// is applied, or to which annotations of other formats are added; an annotation whose id is in use gets a new id, and a note
-/// reports it. Throws Error (input) with file, position and remedy, Error (usage) for an unknown format or a table of attributes
-/// without a set.
+/// Reads annotations from the `bytes` of a file and places them on the mesh. `onto`: existing set of annotations. A table of
+/// attributes sets attributes of its annotations; annotations from other formats are added to it; an annotation whose id is in
+/// use gets a new id, and a note reports it. Throws Error (input) with file, position and remedy, Error (usage) for an unknown
+/// format or a table of attributes without a set.
 PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format,
                                      const std::string& where, const AnnotationSet* onto = nullptr,
                                      const ImportOptions& options = {});

@@ -42,27 +42,27 @@ enum class LandmarkFormat {
     fcsv  ///< 3D Slicer's older table format for points
 };
 
-/// Directions of the x and y axes: left and posterior (lps), or right and anterior (ras).
+/// Anatomical coordinate system: x and y increase to the left and to posterior (lps), or to the right and to anterior (ras).
 enum class AnatomicalSpace { lps, ras };
 
 /// Options for reading and writing landmark files.
 struct LandmarkFileOptions {
     AnatomicalSpace mesh_space = AnatomicalSpace::lps;  ///< space of the mesh's coordinates
-    std::string specimen;                               ///< specimen of a TPS file: its ID, or its number from 1
+    std::string specimen;  ///< specimen to read from a TPS file: its ID, or its number in the file, from 1
 
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
 
-/// Reads landmarks into the space of the mesh: x and y are negated if the file declares LPS or RAS and the mesh uses the other
-/// space. Points not picked yet are skipped with a note. Throws Error (input) with file, position and remedy.
+/// Reads landmarks. x and y are negated if the file declares LPS or RAS and the mesh uses the other coordinate system. Points
+/// not picked yet are skipped with a note. Throws Error (input) with file, position and remedy.
 LandmarkSet read_landmarks(const Path& file, LandmarkFormat format, const LandmarkFileOptions& options = {});
 
 /// Reads landmarks from the bytes of a landmark file into the space of the mesh; `where` names the file in error messages.
 LandmarkSet landmarks_from_text(const std::string& bytes, LandmarkFormat format, const std::string& where,
                                 const LandmarkFileOptions& options = {});
 
-/// The contents of a landmark file. `mesh_file`: name of the mesh file, which is written if the format allows it. Texts are
-/// escaped: no name can become markup, a script or a formula. `notes` reports what the format cannot store.
+/// The contents of a landmark file. `mesh_file`: name of the mesh file, which is written if the format allows it. Names are
+/// escaped so that they cannot act as markup, scripts or formulas. `notes` reports what the format cannot store.
 std::string landmarks_to_text(const LandmarkSet& set, LandmarkFormat format, const std::string& mesh_file,
                               const Provenance& provenance, std::vector<std::string>& notes,
                               const LandmarkFileOptions& options = {});
@@ -88,8 +88,9 @@ struct PlacedAnnotation {
     int id = 0;              ///< id of the annotation
     std::string tag;         ///< tag of the annotation
     std::size_t points = 0;  ///< number of points of the annotation that were placed
-    double to_surface = 0;   ///< maximum distance of a point of the annotation from the surface
-    double to_vertex = 0;    ///< maximum distance of a point of the annotation from the vertex that represents it
+    double to_surface = 0;   ///< maximum distance of the annotation's imported points from the surface, in the mesh's unit
+    /// Maximum distance of the annotation's imported points from the vertices that represent them, in the mesh's unit.
+    double to_vertex = 0;
     /// "places": placed by coordinates; "indices": by the indices in the file; "whole": the whole mesh.
     std::string how = "places";
 };

@@ -13,7 +13,8 @@ namespace ostraka {
 
 /// Options of `diagnose`.
 struct DiagnoseOptions {
-    /// True: skip the most expensive check; the verdict then ignores self-intersections.
+    /// True: do not search for self-intersections, which is the most expensive check; the list of defects then does not include
+    /// them.
     bool skip_self_intersections = false;
     void list_options(OptionList& list);  ///< adds every member to a list of options
 };
@@ -27,12 +28,13 @@ struct BorderLoop {
 /// Diagnosis of one connected component: triangles connected through shared vertices.
 struct ComponentDiagnosis {
     Index first_vertex = no_index;                       ///< smallest vertex index of the component
-    std::size_t vertices = 0, edges = 0, triangles = 0;  ///< number of each
-    /// Number of each (see MeshDiagnosis).
+    std::size_t vertices = 0, edges = 0, triangles = 0;  ///< number of vertices, edges and triangles
+    /// Number of defective elements of each kind (as in MeshDiagnosis).
     std::size_t border_edges = 0, nonmanifold_edges = 0, misoriented_edges = 0, nonmanifold_vertices = 0;
     bool orientable = true;  ///< true: the triangles can be oriented consistently
     double area = 0;         ///< area of the component
-    /// Signed volume; for an open component relative to the centre of the object's bounding box.
+    /// Signed volume; for an open component, the signed volume of the cone from the centre of the object's bounding box over
+    /// the component.
     double volume = 0;
     bool inside_out = false;  ///< true: closed, with negative volume, and not a cavity
     bool cavity = false;      ///< true: closed, with negative volume, and completely inside another closed component
@@ -46,7 +48,7 @@ struct ComponentDiagnosis {
     [[nodiscard]] long long genus() const { return closed() && manifold() && orientable ? (2 - euler()) / 2 : -1; }
 };
 
-/// A guess of the unit of length from the size of the object only.
+/// A guess of the unit of length, based only on the size of the object.
 struct UnitGuess {
     std::string unit;    ///< "m", "mm", "um" or "unknown"
     std::string reason;  ///< reason for the guess, in words
@@ -73,7 +75,7 @@ struct MeshDiagnosis {
     std::vector<ComponentDiagnosis> components;  ///< connected components, sorted by smallest vertex index
     /// Number of components of each kind.
     std::size_t inside_out_components = 0, nonorientable_components = 0, cavities = 0;
-    // Self-intersections: pairs of triangles that coincide or whose intersection exceeds their common vertices and edges.
+    // Self-intersections: pairs of triangles that coincide, or that intersect outside their common vertices and edges.
     // Degenerate triangles are ignored.
     bool self_intersections_checked = false;  ///< true: self-intersections were searched
     /// False: the search was stopped early, and `self_intersections` is a lower bound.
@@ -90,7 +92,7 @@ struct MeshDiagnosis {
     double diagonal = 0;  ///< diagonal of the bounding box of the vertices with triangles
     OrientedBox oriented_box;
     UnitGuess unit;
-    /// Step -> wall time in seconds; differs from run to run.
+    /// Name and wall time in seconds of each step; the times differ from run to run.
     std::vector<std::pair<std::string, double>> seconds;
 
     [[nodiscard]] long long euler() const;  ///< Euler characteristic
@@ -99,8 +101,8 @@ struct MeshDiagnosis {
     [[nodiscard]] bool manifold() const { return nonmanifold_edges + nonmanifold_vertices == 0; }
     /// True: all triangles are oriented consistently.
     [[nodiscard]] bool oriented() const { return misoriented_edges == 0 && nonorientable_components == 0; }
-    /// Reasons, as text, why the soup is not a closed, outward oriented, manifold mesh without degenerate triangles and
-    /// self-intersections (if checked); empty if there are no such reasons.
+    /// The defects as text. The list is empty if the soup is a closed, outward oriented, manifold mesh without degenerate
+    /// triangles and, if this was checked, without self-intersections.
     [[nodiscard]] std::vector<std::string> defects() const;
 };
 
@@ -109,9 +111,9 @@ struct MeshDiagnosis {
 /// coordinates that are not finite or beyond 1e100.
 MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options = {});
 
-/// Estimated width of cracks in a surface torn along its edges. A border point has a mate if another border point is closer than
-/// half of the shortest edge at the point. The width is four times the distance within which nine in ten of the points with a
-/// mate have their mate; 0 if fewer than nine in ten border points have a mate. Time: O(n log n).
+/// Estimated width of the cracks in a surface whose faces are disconnected along edges. A border point has a mate if another
+/// border point is closer than half of the shortest edge at the point. The width is four times the 90 % quantile of the
+/// distances between mates; 0 if fewer than 90 % of the border points have a mate. Time: O(n log n).
 double crack_width(const TriangleSoup& soup);
 
 /// Result of `self_intersections`.
@@ -121,8 +123,8 @@ struct SelfIntersections {
     bool complete = true;  ///< false: the search was stopped early, and pairs may be missing
 };
 
-/// Finds pairs of triangles whose intersection exceeds their common vertices and edges; vertices with equal positions count as
-/// common. The test is exact. Degenerate triangles are ignored. `limit` bounds the number of pairs, and the work is bounded too.
+/// Finds pairs of triangles that intersect outside their common vertices and edges; vertices with equal positions count as
+/// common. The test is exact. Degenerate triangles are ignored. `limit`: max number of pairs; the running time is limited too.
 /// The result does not depend on the number of threads.
 SelfIntersections self_intersections(const TriangleSoup& soup, std::size_t limit = 10'000'000);
 

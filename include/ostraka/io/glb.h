@@ -17,11 +17,13 @@ namespace ostraka::glb {
 // Constants of glTF 2.0 (Khronos, sections 3.6, 3.7, 5.1, 5.11).
 inline constexpr int signed_byte = 5120, byte = 5121, signed_short = 5122, short_word = 5123, word = 5125, single = 5126;
 inline constexpr int array_buffer = 34962, element_array_buffer = 34963;  ///< targets of buffer views
-/// Marks a node, in its extras, whose only purpose is to display the mesh upright and in metres.
+/// Name of a member in the extras of a node. The member marks nodes whose only purpose is to display the mesh upright and in
+/// metres.
 inline constexpr const char* display_only = "ostraka-display";
 inline constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4;  ///< modes of primitives
 inline constexpr int strip_mode = 5, fan_mode = 6;                         ///< modes of primitives: triangle strip, triangle fan
-/// Names an accessor in the extras of a mesh whose triangles were ordered by material: the place of each triangle before.
+/// Name of a member in the extras of a mesh whose triangles were sorted by material. Its value is the index of an accessor that
+/// gives the original position of each triangle.
 inline constexpr const char* triangle_order = "ostraka-triangles";
 inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 
@@ -29,8 +31,8 @@ inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 /// (section 3.7.2.1).
 std::uint16_t linear_channel(std::size_t value);
 
-/// Builds a GLB file with one buffer: collects buffer views and accessors. The bytes of a view are either stored, and become part
-/// of the complete file, or only announced, and then written by the caller after `head`, in the order of the views.
+/// Builds a GLB file with one buffer: collects buffer views and accessors. The bytes of a view are either stored in the
+/// builder, or only announced; the caller then writes them after `head`, in the order of the views.
 class Builder {
 public:
     /// Every view and both chunks begin at a multiple of `alignment` bytes; some extensions require 8. `escapes`: true to escape
@@ -61,8 +63,8 @@ public:
                                 JsonValue* min = nullptr, JsonValue* max = nullptr);
     /// Marks the integers of the accessor as normalised to the range 0 to 1.
     void mark_normalised(int accessor);
-    /// The first part of the file, up to the first byte of the buffer. Throws Error (failure), naming `where`, if the file
-    /// exceeds four gigabytes.
+    /// Returns the first part of the file, up to the first byte of the buffer. Throws Error (failure), naming `where`, if the
+    /// file exceeds four gigabytes.
     std::string head(const std::string& where, const std::string& remedy);
     /// The complete file; all views must have been added with their bytes.
     std::string finish(const std::string& where, const std::string& remedy) { return head(where, remedy) + binary_; }
@@ -100,8 +102,8 @@ public:
     Reader(const std::string& bytes, const std::string& where);
     /// Returns the content of a file beside the glTF file, named by the URI of a buffer. Throws Error (input) if there is none.
     using FileReader = std::function<std::string(const std::string& uri)>;
-    /// A GLB file or a glTF file in JSON, whose buffers may be other files. The data may expand more strongly when they are read.
-    /// `bytes` must live as long as the reader.
+    /// Reads a GLB file, or a glTF file in JSON whose buffers may be separate files. The limit of memory per byte of the file
+    /// is higher than with the other constructor. `bytes` must live as long as the reader.
     Reader(const std::string& bytes, const std::string& where, FileReader file_reader);
 
     [[nodiscard]] const Json& document() const { return document_; }   ///< the JSON chunk
@@ -118,24 +120,24 @@ public:
     /// Bytes of a buffer view, decoded if it is compressed (EXT_meshopt_compression).
     [[nodiscard]] std::string_view view(std::size_t index, const std::string& pointer) const;
 
-    /// What an accessor contains.
+    /// Number and type of the elements of an accessor.
     struct Shape {
         std::size_t count = 0;    ///< number of elements
         std::size_t width = 0;    ///< numbers per element
         int component = 0;        ///< component type
-        bool normalised = false;  ///< integers stand for fractions of their largest value
+        bool normalised = false;  ///< true: integers represent fractions of their largest value
     };
     [[nodiscard]] Shape shape(std::size_t index, const std::string& pointer) const;
     /// The numbers of an accessor: `width` numbers per element, consecutively; normalised integers as fractions (section 3.11).
     using Values = std::shared_ptr<const std::vector<double>>;
-    /// Reads an accessor with `width` numbers per element, also a sparse one or one without data (zeros); each accessor is read
-    /// only once, however often it is referenced.
+    /// Reads an accessor with `width` numbers per element. The accessor may be sparse or have no data (all numbers are then
+    /// zero). Each accessor is read only once, even if it is referenced several times.
     [[nodiscard]] Values accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
     /// Reads an accessor with one unsigned integer per element.
     [[nodiscard]] std::vector<std::uint32_t> integers(std::size_t index, const std::string& pointer) const;
 
-    /// Accounts for memory before it is allocated. Throws Error (input), with the JSON pointer, for a file that references the
-    /// same data so often, or is compressed so strongly, that memory would be exhausted.
+    /// Adds `bytes` to the memory used so far; to be called before an allocation. Throws Error (input), with the JSON pointer,
+    /// if the file would exhaust the memory because it references the same data very often or is compressed extremely.
     void charge(double bytes, const std::string& pointer) const;
 
 private:

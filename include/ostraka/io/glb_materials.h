@@ -14,17 +14,17 @@ namespace ostraka::io {
 /// Writes the materials of a mesh, with the images that they use.
 class GlbMaterials {
 public:
-    /// `used`: indices of the materials to write, in their order; no_index stands for the default material. `where`: file for
-    /// messages. Images that glTF does not know are encoded anew.
+    /// `used`: indices of the materials to write, in the order in which they are written; no_index stands for the default
+    /// material. `where`: file for messages. Images in formats that glTF does not support are encoded again.
     GlbMaterials(const Appearance& appearance, std::vector<Index> used, const std::string& where);
 
     [[nodiscard]] std::size_t bytes() const;  ///< size of all images
     /// Adds materials, textures, samplers and images to the JSON; announces a view for each image. `translucent`: true if
-    /// colours of vertices have an opacity below 1, which the default material then shows.
+    /// vertex colours have an opacity below 1; the default material is then drawn with transparency.
     void add_to(glb::Builder& builder, bool translucent);
     /// The contents of the announced views, in their order.
     [[nodiscard]] const std::vector<SharedImage>& images() const { return images_; }
-    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }  ///< data that were not kept
+    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }  ///< messages about data that were not kept
 
 private:
     void take_images(const JsonValue& value);

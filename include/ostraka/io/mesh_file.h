@@ -1,4 +1,4 @@
-// Mesh files: strict reading and atomic writing, both keeping the order of vertices.
+// Reading and writing of mesh files. Reading is strict, writing is atomic, and both keep the order of vertices.
 #pragma once
 
 #include "ostraka/files/file.h"
@@ -26,12 +26,12 @@ struct MeshExtras {
     std::vector<Colour> face_colours;         ///< one colour per face
     std::vector<std::int32_t> vertex_labels;  ///< one label per vertex
     std::vector<std::int32_t> face_labels;    ///< one label per face
-    /// Texture coordinates per polygon corner, in the order of the corners. A vertex at a seam of the texture is one vertex with
-    /// different coordinates in its corners.
+    /// Texture coordinates per polygon corner, in the order of the corners. A vertex on a seam of the texture has different
+    /// coordinates in its corners.
     std::vector<TexturePoint> corner_texture;
     std::vector<Index> face_materials;                    ///< index of each face's material in `appearance`, or no_index
     Appearance appearance;                                ///< materials and images
-    std::vector<NamedValues> vertex_values, face_values;  ///< further numbers of vertices and of faces
+    std::vector<NamedValues> vertex_values, face_values;  ///< further values per vertex and per face
     /// For a tetrahedral mesh: the vertices of each tetrahedron. The triangles of the mesh are the surface of the tetrahedra;
     /// interior vertices are isolated in the triangle mesh.
     std::vector<std::array<Index, 4>> tetrahedra = {};
@@ -45,9 +45,9 @@ struct PolygonSoup {
     std::vector<Index> corners;                 ///< indices of the vertices of all polygons, polygon by polygon
     MeshExtras extras;                          ///< attributes per vertex and per polygon
     std::vector<std::string> notes;             ///< messages about content of the file that was not kept
-    /// Vertex of each vertex in the file, where vertices of the file that were doubled for their texture coordinates or normals
-    /// were joined again; no_index: a vertex without coordinates that no face uses, which was dropped; empty: vertex i of the
-    /// file is vertex i.
+    /// For each vertex in the file: index of its vertex in `points`. Files may contain several copies of a vertex with
+    /// different texture coordinates or normals; these copies are merged. no_index: the vertex has no coordinates, is used by
+    /// no face and was dropped. Empty: vertex i of the file is vertex i of `points`.
     std::vector<Index> vertex_of_file_vertex = {};
     [[nodiscard]] std::size_t polygon_count() const { return polygon_begin.size() - 1; }
 };
@@ -55,10 +55,10 @@ struct PolygonSoup {
 /// Reads the polygons of a mesh file: OBJ with its MTL files and images, PLY (ascii, both binary orders), GLB and glTF 2.0, OFF,
 /// STL (ascii, binary), 3MF, Medit's .mesh and VTK's .vtu (both as text; tetrahedra are represented by their surface, oriented
 /// outwards). The format is chosen by the file name extension, or by the content if extension and content contradict each other.
-/// STL vertices with equal coordinates are merged, and numbered by first appearance; so are the border vertices of files with
-/// texture coordinates (PLY, OBJ, GLB, glTF) where the borders of two faces coincide, since such files double vertices along the
-/// seams of the texture. Throws Error (input) with file, line or byte, and remedy. Memory is bounded by a small multiple of the
-/// file size, regardless of the counts in the header.
+/// STL vertices with equal coordinates are merged, and numbered by first appearance; In files with texture coordinates (PLY,
+/// OBJ, GLB, glTF), border vertices with equal coordinates are merged in the same way if the borders of two faces coincide
+/// there, because such files duplicate vertices along the seams of the texture. Throws Error (input) with file, line or byte,
+/// and remedy. Memory is bounded by a small multiple of the file size, regardless of the counts in the header.
 PolygonSoup read_polygons(const Path& file);
 
 /// Polygons divided into triangles.

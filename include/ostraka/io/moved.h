@@ -1,4 +1,4 @@
-// Triangles of any topology, moved by a similarity.
+// Applies a rigid or similarity motion to triangles of any topology.
 #pragma once
 
 #include "ostraka/geom/rigid_fit.h"
@@ -6,9 +6,10 @@
 
 namespace ostraka {
 
-/// Moves the points of the triangles. A motion that mirrors also exchanges the second and the third corner of each triangle, with
-/// the texture coordinates of these corners, and two vertices of each tetrahedron, so that a surface oriented outwards stays so.
-/// All other attributes keep their values. Throws Error (input) if a moved coordinate exceeds `max_coordinate` or is not finite.
+/// Moves the points of the triangles. If the motion includes a reflection, the second and third corner of each triangle (with
+/// their texture coordinates) and two vertices of each tetrahedron are exchanged, so that a surface oriented outwards stays
+/// oriented outwards. All other attributes keep their values. Throws Error (input) if a moved coordinate exceeds
+/// `max_coordinate` or is not finite.
 void move_triangles(TriangleSoup& soup, MeshExtras& extras, const Motion& motion);
 
 }  // namespace ostraka

@@ -23,11 +23,11 @@ struct PlyVertexColumns {
     std::size_t vertices = 0;              ///< number of vertices
     bool has_faces = false;                ///< true: the file has faces or triangle strips; `columns` is then empty
     std::vector<PlyVertexColumn> columns;  ///< the properties except lists, in the order of the file
-    std::vector<std::string> notes;        ///< contents of the file that are not in `columns`
+    std::vector<std::string> notes;        ///< messages about contents of the file that are not in `columns`
 };
 
 /// Reads the vertices of the PLY file with the content `bytes`; numbers may be infinite or NaN. Throws Error (input) with the
-/// line or byte if the file is damaged before the end of its vertices. Memory is bounded by the size of the file.
+/// line or byte if the header or the vertex data are damaged. Memory is bounded by the size of the file.
 PlyVertexColumns read_ply_vertex_columns(const std::string& bytes, const std::string& file);
 
 }  // namespace ostraka

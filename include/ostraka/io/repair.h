@@ -1,4 +1,4 @@
-// Repair of any triangle soup to an oriented manifold mesh in steps, with maps from old to new elements.
+// Repairs any triangle soup to an oriented manifold mesh in several steps, with maps from old to new elements.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -16,7 +16,8 @@ namespace ostraka {
 struct RepairOptions {
     /// Border points closer than this fraction of the diagonal are merged; 0: only equal points.
     double merge_distance = 0;
-    /// Border points across narrower cracks are merged; fraction of the shortest edge at the point.
+    /// Border points on both sides of a crack are merged if the crack is narrower than this fraction of the shortest edge at
+    /// the point.
     double merge_gap = 0.25;
     bool keep_isolated = false;      ///< true: keep vertices without a face
     bool keep_largest = false;       ///< true: keep only the component with the largest area
@@ -34,7 +35,7 @@ struct RepairOptions {
 /// The changes made by one repair step.
 struct RepairStep {
     std::string name;                                         ///< name of the step
-    std::vector<std::pair<std::string, std::size_t>> counts;  ///< kind of change -> number of changes
+    std::vector<std::pair<std::string, std::size_t>> counts;  ///< pairs of a kind of change and the number of such changes
 };
 
 /// The repaired mesh, with maps from old to new elements.
@@ -54,8 +55,8 @@ struct RepairResult {
     std::vector<RepairStep> steps;  ///< the steps carried out, in order
     /// Messages about steps that were not carried out, with reasons, and about lost data.
     std::vector<std::string> notes;
-    /// Diagnosis of the surface before self-intersections were removed or the surface was wrapped, without a search for
-    /// self-intersections; none if neither was done.
+    /// Diagnosis (without self-intersections) of the surface just before the removal of self-intersections or the wrapping;
+    /// none if neither step was carried out.
     std::optional<MeshDiagnosis> before;
     MeshDiagnosis after;  ///< diagnosis of `mesh`
 };
@@ -68,10 +69,10 @@ struct RepairResult {
 /// Throws Error (input), with the reason, if nothing is left to repair; Error (usage) for options out of range.
 RepairResult repair(const TriangleSoup& soup, const MeshExtras& extras = {}, const RepairOptions& options = {});
 
-/// Updates the diagnosis `after` to the mesh that a reader of the STL file gets: single precision, vertices with equal positions
-/// merged. If merging would join copies of split vertices again, so that the mesh would no longer be manifold, these copies are
-/// first moved apart slightly, each towards its own triangles, by the larger of 1e-6 of the diagonal and eight steps of single
-/// precision; a note reports the change.
+/// Updates the diagnosis `after` to the mesh that will be read from an STL file: its coordinates are in single precision, and
+/// vertices with equal positions are merged. If merging would join copies of split vertices again, so that the mesh would no
+/// longer be manifold, these copies are first moved apart slightly, each towards its own triangles, by the larger of 1e-6 of
+/// the diagonal and eight steps of single precision; a note reports the change.
 void prepare_for_stl(RepairResult& result);
 
 }  // namespace ostraka

@@ -1,13 +1,14 @@
-// What a mesh file says of the look of its surface.
+// Tests whether a mesh has a texture or colours.
 #pragma once
 
 #include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
 
-/// Whether a face has a material that is seen: an image that was read, with texture coordinates, or a colour other than white.
+/// True if at least one face has a visible material: an image that could be read and texture coordinates, or a base colour
+/// other than white.
 bool has_texture(const MeshExtras& extras);
-/// Whether faces or vertices have colours of their own.
+/// True if the mesh has colours of faces or vertices.
 bool has_own_colours(const MeshExtras& extras);
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
-// Vertices with one pair of texture coordinates each, as formats without texture coordinates of corners need them.
+// Splits vertices so that each has one pair of texture coordinates, for formats that store texture coordinates per vertex and
+// not per corner.
 #pragma once
 
 #include "ostraka/image/appearance.h"
@@ -10,7 +11,7 @@ namespace ostraka::io {
 
 /// The distinct pairs of vertex and texture coordinates of the corners of a triangle soup, ordered by vertex, then by first use.
 struct TexturedVertices {
-    std::vector<Index> vertex;          ///< for each pair, its vertex; vertices without faces come once
+    std::vector<Index> vertex;          ///< for each pair: its vertex; vertices without faces occur once
     std::vector<TexturePoint> texture;  ///< for each pair, its texture coordinates
     std::vector<Index> pair_of_corner;  ///< for each corner of each triangle, its pair
 };

@@ -16,7 +16,8 @@ struct Quantity {
     std::string name;            ///< name of the quantity
     std::vector<double> values;  ///< one number, or the entries of a list
     bool is_list = false;        ///< true: `values` is written as a list even if there is only one value
-    /// Exponent of the unit of length: 1 length, 2 area, -1 curvature; 0 if dimensionless or in `unit`.
+    /// Exponent of the unit of length: 1 length, 2 area, -1 curvature; 0 if the quantity is dimensionless or its unit is in
+    /// `unit`.
     int power = 0;
     std::string unit;  ///< unit of quantities that are no power of a length, e.g. "rad"; else empty
 };
@@ -24,7 +25,7 @@ struct Quantity {
 /// The unit of a quantity if lengths are in `unit`: for example "mm^2" or "1/mm"; empty if `unit` is empty.
 std::string unit_of(const Quantity& quantity, const std::string& unit);
 
-/// A map of which statistics are computed.
+/// Values on the vertices of a mesh, for the computation of statistics.
 struct NamedMap {
     std::string name;            ///< name of the map
     std::vector<double> values;  ///< one value per vertex
@@ -50,13 +51,14 @@ public:
     DescriptorSearch(const DescriptorSearch&) = delete;
     DescriptorSearch& operator=(const DescriptorSearch&) = delete;
 
-    /// Announces annotations that will be queried: all free annotations of the set then share one mesh cut along their curves.
+    /// Announces the annotations for which quantities will be computed. The mesh is then cut along the curves of all free
+    /// annotations of the set at once.
     void expect(const AnnotationSet& set);
 
-    /// The quantity of this name; none if the name is unknown or undefined for this type of annotation. Names for regions: area,
-    /// perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid centroid, box
-    /// sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian curvature integral.
-    /// Name for lines: length.
+    /// Computes the quantity of this name; none if the name is unknown or not defined for annotations of this type. Names for
+    /// regions: area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
+    /// centroid, box sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian
+    /// curvature integral. Name for lines: length.
     std::optional<Quantity> find(const Annotation& annotation, const std::string& name);
 
     /// All known quantities of an annotation, and the requested statistics of fields and maps (mean, deviation, median, quantiles

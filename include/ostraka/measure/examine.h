@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// Size figures of one annotation.
+/// Size of one annotation: numbers of elements and components, area, length.
 struct AnnotationSummary {
     std::size_t elements = 0;  ///< number of faces, edges or points
     std::size_t patches = 0;   ///< number of connected components of a region (over edges), poly-lines of a line, or points
@@ -14,7 +14,7 @@ struct AnnotationSummary {
     double area = 0;           ///< area of a region, in the mesh's unit squared; 0 for other types
     double length = 0;         ///< perimeter of a region, or length of a line, in the mesh's unit
 };
-/// Computes the size figures of an annotation.
+/// Computes the size of an annotation.
 AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation);
 
 /// Checks a set of annotations. Defects: empty selections, repeated points, poly-lines that traverse an edge twice, missing tags,

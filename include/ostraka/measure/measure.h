@@ -1,4 +1,5 @@
-// Measures by ruler, tape and bounding, and simple descriptors of an annotation (thesis, sections 2.2.3 and 5, Appendix A).
+// Measures between pins (ruler, tape, bounding), and simple descriptors of an annotation (thesis, sections 2.2.3 and 5,
+// Appendix A).
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -16,13 +17,13 @@ class PathSearch;
 /// missing or no path joins two pins of a tape.
 double evaluate(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
 
-/// Value and standard deviation of a measure. A pin was set on the closest vertex, so that its position is known only to the size
-/// of the adjacent faces: uniformly distributed in a disc whose area A is a third of the total area of these faces (for a
-/// location: the area of the face that holds the pin). The position then has the variance s^2 = A / (4 pi) in each direction. A
-/// length L then has the variance r^2 = sum over the pins of s^2 |dL/dp|^2, with derivatives along the straight lines between the
-/// pins (JCGM 100:2008, type B). For n repeats with values L_i, the value is their mean and the uncertainty is u^2 = mean r_i^2 +
-/// (sum (L_i - mean)^2 / (n - 1)) / n (type A added). The excess length of edge paths is not included. Errors are those of
-/// `evaluate`.
+/// Value and standard deviation of a measure. A picked pin was moved to the closest vertex, so that its true position is
+/// uncertain by the size of the adjacent faces. The position is modelled as uniformly distributed in a disc whose area A is a
+/// third of the total area of these faces (for a pin inside a face: the area of this face). The position then has the variance
+/// s^2 = A / (4 pi) in each direction. A length L then has the variance r^2 = sum over the pins of s^2 |dL/dp|^2, with
+/// derivatives along the straight lines between the pins (JCGM 100:2008, type B). For n repeats with values L_i, the value is
+/// their mean and the uncertainty is u^2 = mean r_i^2 + (sum (L_i - mean)^2 / (n - 1)) / n (type A added). The error of edge
+/// paths, which are longer than geodesics, is not included. Throws the same errors as `evaluate`.
 struct Evaluated {
     double value = 0;          ///< value of the measure, in the mesh's unit
     double uncertainty = 0;    ///< standard deviation u of the value
@@ -52,13 +53,13 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
 /// the annotation's vertices (up to a relative difference of 1e-9).
 bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& measure);
 
-/// Gives bounding measures that are extents (`is_extent`) on `before` the pins of the extents on `after`. `after` is the same
-/// mesh with other points and `to` a copy of its annotations, or `after` is another mesh to which the annotations were
-/// transferred. Annotations and attributes are matched by id.
+/// Updates the pins of bounding measures that are extents on `before` (`is_extent`), so that they are extents on `after`.
+/// `after` is the same mesh with other points and `to` a copy of its annotations, or `after` is another mesh to which the
+/// annotations were transferred. Annotations and attributes are matched by id.
 void move_extents(AnnotatedMeshView before, const Mesh& after, AnnotationSet& to);
 
 /// The positions of the pins of a measure. For a bounding measure: the first pin, and its projection onto the plane through the
-/// other pin.
+/// second pin perpendicular to the direction.
 std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure);
 /// The path of a tape measure along edges, from pin to pin; empty for other measures.
 std::vector<Point> path_of_measure(PathSearch& search, const Mesh& mesh, const Measure& measure);

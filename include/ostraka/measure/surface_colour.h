@@ -1,4 +1,4 @@
-// Colours of a surface: of its vertices, and their distribution over a part.
+// Colours of a surface at points and vertices, and the distribution of colours over a part.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -10,7 +10,7 @@
 
 namespace ostraka {
 
-/// True if the surface has colours of its own: an image, materials, or colours of vertices or faces.
+/// True if the mesh has an image, a material, or colours of vertices or faces.
 bool has_colours(const MeshExtras& extras);
 
 /// Reads the colour of a surface where it is asked for: the image (or base colour) of the material times the colours of vertices

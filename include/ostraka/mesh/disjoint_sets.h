@@ -1,4 +1,4 @@
-// Disjoint sets with union and find.
+// Disjoint-set forest (union-find).
 #pragma once
 
 #include "ostraka/mesh/mesh.h"

@@ -5,9 +5,10 @@
 
 namespace ostraka {
 
-/// Elements reached from `starts`, in breadth-first order, `starts` first; these must be marked in `visited` already. The
-/// function each_neighbour(element, reach) calls reach(neighbour) for the neighbours to enter; reached elements are marked, and
-/// elements marked before are left out. `visited` has one flag per element.
+/// Returns the elements that can be reached from `starts`, in breadth-first order and including `starts`. The elements in
+/// `starts` must already be marked in `visited`. The function each_neighbour(element, reach) calls reach(neighbour) for each
+/// neighbour to visit. Reached elements are marked in `visited`; elements that were marked before are not visited. `visited`
+/// has one flag per element.
 template <class Element, class Visited, class EachNeighbour>
 std::vector<Element> flood(std::vector<Element> starts, Visited& visited, EachNeighbour&& each_neighbour) {
     std::vector<Element> reached = std::move(starts);
@@ -36,7 +37,8 @@ inline std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<b
     return flood_faces(mesh, start, visited, [](Halfedge) { return true; });
 }
 
-/// Vertices that can be reached from `start` along edges, by vertices for which `enters` is true; otherwise as flood_faces.
+/// Vertices that can be reached from `start` along edges through vertices for which `enters` is true; otherwise like
+/// flood_faces.
 template <class Enters>
 std::vector<Vertex> flood_vertices(const Mesh& mesh, Vertex start, std::vector<bool>& visited, Enters&& enters) {
     visited[start] = true;

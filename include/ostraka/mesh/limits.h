@@ -8,7 +8,7 @@
 
 namespace ostraka {
 
-/// Largest absolute value of a coordinate, so that products of four lengths do not overflow.
+/// Largest allowed absolute value of a coordinate; products of four lengths then do not overflow.
 inline constexpr double max_coordinate = 1e60;
 
 /// True if no coordinate is NaN or beyond `max_coordinate` in absolute value.

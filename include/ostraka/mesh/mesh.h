@@ -14,7 +14,7 @@
 
 namespace ostraka {
 
-/// Geometry with exact predicates in double precision.
+/// CGAL kernel with exact predicates and constructions in double precision.
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;

@@ -16,22 +16,23 @@ namespace ostraka {
 /// Reads the document of a slices file (slices.schema.json); `where` names the file in errors. Throws Error (input).
 PageSlices page_slices(const JsonValue& document, const std::string& where);
 
-/// Verdicts on an object from `result`, the report of 'relation check': violated rules first, then relationships in the order
-/// of the graph. `set`: annotations of the object.
+/// Verdicts on an object, read from `result`, the report of 'relation check'. Violated rules come first, then relationships in
+/// the order of the graph. `set`: annotations of the object.
 std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set);
 
-/// Constraints from `result`, the report of a deformation; `set` maps the tags that the report uses to annotations.
+/// Constraints, read from `result`, the report of a deformation; the report refers to annotations by tags, which are looked up
+/// in `set`.
 std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set);
 /// Messages on conflicting constraints from the report of a deformation.
 std::vector<std::string> page_conflicts(const JsonValue& result);
 
-/// Tables from a report's result, or from a file of the same form: one table for each list of records, and one for all single
-/// values. Lists of numbers and deeper structures are omitted. `title`: prefix of the tables' titles; `omitted`: members of
-/// `result` to omit.
+/// Tables made from the result of a report, or from a file of the same structure: one table for each list of records, and one
+/// table for all single values. Lists of numbers and deeper structures are omitted. `title`: prefix of the tables' titles;
+/// `omitted`: members of `result` to omit.
 std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title,
                                      const std::set<std::string>& omitted = {});
 
-/// Whether the extension of this file name is an extension of mesh files.
+/// True if the file name has the extension of a mesh file.
 bool is_mesh_name(const std::string& name);
 
 /// Links rows of tables to objects and annotations of the page, by names and tags in the cells.
@@ -39,8 +40,9 @@ class PageNames {
 public:
     /// Adds the next object of the page. `set`: annotations of the object to which rows may be linked; null: none.
     void add(const std::string& object, const AnnotationSet* set);
-    /// Links each row to the object whose name or file name is the first found among the row's texts. A row without such a text
-    /// is linked to the object with the annotation whose tag is among the texts, provided that no other object has this tag.
+    /// Links each row of a table to an object. The object is the first one whose name or file name is a text in the row.
+    /// Without such a text, it is the object that has an annotation whose tag is a text in the row, if no other object has an
+    /// annotation with this tag.
     void link(PageTable& table) const;
 
 private:
@@ -63,19 +65,19 @@ Json cell_of(const auto& value) {
 /// (input).
 PageTable csv_table(const Path& file, const std::string& name);
 
-/// Maps of an object from the further numbers of its vertices and faces (MeshExtras::vertex_values, face_values); for a completed
-/// object also the map of observed, interpolated and hypothetical surface.
+/// Scalar maps of an object, made from the values of its vertices and faces (MeshExtras::vertex_values, face_values); for a
+/// completed object also the map of observed, interpolated and hypothetical surface.
 std::vector<PageMap> value_maps(const MeshFile& mesh);
 /// Transfers a map to a simplified mesh. `new_index`: for each vertex of the original mesh, its index in the simplified mesh
 /// (`no_index` if removed); `vertices`: number of vertices of the simplified mesh.
 PageMap simplified_map(const PageMap& map, const std::vector<Index>& new_index, std::size_t vertices);
-/// Whether one of the maps states the origin of the surface of a completed object (observed, interpolated or hypothetical).
+/// True if one of the maps classifies the surface of a completed object as observed, interpolated or hypothetical.
 bool is_completed(const std::vector<PageMap>& maps);
 
 /// Vertex values from face values: for each vertex, the mean of the finite values of its adjacent faces; NaN if there are none.
 std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& face_values);
 
-/// Whether no vertex belongs to faces of two of these regions; such regions can be moved apart in the viewer.
+/// True if no two regions of the set share a vertex; such regions can be moved apart in the viewer.
 bool are_apart(AnnotatedMeshView object);
 
 }  // namespace ostraka

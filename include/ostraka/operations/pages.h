@@ -11,7 +11,7 @@ std::string commands_page(const std::string& first_word);
 /// First words of all operation names, in the order of the table of operations; there is one Markdown page for each first word.
 std::vector<std::string> command_pages();
 
-/// Usage line of a call whose arguments are in this order: "ostraka mesh convert INPUT OUTPUT [options]".
+/// Usage line of an operation with its positional arguments in the given order: "ostraka mesh convert INPUT OUTPUT [options]".
 std::string usage_of(const Call& call, const std::vector<std::string>& order);
 
 /// Name of the manual page of an operation, such as "ostraka-mesh-info".

@@ -68,7 +68,7 @@ struct PageConstraint {
     std::optional<std::array<double, 2>> residual;  ///< mean and maximum residual after the deformation
 };
 
-/// Result of 'relation check' for one rule, relation, constraint or canon (a proportion that is a constraint).
+/// Result of 'relation check' for one rule, relation, constraint or canon (a constraint that prescribes a proportion).
 struct PageVerdict {
     std::string kind;                  ///< "rule", "relation", "constraint" or "canon"
     std::string name;                  ///< name of the rule, or type of the relation, constraint or canon
@@ -94,20 +94,21 @@ struct PageObject {
     /// Indices of the regions that can be moved apart in the viewer, since they share no vertex.
     std::vector<std::size_t> parts = {};
     const MeshExtras* extras = nullptr;  ///< colours and texture of the mesh; null: none
-    /// Colours that the page shows first: texture, own (of vertices or faces), annotations, values (the first map) or clay; auto:
-    /// annotations if there are any, otherwise the first of texture and own colours that there is.
+    /// Colours that the page initially shows: texture, own (colours of vertices or faces), annotations, values (the first map)
+    /// or clay (one neutral colour). auto: annotations if there are any, otherwise the texture, otherwise the colours of
+    /// vertices or faces.
     std::string colouring = "auto";
     std::string unit = {};                 ///< unit of the mesh; empty: unit of the annotations
     std::array<double, 3> up = {0, 0, 1};  ///< upward direction, used if the annotations state none
     /// Size of the original object, if it has more vertices than the shown mesh.
     struct Whole {
-        std::size_t vertices = 0, faces = 0;  ///< numbers of the original object
+        std::size_t vertices = 0, faces = 0;  ///< numbers of vertices and faces of the original object
         double deviation = 0;                 ///< max distance of the original vertices from the shown mesh
     };
     /// Empty if the shown mesh is the original object.
     std::optional<Whole> whole = {};
-    /// Exact geometry instead of packed geometry: coordinates in single precision relative to the bounding box, with a key that
-    /// identifies the shape.
+    /// Request for exact geometry instead of packed (quantised) geometry: coordinates are stored in single precision relative
+    /// to the bounding box, with a key that identifies the shape.
     struct Exact {
         std::string key;          ///< identifies the shape
         bool sends_shape = true;  ///< false: only the key is sent, since the viewer already has the shape
@@ -120,7 +121,8 @@ struct PageObject {
 struct PageTable {
     struct Row {
         std::vector<Json> cells;  ///< one cell per column
-        /// Index in the page of the object, and index in the object's set of the annotation, that the row describes; -1: none.
+        /// The object and annotation that the row describes: index of the object in the page, and index of the annotation in
+        /// the object's set; -1: none.
         int object = -1, annotation = -1;
     };
     std::string title, note;           ///< note: text below the table
@@ -136,7 +138,8 @@ struct PageEntry {
     std::vector<std::string> tags;  ///< tags of the object's annotations
 };
 
-/// Largest side in pixels, and number of bytes of all images of an object on a page; larger images are reduced.
+/// Limits for the images of an object on a page: max length of a side in pixels, and max total number of bytes. Larger images
+/// are reduced.
 inline constexpr int page_image_side = 4096;
 inline constexpr std::size_t page_image_bytes = 2'000'000;
 
@@ -149,9 +152,10 @@ public:
 
     /// Adds an object and returns its index in the page. Objects with the same triangles as an earlier object can be morphed
     /// into each other in the viewer. Positions are quantised to 1/131,070 of the largest side of the box, values of maps to
-    /// 1/131,068 of their range, texture coordinates to 1/131,070 of theirs; the order of vertices and triangles is kept. Images
-    /// are reduced to page_image_bytes in all, and a note of the page reports it. Throws Error (input) for a mesh without
-    /// triangles, a map, colours or texture coordinates of a different length, or a damaged image.
+    /// 1/131,068 of their range, texture coordinates to 1/131,070 of their range; the order of vertices and triangles is kept.
+    /// The images of an object are reduced to page_image_bytes in total, and a note of the page reports the reduction. Throws
+    /// Error (input) for a mesh without triangles, a map, colours or texture coordinates of a different length, or a damaged
+    /// image.
     std::size_t add(const PageObject& object);
     void add(PageTable table);  ///< Adds a table to the page.
     /// Adds a drawing; `svg` is the text of an SVG file.
@@ -160,8 +164,8 @@ public:
     void note(const std::string& text);
 
     /// The text of the HTML file: the viewer, with the data embedded as JSON and deflated bytes. The same page gives the same
-    /// bytes. The HTML file loads nothing from elsewhere, and texts of annotations are escaped. `provenance_text`: provenance,
-    /// shown on the page.
+    /// bytes. The HTML file loads no other files, and texts of annotations are escaped. `provenance_text`: provenance, shown on
+    /// the page.
     [[nodiscard]] std::string html(const std::string& provenance_text) const;
     /// The content of this page as a script that the page of a collection loads; `file`: name of the script, as in
     /// PageEntry::file.

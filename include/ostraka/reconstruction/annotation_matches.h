@@ -24,10 +24,10 @@ struct AnnotationMatch {
     /// Terms of the score, each 0 to 1: agreement of attributes, of the tags of the containers, of position under the pose, and
     /// of extent.
     double attributes = 1, containers = 1, place = 1, extent = 1;
-    bool stated = false;  ///< stated by the user
+    bool stated = false;  ///< true: the match was stated by the user, not computed
 };
 
-/// A match stated by the user: the counterpart of a fragment's annotation, or that the annotation has no counterpart.
+/// A match stated by the user: names the counterpart of a fragment's annotation, or states that there is none.
 struct StatedMatch {
     int of_fragment = 0;             ///< id of the fragment's annotation
     std::optional<int> of_template;  ///< id of the template's annotation; empty: no counterpart
@@ -35,8 +35,9 @@ struct StatedMatch {
 
 /// Matches annotations of the same type and tag. Several annotations with one tag (two eyes) are distinguished by their
 /// attributes, the tags of their containers, and their position and extent under the pose of the fragment; the assignment is
-/// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller than its counterpart, not larger.
-/// `scaled`: the template in the target frame of the pose. Throws Error (input) for ids in `stated` that do not exist.
+/// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller than its counterpart, but not
+/// larger. `scaled`: the template at the scale and in the coordinates to which `pose` maps the fragment. Throws Error (input)
+/// for ids in `stated` that do not exist.
 std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, AnnotatedMeshView fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated = {},
                                                const AnnotationMatchOptions& options = {});

@@ -1,4 +1,5 @@
-// Result of a fit as a file that can be inspected, edited and read back (*.assembly.json, doc/schema/assembly.schema.json).
+// Assembly files: the result of a fit, which can be inspected, edited and read again (*.assembly.json,
+// doc/schema/assembly.schema.json).
 #pragma once
 
 #include "ostraka/reconstruction/reconstruct.h"
@@ -16,16 +17,16 @@ struct AssemblyNames {
 JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator);
 
 /// Matches stated by the user ("stated": true) in an assembly file for the fragment of this name. `file` names the assembly in
-/// errors. Throws Error (input), with the JSON pointer, for a file that is no assembly, two entries with one fragment name, a
-/// stated match without its annotation, and an annotation stated twice.
+/// errors. Throws Error (input), with the JSON pointer, for a file that is no assembly, two entries with the same fragment
+/// name, a stated match that names no annotation of the fragment, and two stated matches for one annotation.
 std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment,
                                         const std::string& file = "assembly");
 /// Matches stated by the user in an assembly file for this fragment; also checks that the fragment and the template have the
-/// stated annotations, and that matched annotations have one type. Throws Error (input).
+/// annotations, and that matched annotations have the same type. Throws Error (input).
 std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const Fragment& fragment, const AnnotationSet& of_template,
                                         const std::string& file);
 
-/// Fragment names in an assembly file that have stated matches but are not among `fragments`, in the order of the file.
+/// Names of fragments for which an assembly file states matches but which are not in `fragments`, in the order of the file.
 std::vector<std::string> unused_statements(const JsonValue& assembly, const std::vector<std::string>& fragments);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Reads a fragment from its files: mesh or points, annotations, facets.
+// Reads a fragment from its files: a mesh or point cloud, and annotations, which may contain facets.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,7 +10,8 @@ namespace ostraka {
 
 struct FragmentFileOptions {
     enum class FacetSource { either, annotated, automatic, none };
-    /// Source of the facets; either: annotations if there are any, else the shape if it is closed; none: all outer.
+    /// Source of the facets. annotated: annotations; automatic: classification by shape; either: annotations if they contain
+    /// facets, otherwise the shape if the mesh is closed; none: all faces are outer surface.
     FacetSource facets = FacetSource::either;
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
@@ -18,14 +19,14 @@ struct FragmentFileOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// A fragment as read, and how it was obtained.
+/// A fragment that was read, with the source of its data.
 struct FragmentFile {
     Fragment fragment;               ///< mesh, annotations and facets of the fragment
     std::string facets_from;         ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
     Facets found;                    ///< facets found from the shape, if they were computed
     bool points = false;             ///< true: the file has no faces, and the mesh is reconstructed from its points
-    std::vector<Path> inputs;        ///< files that were read
-    std::vector<std::string> notes;  ///< remarks on reading
+    std::vector<Path> inputs;        ///< the files that were read
+    std::vector<std::string> notes;  ///< messages about the files
 };
 
 /// Reads a mesh and, if present, the annotations beside the mesh (NAME.ant.json), or points without faces (annotations beside
@@ -33,7 +34,7 @@ struct FragmentFile {
 /// shape count only if their confidence is above 0.5. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
-/// Annotations with the facets as up to three regions "outer", "inner" and "fracture", with area and confidence as attributes.
+/// Makes annotations from facets: up to three regions "outer", "inner" and "fracture", with area and confidence as attributes.
 AnnotationSet facet_annotations(const Facets& facets, const std::string& unit = {});
 
 /// Updates a set with the facets. The first region named "outer", "inner" or "fracture" (case-insensitive) keeps id, tag, colour

@@ -23,14 +23,14 @@ public:
     PoseSearches(PoseSearches&&) noexcept;
 
     /// Searches the pose of a fragment on the template, with scales of the template in this range, or returns the cached result.
-    /// Nothing if the whole fragment is fracture. Throws Error as PoseSearch::find.
+    /// Returns nothing if all faces of the fragment are fracture surface. Throws the same errors as PoseSearch::find.
     std::optional<PoseSearchResult> find(const Fragment& fragment, double min_scale, double max_scale);
 
     [[nodiscard]] std::size_t made() const { return made_; }      ///< number of searches that `find` ran
     [[nodiscard]] std::size_t reused() const { return reused_; }  ///< number of searches found in the cache
-    [[nodiscard]] bool empty() const { return stored_.empty(); }  ///< whether the cache holds no results
+    [[nodiscard]] bool empty() const { return stored_.empty(); }  ///< true if the cache holds no results
 
-    /// JSON of the cached results (doc/schema/searches.schema.json), from which `add` restores numbers to the bit.
+    /// JSON of the cached results (doc/schema/searches.schema.json); `add` restores the numbers bit by bit.
     [[nodiscard]] JsonValue to_json(JsonAllocator& allocator) const;
     /// Adds the cached results in a JSON document that belong to this template and these options; `file` names the document in
     /// errors. An entry that does not match its checksum was edited or damaged, and is skipped. Returns the number of skipped

@@ -1,4 +1,4 @@
-// The cage of a template, for fits with few degrees of freedom.
+// A template's cage, whose vertices are the unknowns of fits with few degrees of freedom.
 #pragma once
 
 #include "ostraka/coords/coordinates.h"
@@ -14,16 +14,16 @@ struct TemplateCage {
     Coordinates coordinates;  ///< coordinates of the template's vertices in the cage
 };
 
-/// Puts a template into this cage, with mean value coordinates. Throws Error (input) that names vertex, face and remedy for a
-/// cage that does not contain the template or is invalid (`check_cage`).
+/// Computes the mean value coordinates of a template's vertices in the given cage. Throws Error (input) that names vertex, face
+/// and remedy for a cage that does not contain the template or is invalid (`check_cage`).
 TemplateCage template_in_cage(const Mesh& mesh, Mesh cage);
 
 /// The first cage of a template, with the coordinates stored for this cage if they have no normal term; otherwise mean value
-/// coordinates are computed. Nothing for a template without a cage. Throws Error as template_in_cage.
+/// coordinates are computed. Returns nothing for a template without a cage. Throws the same errors as template_in_cage.
 std::optional<TemplateCage> cage_of(const Template& package);
 
 /// Generates a cage around the template (`make_cage`) with about this number of vertices, and mean value coordinates. Throws
-/// Error as make_cage.
+/// the same errors as make_cage.
 TemplateCage generated_cage(const Mesh& mesh, std::uint64_t vertices = 200);
 
 }  // namespace ostraka

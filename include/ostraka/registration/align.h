@@ -11,8 +11,9 @@
 namespace ostraka {
 
 struct AlignOptions {
-    double shrinkage = 0;  ///< max share by which the surfaces may differ in size; 0: rigid registration
-    /// Share of the pairs that are kept, those of smallest distance: excludes beards, dents and missing parts.
+    double shrinkage = 0;  ///< max relative difference in size between the surfaces; 0: rigid registration
+    /// Share of the pairs that are kept: those of smallest distance. Pairs at parts that only one surface has, and at dents,
+    /// are excluded in this way.
     double trim = 0.8;
     double angle = 45;    ///< max angle between the normals of a pair, degrees
     int samples = 1000;   ///< number of points on each surface
@@ -45,7 +46,7 @@ struct Alignment {
     double distance = 0;
     double overlap = 0;    ///< share of the samples of both surfaces that have a pair
     int iterations = 0;    ///< number of iterations
-    bool settled = false;  ///< true: the last step changed nothing
+    bool settled = false;  ///< true: the iteration converged, that is the last step did not change the motion
 };
 
 /// Registers surface `a` to surface `b` by trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni

@@ -10,7 +10,7 @@ namespace ostraka {
 struct ConsistentOptions {
     double tolerance = 0.02;  ///< max distance of a moved feature from its match, as a share of the size of the surfaces
     double angle = 30;        ///< max angle between the normals of a moved feature and its match, degrees
-    double shrinkage = 0;     ///< max share by which the surfaces may differ in size; 0: rigid motion
+    double shrinkage = 0;     ///< max relative difference in size between the surfaces; 0: rigid motion
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -21,10 +21,10 @@ struct ConsistentMatches {
     Motion motion;                      ///< maps the points of surface `a` to surface `b`
 };
 
-/// Each match defines a motion (point, normal and direction of one feature onto point, normal and direction of the other). The
-/// motion that is consistent with the most matches is fitted to those matches by least squares, repeatedly until the number of
-/// consistent matches stops growing. All matches are tried, so that the result is deterministic; time is quadratic in the number
-/// of matches. Empty without matches.
+/// Each match defines a motion, which maps point, normal and direction of one feature onto those of the other feature. The
+/// motion that is consistent with the most matches is refined: it is fitted to these matches by least squares, repeatedly,
+/// until the number of consistent matches stops growing. All matches are tried, so the result is deterministic. Time: quadratic
+/// in the number of matches. The result is empty if there are no matches.
 ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, const std::vector<FeatureMatch>& matches,
                                      const ConsistentOptions& options = {});
 

@@ -13,7 +13,8 @@ namespace ostraka {
 
 struct MeshRegistrationOptions {
     bool scale = true;  ///< true: estimate the scale, as for meshes in different units; false: the meshes have the same unit
-    /// Max distance of equal surfaces, as a share of the target's diagonal; 0: derived from the resolution of the meshes.
+    /// Surfaces within this distance of each other count as equal; a share of the target's diagonal. 0: derived from the
+    /// resolution of the meshes.
     double tolerance = 0;
     int samples = 4000;  ///< number of points on both meshes together for registration, and on each mesh for evaluation
 
@@ -23,7 +24,7 @@ struct MeshRegistrationOptions {
 /// Whether two meshes show the same object.
 enum class RegistrationVerdict {
     aligned,     ///< the meshes are one surface, up to differences explained by the resolutions
-    mirrored,    ///< no motion makes the meshes one surface, but a reflection does
+    mirrored,    ///< the meshes coincide only after a reflection
     inside_out,  ///< the faces of one mesh are flipped
     different    ///< the meshes are not the same object
 };
@@ -34,7 +35,7 @@ struct SurfaceAgreement {
     double rms = 0;  ///< root mean square distance, in both directions; a point without a partner counts with the search radius
     double largest = 0;  ///< 99th percentile of the distances from one surface to the other, the larger of both directions
     double share = 0;    ///< share of the points of one surface within the tolerance of the other, the smaller of both directions
-    double close = 0;    ///< share of the points within a third of the tolerance
+    double close = 0;    ///< share of the points within a third of the tolerance of the other surface
 };
 
 /// Result of `register_mesh`.
@@ -42,26 +43,27 @@ struct MeshRegistration {
     RegistrationVerdict verdict = RegistrationVerdict::different;  ///< whether the meshes show the same object
     Motion motion;               ///< maps the source onto the target; the best motion found, whatever the verdict
     SurfaceAgreement agreement;  ///< distances between the surfaces under `motion`
-    double tolerance = 0;        ///< max distance of equal surfaces, in the target's unit
+    double tolerance = 0;        ///< distance within which surfaces count as equal, in the target's unit
     SurfaceAgreement mirrored;   ///< distances under the best motion of the source's mirror image
     std::vector<Motion> others;  ///< other motions that fit as well, for a symmetric object; at most 7
-    /// Motions under which the target's shape does not change, in the target's frame: e.g. of a vessel about its axis.
+    /// Motions under which the target's shape does not change, in the target's coordinates; for example the rotations of a
+    /// vessel about its axis.
     SlippableMotions slippable;
 };
 
 /// Registers `source` to `target`. Normalises both surfaces to one centre and size by the moments of their area. Scores all
 /// rotations (16384, evenly spread: super-Fibonacci spirals, Alexa 2022) by points on a grid, refines the best distinct rotations
-/// on the grid (point to plane), and the best of the refined motions on the faces, in both directions; a point on the coarser
-/// mesh has more weight, by the area of its faces, so that the offsets of the flat faces of both meshes from the curved surface
-/// cancel in the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
-/// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is returned.
-/// The result is the same for any number of threads; O(n) besides a search of constant size. Throws Error (usage) for options out
-/// of range, (input) for a mesh without area, or for a flat mesh, which only its border would constrain.
+/// on the grid (point to plane), and the best of the refined motions on the faces, in both directions; points on the coarser
+/// mesh get a larger weight, proportional to the area of its faces, so that the offsets of flat faces from the curved surface
+/// do not bias the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
+/// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is
+/// returned. The result is the same for any number of threads; Time: O(n), plus a search of constant size. Throws Error (usage)
+/// for options out of range, (input) for a mesh without area, and for a flat mesh, whose pose only its border could determine.
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
 /// The verdict and its reasons as one sentence; `diagonal`: diagonal of the target.
 std::string message_about(const MeshRegistration& registration, double diagonal);
-/// Remarks on a registration: poses that fit equally, motions that the shape leaves undetermined.
+/// Messages about a registration: further poses that fit equally well, and motions that the shape does not determine.
 std::vector<std::string> remarks_on(const MeshRegistration& registration);
 
 }  // namespace ostraka

@@ -16,8 +16,9 @@ struct SiftOptions {
     int scales = 7;              ///< number of smoothing levels
     int per_octave = 3;          ///< number of smoothing levels over which sigma doubles
     double border = 1;           ///< min distance of a feature from the border, in multiples of sigma
-    double contrast = 0.01;  ///< min |sigma (H' - H)| of a feature, where H and H' are the mean curvatures at successive levels
-    /// Min height of a further peak in the histogram of directions, as a share of the highest peak.
+    /// Min |sigma (H' - H)| of a feature, where H and H' are the mean curvatures at successive smoothing levels.
+    double contrast = 0.01;
+    /// Further peaks in the histogram of directions yield features if their height is at least this share of the highest peak.
     double second_direction = 0.8;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -31,8 +32,8 @@ struct Feature {
     double scale = 0;  ///< sigma of the feature's smoothing level, in the mesh's unit
 };
 
-/// Features of a surface with their descriptors: nine discs around the feature, each with a histogram of shape index and a
-/// histogram of slant angle of 8 bins.
+/// Features of a surface with their descriptors. A descriptor consists of nine discs around the feature, each with a histogram
+/// of the shape index and a histogram of the slant angle (8 bins each).
 struct FeatureSet {
     /// Number of discs, bins of a histogram, and rows of `descriptors`.
     static constexpr int discs = 9, bins = 8, length = discs * 2 * bins;

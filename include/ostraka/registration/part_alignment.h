@@ -10,7 +10,8 @@
 namespace ostraka {
 
 struct PartAlignmentOptions {
-    /// Share of the pairs that are kept, those of smallest distance: excludes surface that is missing on the whole.
+    /// Share of the pairs that are kept: those of smallest distance. Surface of the part that the whole does not have is
+    /// excluded in this way.
     double trim = 0.8;
     double search_radius = 0.1;  ///< max distance of a pair, as a share of the whole's diagonal
     double angle = 60;           ///< max angle between the normals of a pair, degrees
@@ -33,14 +34,15 @@ struct PartAlignment {
     double residual = 0;   ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
     double overlap = 0;    ///< share of the samples that have a pair
     int iterations = 0;    ///< number of iterations
-    bool settled = false;  ///< true: the last step changed nothing
+    bool settled = false;  ///< true: the iteration converged, that is the last step did not change the pose
 };
 
 /// Registers a part to the whole by trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992),
 /// from the pose `start`: samples of the faces marked in `of_part` (all faces if empty) are paired with the nearest point of the
 /// whole that has a compatible normal, and the share `trim` of smallest distance is kept; anchors count as point pairs. Each step
 /// is a linear least squares problem for rotation and translation; motions that the pairs do not constrain (on a sphere, a plane,
-/// a cylinder) are left out of the step. Returns the best pose encountered. Throws Error (input) for a part without area.
+/// a cylinder) are left out of the step. Returns the pose with the smallest residual of all steps. Throws Error (input) for a
+/// part without area.
 PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, const SurfaceSearch& whole, const Motion& start,
                          const std::vector<Anchor>& anchors = {}, const PartAlignmentOptions& options = {});
 

@@ -14,7 +14,8 @@ namespace ostraka {
 struct PoseSearchOptions {
     /// Range in which the scale of the whole is searched; if both are equal, the scale is known.
     double min_scale = 1, max_scale = 1;
-    double tolerance = 0.02;      ///< max distance of a point of the part that lies on the whole, as a share of the part's size
+    /// A point of the part lies on the whole if its distance is at most this share of the part's size.
+    double tolerance = 0.02;
     double min_confidence = 0.5;  ///< min confidence of a decided pose
     int points = 2000;            ///< number of points on the whole; points on the part have the same density
     int references = 120;         ///< number of reference points of the part
@@ -29,17 +30,17 @@ struct PoseSearchOptions {
 struct PoseCandidate {
     Motion pose;       ///< rigid motion from the part onto the scaled whole
     double scale = 1;  ///< scale of the whole, about the origin of its coordinates
-    /// Quality of the pose, 0 to 1: mean nearness over the part's area, on a logarithmic scale of the distance from the whole: 1
-    /// up to a quarter of the tolerance, 0 from two and a half times the tolerance on, and 0 where normals differ by more than 60
-    /// degrees.
+    /// Quality of the pose, 0 to 1: the mean closeness over the part's area. Closeness is 1 at distances from the whole up to a
+    /// quarter of the tolerance, decreases with the logarithm of the distance, and is 0 from two and a half times the tolerance
+    /// on and where the normals differ by more than 60 degrees.
     double score = 0;
     double share = 0;   ///< share of the part's area within the tolerance
-    double inside = 0;  ///< share of the part's area that is deeper inside the whole than the tolerance
-    /// Root mean square distance of the part's area within the tolerance from the whole, in the part's unit.
+    double inside = 0;  ///< share of the part's area that lies inside the whole by more than the tolerance
+    /// Root mean square distance from the whole, over the part's area within the tolerance, in the part's unit.
     double residual = 0;
 };
 
-/// How far the part can be moved from its pose along a slippable motion without fitting worse.
+/// Range over which the part can be moved along a slippable motion without a worse fit.
 struct SlippableRange {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< a point of the line, on the scaled whole
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< direction of the line
@@ -50,16 +51,16 @@ struct SlippableRange {
 /// Result of a pose search.
 struct PoseSearchResult {
     std::vector<PoseCandidate> candidates;  ///< poses, best first, pairwise distinct
-    /// Lead of the best pose over the second: log ratio of the shares of the part that they leave unexplained.
+    /// Margin of the best pose over the second: logarithm of the ratio of the shares of the part that do not lie on the whole.
     double margin = 0;
-    double confidence = 0;             ///< confidence that the best pose is right, up to the motions in `slippable`
+    double confidence = 0;             ///< confidence, 0 to 1, that the best pose is correct up to the motions in `slippable`
     bool decided = false;              ///< true: the confidence is sufficient
     std::string reason;                ///< reason why the pose is undecided; empty if it is decided
     SlippableMotions slippable;        ///< slippable motions of the best pose, on the scaled whole
     std::vector<SlippableRange> ways;  ///< for each slippable motion, the range in which the part can be moved
 };
 
-/// Precomputed data of a whole for pose searches on it.
+/// Searches poses of parts on one whole; data of the whole are precomputed.
 class PoseSearch {
 public:
     /// `whole` must outlive this object. Throws Error (usage) for options out of range, (input) for a whole without area.
@@ -72,8 +73,7 @@ public:
     /// scored, the better poses are refined on the points and scored again, and the best distinct poses are refined on the faces
     /// (`align_part`). Throws Error (input) for a part without area. The result is the same for any number of threads.
     [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part = {}) const;
-    /// Searches poses of the marked faces of a part, as the other overload, in this range of scales instead of the options'
-    /// range.
+    /// Like the other overload, but with this range of scales instead of the range in the options.
     [[nodiscard]] PoseSearchResult find(const Mesh& part, const std::vector<bool>& of_part, double min_scale,
                                         double max_scale) const;
 

@@ -43,7 +43,7 @@ struct GeneralisedProcrustes {
     std::vector<SimilarityMap> maps;
     /// Mean of the aligned configurations, in the orientation of the first one; with `scaling` normalised to centroid size 1.
     Landmarks mean;
-    std::vector<double> centroid_sizes;  ///< centroid size of each configuration before scaling
+    std::vector<double> centroid_sizes;  ///< centroid size of each given configuration
     double sum_of_squares = 0;           ///< sum of the squared distances of all aligned landmarks from the mean
     int iterations = 0;                  ///< number of iterations
     bool converged = false;  ///< true: the last iteration decreased the sum of squares by less than 1e-15 of the squared sizes
@@ -54,8 +54,8 @@ struct GeneralisedProcrustes {
 /// Error (input) if there is no configuration, and as `procrustes`. Time: O(iterations n k).
 GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& configurations, const ProcrustesOptions& options = {});
 
-/// Configurations as rows of a matrix for principal component analysis: each row has x, y, z of the first landmark, then of the
-/// second ...
+/// Matrix for principal component analysis with one configuration per row: x, y, z of the first landmark, then of the second
+/// ...
 Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations);
 
 }  // namespace ostraka

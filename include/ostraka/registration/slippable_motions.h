@@ -17,7 +17,7 @@ enum class SlippableKind {
     cylinder,     ///< independent rotation about and translation along a line
     sphere,       ///< rotation about a point
     plane,        ///< translation in a plane and rotation about its normal
-    more          ///< more motions than any surface allows: the data are too few or insufficient
+    more          ///< more motions than a surface can have; there are too few data
 };
 std::string to_string(SlippableKind kind);
 
@@ -30,17 +30,16 @@ struct SlippableMotions {
 
     /// Name of the group as text, such as "rotation about a line".
     [[nodiscard]] std::string text() const;
-    /// A sample of the group of motions.
+    /// One sampled motion of the group.
     struct Step {
         bool rotates = false;  ///< true: rotation; false: translation
         Motion motion;         ///< the sampled motion
         double amount = 0;     ///< angle in radians for a rotation, else a length
     };
-    /// Samples of the group: for each of its independent motions, `steps` multiples from -1 to 1 of `radians` (rotations) or
-    /// `length` (translations).
+    /// Samples motions of the group: for each of its independent motions, `steps` motions from -1 to 1 times `radians`
+    /// (rotations) or `length` (translations).
     [[nodiscard]] std::vector<std::vector<Step>> ways(double radians, double length, int steps) const;
-    /// Whether a motion belongs to the group, up to `angle` and a displacement `length` of points within distance `size` of
-    /// `around`.
+    /// True if a motion belongs to the group, up to a rotation by `angle` and a displacement of the point `around` by `length`.
     [[nodiscard]] bool contains(const Motion& motion, const Eigen::Vector3d& around, double angle, double length) const;
 };
 

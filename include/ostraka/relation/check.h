@@ -1,4 +1,4 @@
-// Checks which relationships of a graph hold on a mesh, and measures how far the others deviate.
+// Checks which relationships of a graph hold on a mesh, and measures the deviations.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-/// Tolerances of relationships that do not state their own.
+/// Default tolerances, for relationships that do not state a tolerance.
 struct RelationOptions {
     double distance = 0.01;  ///< tolerance of distances and heights, as a share of the mesh's diagonal
     double angle = 5;        ///< tolerance of angles between axes, degrees
     double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
-    double ratio = 10;       ///< tolerance of areas, shapes and attribute values: relative difference, per cent
+    double ratio = 10;       ///< tolerance of the relative difference of areas, shapes and attribute values, per cent
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -28,8 +28,8 @@ struct RelationCheck {
 };
 
 /// Checks each relationship of `graph`, in the order of the graph. The verdict is unknown for constraints (see
-/// judge_relationships), for types that only experts can decide, and for types whose input is missing; `text` gives the reason.
-/// Throws Error (input) if the graph does not fit the set.
+/// judge_relationships), for types that cannot be computed from the geometry, and if required input is missing; `text` gives
+/// the reason. Throws Error (input) if the graph refers to annotations that the set does not have.
 std::vector<RelationCheck> check_relations(AnnotatedMeshView object, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 

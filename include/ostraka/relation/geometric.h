@@ -42,7 +42,7 @@ struct ExtractedRelations {
     std::vector<int> stated;  ///< ids of stated relationships that were also extracted and therefore not added a second time
     /// Types that were not extracted, since they need an upward direction and the set states none.
     std::vector<std::string> skipped_types;
-    std::vector<std::string> notes;  ///< what was omitted because of the limits on the number of relationships
+    std::vector<std::string> notes;  ///< messages about relationships that were omitted because of the limits on their number
 };
 
 /// Extracts all relationships of these types (all geometric types if `types` is empty) that hold, and keeps the relationships of
@@ -50,7 +50,8 @@ struct ExtractedRelations {
 ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGraph& old = {},
                                      const std::vector<std::string>& types = {}, const RelationOptions& options = {});
 
-/// The canonical spelling of each type name. Throws Error (usage), with the most similar name, for a type that is not geometric.
+/// Converts type names to their canonical spelling. Throws Error (usage), with the most similar name, for a type that is not
+/// geometric.
 std::vector<std::string> geometric_types(const std::vector<std::string>& names);
 
 /// The axis of a part for relationships between axes: the axis of its slices if the part is longer than wide and not bent;

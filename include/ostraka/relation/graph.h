@@ -31,7 +31,7 @@ enum class GeometricRelation {
 struct RelationType {
     std::string name;              ///< canonical name of the type
     std::size_t minimum, maximum;  ///< min and max number of members; maximum = 0: any number
-    /// The geometric type; empty for the constraints of the thesis, which can only be stated.
+    /// The geometric type; empty for the constraints of the thesis, which cannot be extracted from the geometry.
     std::optional<GeometricRelation> geometric;
     bool directed = false;  ///< for geometric types: true if the first annotation is the subject of the relationship
     std::vector<std::string> quantities = {};  ///< names of the quantities that RelationMeter measures
@@ -40,7 +40,7 @@ struct RelationType {
 const std::vector<RelationType>& relation_types();
 /// Properties of a geometric type.
 const RelationType& relation_type(GeometricRelation kind);
-/// The type of that name, ignoring case; nullptr for an unknown name: experts may define further types.
+/// The type of that name, ignoring case; nullptr for any other name, which is a user-defined type.
 const RelationType* find_relation_type(const std::string& name);
 /// The name of a known type with the most similar spelling.
 std::string nearest_relation_type(const std::string& name);
@@ -65,7 +65,7 @@ struct RelationParameters {
     std::optional<PointAndDirection> plane, axis;  ///< mirror plane or common plane, and common axis; empty: not applicable
     std::optional<std::array<double, 3>> up;       ///< upward direction; empty if the relationship does not depend on one
     std::string attribute;                         ///< name of the attribute with equal values, for "equal attributes"
-    /// Whether nothing was measured.
+    /// True if no property was measured.
     [[nodiscard]] bool empty() const { return deviations.empty() && !plane && !axis && !up && attribute.empty(); }
 };
 
@@ -112,7 +112,7 @@ private:
     std::unique_ptr<Said> said_;
 };
 
-/// Checks one relationship as `check_graph` checks all; `place` names the relationship in errors. Throws Error (input).
+/// Checks one relationship in the same way as `check_graph`; `place` names the relationship in errors. Throws Error (input).
 void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place);
 
 /// Checks a graph on its annotations; `where` names the file in errors. Throws Error (input) that names the relationship and the

@@ -1,5 +1,5 @@
-// Layout of a relationship graph as a drawing: the containment tree with one annotation per row, and beside the tree a bracket
-// for each other relationship.
+// Layout of a drawing of a relationship graph. The drawing shows the containment tree with one annotation per row, and a
+// bracket beside the tree for each other relationship.
 #pragma once
 
 #include "ostraka/relation/topology.h"
@@ -18,8 +18,8 @@ struct GraphLayout {
 };
 
 /// Lays out a graph. Children are placed below their container, in the order of the set. Brackets that share rows lie in
-/// different lanes, short brackets near the tree: sorted by length, each bracket takes the first free lane. Time: O(r^2) in the
-/// number of relationships.
+/// different lanes, with short brackets near the tree: the brackets are sorted by length, and each bracket gets the first free
+/// lane. Time: O(r^2) in the number of relationships.
 GraphLayout layout_of(const RelationGraph& graph, const AnnotationSet& set, const ContainmentOrder& order);
 
 }  // namespace ostraka

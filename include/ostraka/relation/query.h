@@ -20,8 +20,9 @@ struct QueryReference {
 
 /// The annotated object on which a query is evaluated.
 struct QueriedObject : AnnotatedMeshView {
-    const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
-    const Vocabulary* vocabulary = nullptr;  ///< vocabulary by which words and attribute names are compared; null: by spelling
+    const RelationGraph* graph = nullptr;  ///< relationships of the annotations; nullptr: none are known
+    /// Vocabulary for comparing words and attribute names by meaning; null: they are compared by spelling.
+    const Vocabulary* vocabulary = nullptr;
     /// Returns the values that an attribute has in another object, in the form that `values_of` returns.
     std::function<std::vector<std::string>(const QueryReference&)> values_elsewhere;
 };
@@ -30,12 +31,12 @@ struct QueriedObject : AnnotatedMeshView {
 struct QueryAnswer {
     bool holds = false;                 ///< true: the object satisfies the query
     std::vector<int> annotations;       ///< ids of the annotations that satisfy the query, ascending
-    std::vector<std::string> problems;  ///< comparisons that were impossible, as text: incompatible units
+    std::vector<std::string> problems;  ///< messages about comparisons that are impossible because of incompatible units
 };
 
 /// A query such as `2 arm and not handle`, `area(handle) >= area(body) / 3`, `related("same mould", 17)` (grammar:
-/// doc/annotation-find.md). A word stands for one annotation with this meaning (TagMatcher), the same annotation throughout the
-/// query. The query holds if some assignment of annotations to words satisfies it.
+/// doc/annotation-find.md). A word stands for an annotation whose tag has this meaning (TagMatcher); all occurrences of a word
+/// stand for the same annotation. The query holds if there is an assignment of annotations to words that satisfies it.
 class AnnotationQuery {
 public:
     /// Parses a query. Throws Error (usage) with the column, the error and the remedy.
@@ -62,8 +63,8 @@ private:
     std::vector<QueryReference> references_;
 };
 
-/// All values that annotations of the object have for the attribute of this name (in any language of the vocabulary), in a text
-/// form that is equal for equal values; ascending, without duplicates.
+/// All values of the attribute of this name (in any language of the vocabulary) in the annotations of the object, as texts;
+/// equal values have equal texts. Ascending, without duplicates.
 std::vector<std::string> values_of(const QueriedObject& object, const std::string& attribute);
 
 }  // namespace ostraka

@@ -7,9 +7,9 @@
 
 namespace ostraka {
 
-/// All violations of the rules that `check_class_rules` finds. Relationships are taken from the graph; without a graph,
-/// containment and adjacency are computed from the mesh. `where` names the file of the rules in errors. Throws as
-/// `check_class_rules`.
+/// Checks rules with `check_class_rules` and returns the violations. Relationships are taken from the graph; without a graph,
+/// containment and adjacency are computed from the mesh. `where` names the file of the rules in errors. Throws the same errors
+/// as `check_class_rules`.
 std::vector<RuleViolation> broken_rules(AnnotatedMeshView object, const ClassRules& rules, const Vocabulary* vocabulary,
                                         const RelationGraph* graph, const std::string& where);
 

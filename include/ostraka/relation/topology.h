@@ -6,9 +6,9 @@
 
 namespace ostraka {
 
-/// Containment of selections (six rules) as a strict partial order. Annotations are referred to by their index in the set. Among
-/// two equal selections the container is the whole mesh (`all`) if one of them is, otherwise the annotation with the lower id.
-/// Empty selections are ignored.
+/// Containment of selections (six rules) as a strict partial order. Annotations are referred to by their index in the set. If
+/// two selections are equal, the container is the annotation of the whole mesh (`all`) or, if neither is, the annotation with
+/// the lower id. Empty selections are ignored.
 struct ContainmentOrder {
     std::vector<std::vector<std::size_t>> containers;  ///< for each annotation, all annotations that contain it, ascending
     /// For each annotation, its containers without another container in between (the transitive reduction).
@@ -31,18 +31,18 @@ struct Topology {
     std::vector<AdjacentPair> adjacent;  ///< pairs in ascending order of their indices
 };
 
-/// Computes containment and adjacency of the annotations. Faces with the same set of regions are processed together: O(faces x
-/// depth + mesh) for the grouping, then O(sets x depth x annotations / 64). Throws Error (input) for more than 30000 annotations.
+/// Computes containment and adjacency of the annotations. Faces that belong to the same set of regions are processed together.
+/// Time: O(size of the mesh + faces x depth) for the grouping, plus O(sets x depth x annotations / 64). Throws Error (input)
+/// for more than 30000 annotations.
 Topology topology(AnnotatedMeshView object);
 
 /// The relationships of a topology: containment (transitive reduction), equal selections, and adjacency with the shared length.
-/// Ids count up from `first_id`. Returns the first `max_per_kind` relationships of containment, and of adjacency, if there are
-/// more.
+/// Ids count up from `first_id`. Returns at most `max_per_kind` relationships of containment and as many of adjacency.
 std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
                                            std::size_t max_per_kind = std::numeric_limits<std::size_t>::max());
 
-/// An entry of the containment tree, which lists annotations below their parents, depth first, children in the order of the set.
-/// The root of the tree, which stands for the whole shape, is not listed.
+/// An entry of the containment tree. The tree lists annotations below their parents, depth first, with children in the order of
+/// the set. The root of the tree, which stands for the whole shape, is not listed.
 struct TreeEntry {
     std::size_t annotation;  ///< index of the annotation in the set
     std::size_t depth;       ///< number of containers above the entry

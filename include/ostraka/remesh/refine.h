@@ -1,4 +1,4 @@
-// Refinement of a mesh by splitting edges; all data attached to the mesh are carried along.
+// Refines a mesh by splitting edges; values in the mesh's property maps are preserved.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -13,7 +13,7 @@ namespace ostraka {
 struct RefineOptions {
     std::uint64_t vertices = 0;  ///< target number of vertices; 0: `levels` is given instead
     int levels = 0;              ///< number of uniform subdivisions; 0: `vertices` is given instead
-    /// Position of new vertices, and which edges are split.
+    /// Scheme of refinement: determines which edges are split and where the new vertices lie.
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -31,10 +31,10 @@ struct RefineResult {
 
 /// Splits edges until the target number of vertices, or the requested number of levels, is reached; exactly one of the two must
 /// be given. Old vertices keep their indices and, unless the scheme is loop, their positions. Values in property maps of types
-/// Index, int, bool, double, float and std::uint8_t are carried along: parts of an edge or face take the value of the edge or
-/// face from which they were cut; new vertices, and edges inside old faces, take the default of the map. Takes time linear in the
-/// size of the result, except for sorting by length. The result is deterministic. Throws Error (usage) if the mesh has more
-/// vertices than requested, no edges to split, or if the result would be too large for 32-bit indices.
+/// Index, int, bool, double, float and std::uint8_t are preserved: parts of an edge or face get the value of that edge or face;
+/// new vertices, and edges inside old faces, get the default value of the map. Time: linear in the size of the result, except
+/// for sorting by length. The result is deterministic. Throws Error (usage) if the mesh has more vertices than requested, no
+/// edges to split, or if the result would be too large for 32-bit indices.
 ///
 /// Sources: Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984 (halving
 /// longest edges keeps angles bounded); Loop, "Smooth subdivision surfaces based on triangles", 1987.

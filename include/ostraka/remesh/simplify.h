@@ -1,4 +1,4 @@
-// Simplification of a mesh by edge collapses; all data attached to the mesh are carried along.
+// Simplifies a mesh by edge collapses; values in the mesh's property maps are preserved.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -13,15 +13,18 @@ namespace ostraka {
 struct SimplifyOptions {
     std::uint64_t vertices = 0;                                      ///< target number of vertices
     enum class Method { qem, lindstrom_turk } method = Method::qem;  ///< cost of a collapse, and position of the remaining vertex
-    /// What happens to marked edges: simplified along their curves, kept unchanged, or treated like other edges.
+    /// Treatment of marked edges. follow: they are simplified along their curves; protect: they are unchanged; ignore: they are
+    /// treated like other edges.
     enum class Outlines { follow, protect, ignore } outlines = Outlines::follow;
-    /// Max rotation of a face normal by one collapse, degrees; relaxed if the target number cannot be reached otherwise.
+    /// Max rotation of a face normal by one collapse, degrees; the limit is raised if the target number cannot be reached
+    /// otherwise.
     double max_normal_change = 60;
     /// Weight of the distance from marked edges, relative to the weight of the distance from faces (method qem only).
     double outline_weight = 1;
     /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
     double border_weight = 1;
-    bool keep_border = false;  ///< true: border vertices and edges stay as they are, so that neighbouring tiles still fit
+    /// True: border vertices and edges are unchanged, so that the mesh still fits neighbouring tiles.
+    bool keep_border = false;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -30,13 +33,13 @@ struct SimplifyOptions {
 struct MarkedParts {
     std::vector<bool> edges;     ///< for each edge, whether it is marked; empty: none is marked
     std::vector<bool> vertices;  ///< for each vertex, whether it is marked; empty: none is marked
-    /// For each edge, whether texture coordinates or materials differ between its faces; empty: nowhere. Seams are simplified
-    /// along their curves like outlines, whatever `SimplifyOptions::outlines` is, and never merged.
+    /// For each edge: true if texture coordinates or materials differ between its two faces; empty: there are no such edges.
+    /// Seams are always simplified along their curves, as with Outlines::follow, and are never merged.
     std::vector<bool> seams = {};
 };
 
-/// Callbacks for every merge of two vertices or edges, called while both still exist, so that values bound to them can be merged.
-/// Faces need no callback: a face either stays, with its values in every property map, or is removed.
+/// Callbacks for every merge of two vertices or edges. The callbacks are called while both elements still exist, so that values
+/// of these elements can be merged. Faces need no callback: a face either keeps its values in all property maps, or is removed.
 class CollapseVisitor {
 public:
     virtual ~CollapseVisitor() = default;
@@ -46,7 +49,7 @@ public:
     virtual void merge_edges(Mesh& /*mesh*/, Edge /*kept*/, Edge /*removed*/) {}
     /// Called before the source of `h` is merged into its target, and before the target moves to `position`.
     virtual void place_vertex(Mesh& /*mesh*/, Halfedge /*h*/, const Point& /*position*/) {}
-    /// Called before `kept` takes the place of `replaced` in the face of `replaced`: data bound to the corner of a face move.
+    /// Called before `kept` replaces `replaced` in the face of `replaced`, so that data of the face's corner can be moved.
     virtual void replace_halfedge(Mesh& /*mesh*/, Halfedge /*kept*/, Halfedge /*replaced*/) {}
 };
 
@@ -63,11 +66,11 @@ struct SimplifyResult {
 };
 
 /// Collapses edges in ascending order of cost until `options.vertices` vertices are left. The mesh stays manifold and keeps its
-/// topology (genus, components, borders) and orientation; no face is flipped. Property maps of remaining elements keep their
-/// values; the garbage is collected. Neighbouring vertices stay neighbours or are merged, so that a poly-line mapped through
-/// `vertex_map` is a poly-line. Time: O(n log n). The result is deterministic. Throws Error (usage) if the mesh has fewer
-/// vertices than requested or the number of flags does not match the mesh. If the target number cannot be reached, the result
-/// gives the reason and the mesh is the smallest that was found.
+/// topology (genus, components, borders) and orientation; no face is flipped. Remaining elements keep their values in property
+/// maps; removed elements are deleted (garbage collection). Neighbouring vertices stay neighbours or are merged, so that a
+/// poly-line mapped through `vertex_map` is a poly-line. Time: O(n log n). The result is deterministic. Throws Error (usage) if
+/// the mesh has fewer vertices than requested or the number of flags does not match the mesh. If the target number cannot be
+/// reached, the result gives the reason and the mesh is the smallest that was found.
 ///
 /// Sources: Garland and Heckbert, "Surface simplification using quadric error metrics", 1997; Lindstrom and Turk, "Fast and
 /// memory efficient polygonal simplification", 1998; link conditions: Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving

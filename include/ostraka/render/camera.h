@@ -1,4 +1,4 @@
-// Mapping between pixels of a picture and points in the mesh's own coordinates.
+// Maps pixels of a picture to lines of sight, and points in the mesh's coordinates to pixels.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -14,17 +14,17 @@ struct PixelBox {
     double left = 0, top = 0, width = 0, height = 0;  ///< position of the top left corner, and size
 };
 
-/// A pinhole camera or parallel projection. right x up = toward, all of unit length.
+/// A pinhole camera or parallel projection. `right`, `up` and `toward` are unit vectors with right x up = toward.
 struct PictureCamera {
     Vector right{1, 0, 0}, up{0, 0, 1}, toward{0, -1, 0};  ///< `toward` points from the object to the viewer
     Point centre{0, 0, 0};                                 ///< the point shown at (middle_x, middle_y)
-    double scale = 1;                                      ///< pixels per unit of length; in perspective at the depth of `centre`
-    double distance = 0;                                   ///< distance from `centre` to the eye; 0 for parallel projection
-    double middle_x = 0, middle_y = 0;                     ///< pixel coordinates of `centre`
+    double scale = 1;                   ///< pixels per unit of length; with perspective, at the depth of `centre`
+    double distance = 0;                ///< distance from `centre` to the eye; 0 for parallel projection
+    double middle_x = 0, middle_y = 0;  ///< pixel coordinates of `centre`
 
     /// Line of sight through a pixel.
     struct Ray {
-        Point origin;      ///< the eye; for parallel projection the point in the plane through `centre`
+        Point origin;      ///< the eye; for parallel projection, the point of the line in the plane through `centre`
         Vector direction;  ///< unit vector away from the viewer
     };
     /// Line of sight through the pixel coordinates x, y.
@@ -44,7 +44,7 @@ struct CameraPlan {
     PixelBox pane;                      ///< the part of the picture where the object is drawn
 };
 
-/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Takes linear time. Throws Error
+/// The camera with which `render` shows the mesh: the whole object fits the pane with a margin. Time: linear. Throws Error
 /// (input) for a mesh without vertices.
 PictureCamera fit_camera(const Mesh& mesh, const CameraPlan& plan);
 

@@ -12,7 +12,7 @@ namespace ostraka {
 /// that decreases from the middle to both ends (blue, white, red). Values outside the range take the colour of the nearest end.
 struct ColourScale {
     double minimum = 0, maximum = 1;  ///< values at the ends of the scale
-    bool diverging = false;           ///< true: the scale diverges from its middle
+    bool diverging = false;           ///< true: two hues diverge from a light colour at the middle of the scale
     std::string label;                ///< name of the quantity, with its unit
 };
 
@@ -37,7 +37,8 @@ double round_length(double length);
 /// Positions of ticks on the scale: multiples of a round step, at most about `count`, ascending.
 std::vector<double> ticks(const ColourScale& scale, int count);
 
-/// Text of a tick label, with the min number of digits that distinguishes it from the labels one step away.
+/// Text of a tick label, with the smallest number of digits that distinguishes it from the neighbouring labels (`step`:
+/// distance of the ticks).
 std::string tick_text(double value, double step);
 
 }  // namespace ostraka

@@ -33,14 +33,14 @@ struct DeepPicture {
     std::vector<std::array<std::uint16_t, 4>> rgba;  ///< red, green, blue, alpha of each pixel
 };
 
-/// Output format: pixels, or a vector document whose lines and letters stay sharp at any size.
+/// Output format: pixels (PNG) or a vector document (SVG, PDF).
 enum class PictureKind { pixels, svg, pdf };
 
 /// The format that the extension of a file name determines: .png, .svg, .pdf. Throws Error (usage) for any other extension.
 PictureKind picture_kind(const std::string& file);
 
-/// The SVG text written by cairo, with the numbers in its identifiers renumbered from 1, since cairo numbers identifiers over the
-/// whole process.
+/// Renumbers the identifiers in an SVG text written by cairo from 1, because cairo's numbers depend on earlier pictures of the
+/// process.
 std::string stable_svg(const std::string& svg);
 
 /// Parses a colour: "#rrggbb", "white", "black" or "grey". Throws Error (usage) for any other text.
@@ -49,7 +49,7 @@ Rgb parse_colour(const std::string& text);
 /// Writes a PNG file atomically. `pixels_per_metre`: resolution on paper, written as a pHYs chunk (PNG, third edition, 11.3.4.3);
 /// 0: unstated. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture, double pixels_per_metre = 0);
-/// Writes a PNG file with 16 bits per channel atomically, otherwise likewise.
+/// Writes a PNG file with 16 bits per channel atomically; otherwise like the function above.
 void write_png(const Path& file, const DeepPicture& picture, double pixels_per_metre = 0);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Off-screen rendering of meshes, without a window or a graphics card.
+// Renders meshes to pictures without a window or a graphics card.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -20,29 +20,30 @@ struct RenderOptions {
     /// Parallel projection, or perspective of a pinhole camera.
     enum class Projection { orthographic, perspective } projection = Projection::orthographic;
     double zoom = 1;  ///< magnification about the centre; 1 shows the whole object
-    /// Scale of several objects: all at the same scale, or each as large as possible.
+    /// Scale of several objects. all: the same scale for all objects; each: each object as large as possible.
     enum class Fit { all, each } fit = Fit::all;
-    enum class Shading { smooth, flat } shading = Shading::smooth;  ///< whether normals are interpolated across edges
-    /// Light: shaded by a lamp near the viewer's head, or flat: the colours exactly as in the image or file.
+    /// Smooth: normals are interpolated across edges; flat: one normal per face.
+    enum class Shading { smooth, flat } shading = Shading::smooth;
+    /// Lighting. shaded: by a light near the viewer's head; flat: none, colours are exactly those of the image or file.
     enum class Light { shaded, flat } light = Light::shaded;
     double crease = 40;         ///< smooth shading: edges whose face normals differ by more than this angle (degrees) look sharp
     int ambient_occlusion = 0;  ///< number of ambient occlusion rays per pixel; 0: none
-    int samples = 8;            ///< number of rays per pixel where colours change; 1: no additional rays
-    bool edges = false;         ///< draw the edges of the mesh over the surface
+    int samples = 8;            ///< number of rays per pixel where neighbouring pixels differ in colour; 1: no additional rays
+    bool edges = false;         ///< true: draw the edges of the mesh over the surface
     /// Drawing style; lines: visible contours, creases and borders; wire: edges.
     enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
-    bool contours = false;    ///< draw contours, creases and borders over the surface
-    bool labels = false;      ///< write names beside the object, with leader lines, instead of a legend
-    bool axes = false;        ///< draw the directions of the mesh's axes
+    bool contours = false;    ///< true: draw contours, creases and borders over the surface
+    bool labels = false;      ///< true: write names beside the object, with leader lines, instead of a legend
+    bool axes = false;        ///< true: draw the directions of the coordinate axes
     int supersample = 0;      ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
-    bool deep = false;        ///< write a PNG with 16 bits per channel
+    bool deep = false;        ///< true: write a PNG with 16 bits per channel
     double dpi = 0;           ///< pixels per inch of paper; 0: 300 with `print_scale`, else 96 in SVG and PDF and unstated in PNG
     std::string print_scale;  ///< scale on paper such as "1:2" (half the size), see parse_print_scale; empty: as large as fits
     enum class Theme { light, dark } theme = Theme::light;  ///< colours of text and background
     std::string background = "auto";   ///< colour of the background, as `parse_colour` accepts; auto: colour of the theme
-    bool transparent = false;          ///< leave the background transparent
-    bool no_scale_bar = false;         ///< omit the scale bar
-    bool no_legend = false;            ///< omit the legend and the colour bar
+    bool transparent = false;          ///< true: the background is transparent
+    bool no_scale_bar = false;         ///< true: omit the scale bar
+    bool no_legend = false;            ///< true: omit the legend and the colour bar
     std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -63,17 +64,17 @@ struct PaneLabel {
     double place_x = 0, place_y = 0;                  ///< visible point of the labelled part, where the leader line ends
 };
 
-/// Where an object is drawn in a picture, for tests and for drawing over the picture.
+/// Position and contents of the part of a picture that shows one object; for tests and for drawing over the picture.
 struct Pane {
     std::size_t scene = 0;                         ///< index of the scene that the pane shows
     std::string view;                              ///< name of the view
     int left = 0, top = 0, width = 0, height = 0;  ///< rectangle of the pane, pixels
-    double pixels_per_unit = 0;                    ///< scale; in perspective at the depth of the object's middle
-    double bar_length = 0;                         ///< length that the scale bar represents, in the mesh's unit; 0: no scale bar
-    double bar_pixels = 0;                         ///< length of the scale bar, pixels
-    std::size_t markers_shown = 0;                 ///< number of markers that are visible
-    std::vector<PaneLabel> labels;                 ///< names beside the object
-    PictureCamera camera;                          ///< in pixel coordinates of the whole picture
+    double pixels_per_unit = 0;     ///< pixels per unit of length; with perspective, at the depth of the object's middle
+    double bar_length = 0;          ///< length that the scale bar represents, in the mesh's unit; 0: no scale bar
+    double bar_pixels = 0;          ///< length of the scale bar, pixels
+    std::size_t markers_shown = 0;  ///< number of markers that are visible
+    std::vector<PaneLabel> labels;  ///< names beside the object
+    PictureCamera camera;           ///< camera, in pixel coordinates of the whole picture
 };
 
 /// A rendered picture or document.

@@ -18,7 +18,7 @@ struct SceneLine {
     Rgb colour;
     double width = 2.5;    ///< width in pixels, for a picture 900 pixels high
     bool cased = false;    ///< true: drawn with a dark outline, to be visible on any surface
-    bool through = false;  ///< true: intervals hidden by the surface are drawn dashed
+    bool through = false;  ///< true: parts hidden by the surface are drawn dashed
 };
 
 /// A dot on or near the surface.
@@ -55,9 +55,9 @@ struct LegendEntry {
     LegendMark mark = LegendMark::area;  ///< symbol beside the description
 };
 
-/// An object and what is drawn on it. The triangles may be any triangle soup. At most one of the lists of values and colours is
-/// used: the first that is not empty, in the order of declaration; without any, the surface has the colour of clay. A texture is
-/// used unless there are values; colours multiply it.
+/// An object, with the values, colours, lines and labels that are drawn on it. The triangles may be any triangle soup. Of the
+/// lists of values and colours, only the first non-empty one (in the order of declaration) is used; if all are empty, the
+/// surface has the colour of clay. A texture is used unless there are values; colours multiply it.
 struct Scene {
     TriangleSoup mesh;                  ///< triangles of the object
     std::vector<double> vertex_values;  ///< one value per point, interpolated and coloured by RenderOptions::scale; or empty
@@ -66,7 +66,7 @@ struct Scene {
     std::vector<Rgb> vertex_colours;    ///< one colour per point, interpolated; or empty
     /// Colours of triangles with several colours, ascending by triangle; they replace the other colours of these triangles.
     std::vector<ScenePatch> patches;
-    /// Reads the colours of the materials; null: no texture. It may be shared by several scenes and pictures.
+    /// Reads the colours of the materials; null: no texture. The object may be shared by several scenes and pictures.
     std::shared_ptr<const TextureSampler> texture;
     std::vector<TexturePoint> corner_texture;  ///< texture coordinates, three per triangle; empty: images are not shown
     /// Index of each triangle's material, or no_index: a triangle without texture; empty: the first material on all triangles.

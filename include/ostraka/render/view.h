@@ -9,8 +9,9 @@
 
 namespace ostraka {
 
-/// View direction in degrees. Azimuth 0 shows the front, azimuth 90 the side that is on the right in the front view; elevation 90
-/// shows the object from above. The front is the side towards -y (towards +z if the object's upward direction is y or -y).
+/// View direction in degrees. Azimuth 0 shows the front of the object; azimuth 90 shows the side that is on the right in the
+/// front view; elevation 90 shows the object from above. The front is the side towards -y (towards +z if the object's upward
+/// direction is y or -y).
 struct View {
     std::string name;                     ///< name of the view for labels
     double azimuth = 30, elevation = 20;  ///< rotation about the upward direction, and angle above the horizontal plane

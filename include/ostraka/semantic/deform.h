@@ -14,23 +14,24 @@ struct DeformOptions {
     /// the mesh; if the result is not acceptable, the solve is repeated over the mesh without seating; if that result is not
     /// acceptable either, over the cage. If no result is acceptable, the best result is used.
     enum class Space { mesh, cage, automatic } space = Space::mesh;
-    /// Target Laplacian displacements of the surface: after the edit, or at rest.
+    /// Shape whose Laplacians are preserved. edited: the shape after the edit; rest: the undeformed shape.
     enum class Details { edited, rest } details = Details::edited;
-    /// Length over which a change fades out, as a share of the mesh's diagonal; at least three edges. The weight of each vertex's
-    /// edited position is laplacian (edge / length)^4, where edge is the mean edge length, so that the result does not depend on
-    /// the resolution.
+    /// Changes decrease to zero over this length, a share of the mesh's diagonal; at least three edges. The weight of each
+    /// vertex's edited position is laplacian (edge / length)^4, where edge is the mean edge length, so that the result does not
+    /// depend on the resolution.
     double spread = 0.1;
     double laplacian = 2;  ///< weight of the Laplacian displacement of each vertex
-    /// Weight of the positions of handles that the edit moves, and of the joints of stretched parts. Handles that a constraint
-    /// also moves have the weight that corresponds to a third of the spread.
+    /// Weight of the positions of the handles that the edit moves, and of the joints of stretched parts. Handles that a
+    /// constraint moves too have a lower weight, which corresponds to a third of the spread.
     double handles = 100;
-    double followed = 0.9;  ///< min share of the edit that an acceptable result follows, 0 to 1
-    /// Max distortion of a part that was not meant to change, in an acceptable result, as a share of the mesh's diagonal.
+    double followed = 0.9;  ///< min value of EditFollowed::share in an acceptable result, 0 to 1
+    /// Max distortion, in an acceptable result, of a part whose shape should not change; a share of the mesh's diagonal.
     double distortion = 0.005;
     SolveOptions solve;  ///< options of the solver
     int rounds = 100;    ///< max number of rounds in which hard constraints are enforced
-    int passes = 5;      ///< max number of passes that update constraints on axes and measures of other parts
-    /// Max number of constraints omitted, one at a time, to find conflicts if a constraint fails; 0: no search.
+    int passes = 5;      ///< max number of passes; each pass updates constraints that refer to axes and measures of other parts
+    /// If a constraint is violated, conflicts are found by omitting other constraints, one at a time; max number of omitted
+    /// constraints. 0: conflicts are not searched.
     int conflicts = 8;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -49,32 +50,34 @@ inline RelationOptions deform_tolerances() {
 struct ConstraintReport {
     int id = 0;                    ///< id of the relationship
     std::vector<int> annotations;  ///< ids of the constrained annotations
-    std::string type, text;        ///< type of the constraint; why it is left out, or how it is violated
+    std::string type, text;        ///< type of the constraint; message why the constraint is left out or how it is violated
     bool used = false;             ///< true: the constraint was part of the solve
-    bool hard = false;             ///< true: the constraint has to hold exactly, not by weight
+    bool hard = false;             ///< true: the constraint has to be satisfied exactly (hard constraint)
     double weight = 1;             ///< weight of a soft constraint
-    Verdict before = Verdict::unknown, verdict = Verdict::unknown;  ///< verdict on the edited shape, and after solving
-    std::vector<Deviation> deviations;                              ///< deviations after solving, each with unit and tolerance
-    std::vector<double> before_values;                              ///< values of the same quantities on the edited shape
+    /// Whether the constraint holds on the edited shape, and after solving.
+    Verdict before = Verdict::unknown, verdict = Verdict::unknown;
+    std::vector<Deviation> deviations;  ///< deviations after solving, each with unit and tolerance
+    std::vector<double> before_values;  ///< values of the same quantities on the edited shape
     /// Normalised residuals of the constraint's low-level constraints, in the mesh's unit (section 4.2.3 with its erratum).
     double mean = 0, median = 0, minimum = 0, maximum = 0;
     std::size_t low_level = 0;  ///< number of low-level constraints
     double distance = 0;        ///< max distance of a row of the low-level constraints from its projection, in the mesh's unit
-    /// The constraint's term of the solver's objective, on the edited shape and after solving: weight times the sum of the
-    /// squared distances of the rows from their projections. 0 for a constraint that is hard or not part of the solve.
+    /// Term of the constraint in the solver's objective, on the edited shape (cost_before) and after solving (cost): weight
+    /// times the sum of squared distances of the rows from their projections. 0 for a constraint that is hard or not part of
+    /// the solve.
     double cost_before = 0, cost = 0;
 };
 
-/// Conflict: constraints that hold only if another constraint is omitted.
+/// A conflict: constraints that can be satisfied only if another constraint is omitted.
 struct ConstraintConflict {
     int id = 0;                         ///< id of the omitted constraint
-    std::vector<int> freed;             ///< ids of the constraints that hold without the omitted constraint
-    std::vector<Deviation> deviations;  ///< by how much the omitted constraint deviates when the others hold
+    std::vector<int> freed;             ///< ids of the constraints that are satisfied if the constraint `id` is omitted
+    std::vector<Deviation> deviations;  ///< deviations of the omitted constraint when the other constraints are satisfied
 };
 
-/// How closely a result follows the edit, over the vertices that the edit moves. Without a cage the edit moves the handles; with
-/// a cage it moves the vertices of the parts that the edit names or, if the edit names cage vertices, the mesh vertices that it
-/// moves by at least half of the maximum displacement.
+/// Measures how closely a result follows the edit, over the vertices that the edit moves. Without a cage the edit moves the
+/// handles; with a cage it moves the vertices of the parts that the edit names or, if the edit names cage vertices, the mesh
+/// vertices that it moves by at least half of the maximum displacement.
 struct EditFollowed {
     std::size_t vertices = 0;  ///< number of vertices that the edit moves
     double share = 1;          ///< 1 - (root mean square deviation) / (root mean square displacement by the edit); not below 0
@@ -92,16 +95,17 @@ struct EditFollowed {
     std::vector<Moved> others;
 };
 
-/// A part that changed its shape although neither the edit nor a violated constraint was meant to change the part.
+/// A part whose shape changed, although neither the edit nor a violated constraint should change its shape.
 struct DistortedPart {
     int annotation = 0;  ///< id of the annotation
     std::string tag;     ///< tag of the annotation
-    /// Distance of the part's vertices from the best rigid motion of the edited part: root mean square and maximum, in the mesh's
-    /// unit.
+    /// Distance of the part's vertices from the edited part moved by the best-fitting rigid motion: root mean square and
+    /// maximum, in the mesh's unit.
     double distance = 0, largest = 0;
     bool distorted = false;  ///< true: `distance` exceeds the permitted distortion
     bool thinned = false;    ///< true: `thin` exceeds the permitted share
-    double thin = 0;  ///< share of the part's area where it is less than half as thick as at rest, and as after the edit alone
+    /// Share of the part's area that is less than half as thick as at rest and less than half as thick as after the edit alone.
+    double thin = 0;
 };
 
 /// Defects of the deformed surface, compared with the surface at rest and after the edit.
@@ -109,9 +113,10 @@ struct SurfaceChange {
     /// Number of pairs of faces that cross each other, after solving and at rest.
     std::size_t crossings = 0, crossings_before = 0;
     std::size_t crossings_new = 0;  ///< number of pairs of faces that cross after solving and did not cross at rest
-    /// Number of edges with a dihedral deviation of more than 150 degrees that is 30 degrees larger than at rest.
+    /// Number of edges whose face normals differ by more than 150 degrees, and by at least 30 degrees more than at rest.
     std::size_t folds = 0;
-    /// Number of edges whose dihedral deviation was increased by solving by more than 60 degrees, to over 90 degrees.
+    /// Number of edges at which solving increased the angle between the face normals by more than 60 degrees, to more than 90
+    /// degrees.
     std::size_t kinks = 0;
 };
 
@@ -120,50 +125,51 @@ struct DeformResult {
     std::vector<Point> points;                  ///< positions of the mesh's vertices
     std::vector<Point> edited;                  ///< positions of the mesh's vertices after the edit alone
     EditFollowed followed;                      ///< how closely the result follows the edit
-    SurfaceChange surface;                      ///< defects of the surface
+    SurfaceChange surface;                      ///< defects of the deformed surface
     std::vector<DistortedPart> distorted;       ///< distorted parts, the most distorted first
     std::vector<Point> cage;                    ///< positions of the cage's vertices after solving; empty without a cage
     std::vector<ConstraintReport> constraints;  ///< outcome of each constraint
-    SolveSummary summary;                       ///< summary of the solve; with hard constraints in mesh space: of the last round
+    SolveSummary summary;                       ///< summary of the solve; with hard constraints in mesh space, of the last round
     int rounds = 0;                             ///< number of rounds in which hard constraints were enforced
     bool solved = false;                        ///< true: there were constraints to solve
     DeformOptions::Space space = DeformOptions::Space::mesh;  ///< unknowns of the solve: mesh or cage vertices
-    std::vector<int> seated;                                  ///< ids of the constraints whose parts the automatic choice seated
-    /// True if every constraint holds, the edit is followed, and no faces cross or fold over that did not at rest (for
-    /// `restore_constraints`: if every constraint holds).
+    std::vector<int> seated;  ///< ids of the constraints whose parts were seated by the space `automatic`
+    /// True if every constraint holds, the edit is followed, and there are no new crossings or folds of faces compared with the
+    /// shape at rest (for `restore_constraints`: true if every constraint holds).
     bool acceptable = true;
-    std::vector<std::string> objections;  ///< why the result is not acceptable
-    int passes = 0;  ///< number of passes until the parts that serve as references of constraints did not move
+    std::vector<std::string> objections;        ///< why the result is not acceptable
+    int passes = 0;                             ///< number of passes until the reference parts of constraints no longer moved
     std::vector<ConstraintConflict> conflicts;  ///< constraints that contradict each other
     std::vector<std::size_t> selected;          ///< for each step of the edit, number of handles that the step selected
-    /// Number of constraints that were not omitted in the search for conflicts, because of the limit `conflicts`.
+    /// Number of constraints that the search for conflicts did not try to omit, because of the limit `conflicts`.
     std::size_t untried = 0;
 };
 
 /// Deforms a mesh: applies the edit and solves for the constraints of the graph (relationships that are constraints). With a cage
-/// the edit moves vertices of the cage, and the mesh follows through the weights; without a cage it moves vertices of the mesh,
-/// and the surrounding vertices follow (shape_of_edit). Then constraints are solved over the vertices of the mesh or of the cage
-/// (options.space). `edit_name` and `graph_name` are used in errors. Throws Error as follow_edit does; (input) for invalid
-/// constraints: a missing annotation, attribute or measure, an inverted range, an empty region, a part without an axis; (usage)
-/// for cage space without a cage.
+/// the edit moves vertices of the cage, and the mesh is deformed by the cage coordinates; without a cage it moves vertices of
+/// the mesh, and the surrounding vertices follow (shape_of_edit). Then constraints are solved over the vertices of the mesh or
+/// of the cage (options.space). `edit_name` and `graph_name` are used in errors. Throws the errors of follow_edit; Error
+/// (input) for invalid constraints: a missing annotation, attribute or measure, an inverted range, an empty region, a part
+/// without an axis; (usage) for cage space without a cage.
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const Edit& edit, const std::string& edit_name,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {},
                     const std::string& graph_name = "graph");
 
-/// Positions of the mesh's vertices after a step of an edit alone. With a cage: by the coordinates of the mesh in the cage;
-/// without a cage: the handles at their new positions, and the other vertices with the smoothest displacement that fades out over
-/// the spread.
+/// Positions of the mesh's vertices after a step of an edit alone. With a cage, they follow from the coordinates of the mesh in
+/// the cage. Without a cage, the handles are at their new positions, and the other vertices have the smoothest displacement
+/// that decreases to zero over the spread.
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options = {});
 
 /// Solves for the constraints of the graph starting from given vertex positions (of a fit, for example) instead of an edit:
 /// vertices marked in `held` count as handles that were moved, the other vertices are attracted to their positions in `points`.
-/// Constraints refer to `object` as the shape at rest. Throws Error (usage) if the numbers of positions, flags and vertices
-/// differ, and for cage space; (input) as deform.
+/// `object` is the shape at rest, to which the constraints refer. Throws Error (usage) if the numbers of positions, flags and
+/// vertices differ, and for cage space; (input) as deform.
 DeformResult restore_constraints(AnnotatedMeshView object, const RelationGraph& graph, const std::vector<Point>& points,
                                  const std::vector<bool>& held, const DeformOptions& options = {},
                                  const RelationOptions& tolerances = {}, const std::string& graph_name = "graph");
 
-/// Validates a relationship that is a constraint; throws as deform does if it is invalid. `where` names the file in errors.
+/// Validates a relationship that is a constraint; throws the same errors as deform if it is invalid. `where` names the file in
+/// errors.
 void check_constraint(AnnotatedMeshView object, const Relationship& relationship, const std::string& where);
 
 }  // namespace ostraka

@@ -16,11 +16,11 @@ namespace ostraka {
 struct EditStep {
     /// An annotation, given by its id or tag.
     using AnnotationName = std::variant<int, std::string>;
-    /// Selects the vertices of annotations, or the cage vertices that influence them.
+    /// Selects the mesh vertices of annotations or, with a cage, the cage vertices that influence these vertices.
     struct Annotations {
         std::vector<AnnotationName> names;  ///< ids or tags of the annotations
     };
-    /// Selects vertices of the mesh, or the cage vertices that influence them.
+    /// Selects mesh vertices or, with a cage, the cage vertices that influence these vertices.
     struct MeshVertices {
         std::vector<Index> indices;  ///< indices of mesh vertices
     };
@@ -37,12 +37,14 @@ struct EditStep {
     /// Selection of the handles.
     std::variant<Annotations, MeshVertices, CageVertices, Box, All> select;
 
-    /// Min influence on a selected mesh vertex with which a cage vertex is selected: a number or a rule (influence_threshold);
-    /// per_point: the largest weight of each mesh vertex. Empty: 0.4, or lower if a mesh vertex would have no handle.
+    /// A cage vertex is selected if its weight at a selected mesh vertex is at least this threshold: a number, a rule
+    /// (influence_threshold), or per_point (only the cage vertices with the largest weight at each mesh vertex). Empty: 0.4, or
+    /// a lower threshold if a mesh vertex would have no handle.
     enum class Rule { auto_mesh, auto_cage, per_point };
     std::optional<std::variant<double, Rule>> threshold = {};
     bool rule_within_selection = false;  ///< true: the rule considers the selected vertices only; false: all vertices of the mesh
-    /// Level of nested cages in which handles are selected, 0: the outermost; empty: the innermost cage around the vertices.
+    /// Level of the nested cages in which handles are selected (0: the outermost cage); empty: the innermost cage that contains
+    /// the vertices.
     std::optional<std::size_t> level = {};
 
     /// Moves the handles by a vector.
@@ -96,17 +98,20 @@ struct HandleSpace : AnnotatedMeshView {
 /// State after a step of an edit: positions of all handles, and the handles selected so far.
 struct EditState {
     std::vector<Point> handles;  ///< positions of all handles
-    /// For each handle, whether a step so far selected it; vertices of nested cages that are only carried along are not marked.
+    /// For each handle: true if this or an earlier step selected it; vertices of nested cages that only follow their parent
+    /// cage are not marked.
     std::vector<bool> touched;
     std::vector<Index> selected;  ///< indices of the handles selected by this step
-    std::vector<bool> named;      ///< for each vertex of the mesh, whether a step so far referred to it, by annotation or index
-    bool by_handles = false;      ///< true: a step so far selected vertices of the cage directly
-    double threshold = 0;         ///< min influence with which cage vertices were selected; 0 if no threshold was used
+    /// For each vertex of the mesh: true if this or an earlier step referred to it by annotation or index.
+    std::vector<bool> named;
+    bool by_handles = false;  ///< true: this or an earlier step selected vertices of the cage directly
+    double threshold = 0;     ///< min influence with which cage vertices were selected; 0 if no threshold was used
 };
 
-/// The min influence with which cage vertices are assigned to a part (section 5.2.3). Rule "auto-mesh": the smallest row maximum
-/// of the weights, so that each mesh vertex has a cage vertex; "auto-cage": the smallest column maximum, so that each cage vertex
-/// has a mesh vertex. `rows` restricts the rule to these mesh vertices (all if empty). Throws Error (usage) for another rule.
+/// Computes the threshold on weights by which cage vertices are assigned to a part (section 5.2.3). Rule "auto-mesh": the
+/// smallest row maximum of the weights, so that each mesh vertex is influenced by at least one cage vertex; "auto-cage": the
+/// smallest column maximum, so that each cage vertex influences at least one mesh vertex. `rows` restricts the rule to these
+/// mesh vertices (all if empty). Throws Error (usage) for another rule.
 double influence_threshold(const WeightMatrix& weights, const std::string& rule, const std::vector<Index>& rows = {});
 /// Cage vertices with a weight of at least `threshold` on one of the mesh vertices in `rows`, ascending.
 std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold);
@@ -122,8 +127,8 @@ std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation);
 bool is_whole(const Mesh& mesh, const Annotation& annotation);
 
 /// Executes an edit; returns the state after each step. `where` names the edit in errors. Throws Error (input) that names the
-/// step: missing annotation or tag shared by several annotations, indices out of range, nothing selected (with the largest
-/// influence available), handles moved too far, a wrong number of positions.
+/// step: missing annotation or tag shared by several annotations, indices out of range, no handle selected (the message gives
+/// the largest weight), handles moved too far, a wrong number of positions.
 std::vector<EditState> follow_edit(const Edit& edit, const HandleSpace& space, const std::string& where);
 
 }  // namespace ostraka

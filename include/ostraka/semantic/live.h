@@ -8,12 +8,12 @@
 
 namespace ostraka {
 
-/// The constraints of a graph over the vertices of a cage, set up once for a drag. Constraints are evaluated on the shape at the
-/// start of the drag; `deform` with the same steps gives the exact result after the drag.
+/// Solver for one drag of cage vertices: the constraints of a graph, linearised over the vertices of the cage at the start of
+/// the drag. After the drag, `deform` with the same steps gives the exact result.
 class LiveDeformation {
 public:
-    /// `edit`: the steps before the drag. `handles`: the cage vertices to be dragged. Throws as deform; Error (usage) without a
-    /// cage, or for a handle that is not a vertex of the cage.
+    /// `edit`: the steps before the drag. `handles`: the cage vertices to be dragged. Throws the errors of deform; Error
+    /// (usage) without a cage, or for a handle that is not a vertex of the cage.
     LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const Edit& edit, std::vector<Index> handles,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {});
     ~LiveDeformation();
@@ -23,9 +23,9 @@ public:
     /// True if there is a constraint to solve for.
     [[nodiscard]] bool has_constraints() const;
 
-    /// Positions of the cage's vertices after the handles were dragged to `places` (one per handle), by a few iterations from the
-    /// result of the last call. Quadratic in the number of cage vertices if constraints involve few points, and linear in the
-    /// constrained vertices.
+    /// Positions of the cage's vertices after the handles were dragged to `places` (one per handle), computed by a few
+    /// iterations that start from the result of the last call. Time: quadratic in the number of cage vertices, plus linear in
+    /// the number of constrained mesh vertices.
     const std::vector<Point>& follow(const std::vector<Point>& places);
 
 private:

@@ -8,12 +8,13 @@ namespace ostraka {
 
 struct ClassifyOptions {
     MemberFitOptions fit;  ///< options for registering the template to the object
-    /// Whether an object with the template's triangles is used as given.
+    /// Treatment of objects that have the template's triangles.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
-    bool attributes = false;  ///< true: attribute values out of range also reject the object
-    /// True: whether the template lies on the object is decided by max_off alone, not also by its distance from the members.
+    bool attributes = false;  ///< true: an object is also rejected if attribute values are out of the class's ranges
+    /// True: the decision whether the template lies on the object uses only MemberFitOptions::max_off; false: it also uses the
+    /// dissimilarity to the members.
     bool strict = false;
-    /// Min relative difference of the scores of two classes that are distinguished, as a share of the better score.
+    /// Two classes are distinguished if their scores differ by at least this share of the better score.
     double close = 0.05;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -24,10 +25,10 @@ struct QuantityCheck {
     ClassQuantity quantity;           ///< the quantity, with the value of the object
     std::optional<double> low, high;  ///< bounds of the accepted range; empty: no bound
     double off = 0;                   ///< distance of the value from the accepted range, in the unit of the value; 0 inside
-    double excess = 0;    ///< `off` relative to the width of the accepted range (for a residual, relative to its threshold)
-    bool decides = true;  ///< true: the check can reject the object
-    std::string worst;    ///< for combined quantities: the component that deviates most, and its deviation, as text
-    /// Max value of a recognised object; larger values are not rejected, but not recognised either.
+    double excess = 0;                ///< `off` divided by the width of the accepted range (for a residual, by its threshold)
+    bool decides = true;              ///< true: the check can reject the object
+    std::string worst;                ///< for combined quantities: the component that deviates most, and its deviation, as text
+    /// An object is recognised as a member only up to this value; larger values up to `high` leave the answer undecided.
     std::optional<double> recognised;
 };
 
@@ -39,26 +40,28 @@ std::string to_string(Membership membership);
 struct ClassAnswer {
     std::string name;                            ///< name of the class
     Membership verdict = Membership::undecided;  ///< whether the object belongs to the class
-    std::string undecided;                       ///< why the verdict is undecided; empty for other verdicts
+    std::string undecided;                       ///< reason if the verdict is undecided; empty for other verdicts
     MemberFit fit;                               ///< registration of the class's template to the object
-    std::string off;      ///< message that the template does not lie on the object, which is then not a member; empty if it does
-    double most_off = 0;  ///< max value of FitResiduals::off without this message
-    /// True: more than half of both surfaces is off (uninformative_fit), which rejects the object whatever the other checks say.
+    /// Message if the template does not lie on the object, which is then not a member; empty if it lies on the object.
+    std::string off;
+    double most_off = 0;  ///< value of FitResiduals::off above which the message `off` is given
+    /// True: more than half of the two surfaces do not lie on each other (uninformative_fit); the object is then rejected
+    /// regardless of the other checks.
     bool hopeless = false;
     std::optional<double> unlike;       ///< dissimilarity to the members (dissimilarity.h); empty: unknown
     std::vector<QuantityCheck> checks;  ///< comparison of each quantity with its range
     /// Indices of the failed checks that can reject: proportions, constraints and relations first, then by descending excess.
     std::vector<std::size_t> against;
-    /// Score of the class for the object; lower is better. The score needs no thresholds: it is ten times the sum of both fit
-    /// distances, the unmatched and unexplained shares, stretch and bend, plus twice the absolute logarithms of compactness and
-    /// geodesics relative to the members' means. `decide` replaces this sum by the dissimilarity if all classes have one. The
-    /// contribution of the parts is added in both cases.
+    /// Score of the class for the object; lower is better. The score is ten times the sum of the two fit distances, the
+    /// unmatched share, the unexplained share, stretch and bend, plus twice the absolute logarithms of compactness and
+    /// geodesics relative to the members' means. `decide` uses the dissimilarity instead of this sum if it is known for all
+    /// classes. The contribution of the parts is added in both cases.
     double score = 0;
     double parts = 0;              ///< contribution of the parts to the score
     ShapeCoordinates coordinates;  ///< coordinates of the fitted template
-    /// Messages on unusual properties: an object more than three times as large as the largest member or less than a third of the
-    /// smallest, or, in correspondence, a mirror image that is less than half as far from the mean. Without `sizes` neither
-    /// property rejects the object.
+    /// Messages about unusual properties: the object is more than three times as large as the largest member or smaller than a
+    /// third of the smallest member; or, for an object in correspondence, its mirror image is less than half as far from the
+    /// mean as the object. These properties do not reject the object unless the class was learnt with `sizes`.
     std::vector<std::string> odd;
     [[nodiscard]] std::vector<std::string> reasons() const;  ///< reasons for the verdict, as sentences
 };
@@ -74,7 +77,7 @@ struct Classification {
     int nearest = -1;                  ///< index of the class with the best score, whether the object belongs to it or not
     Membership verdict = Membership::undecided;  ///< whether the object belongs to a class
     std::string text;                            ///< the result as a sentence
-    std::string problem;  ///< why there are no answers: the object could not be read or measured; empty if there are answers
+    std::string problem;  ///< reason if there are no answers: the object could not be read or measured; otherwise empty
 };
 
 /// Selects, among the classes that accept the object, the class with the best score. The verdict is "other" (no class) if every

@@ -1,4 +1,4 @@
-// How closely one surface lies on another: distance, share of the area that deviates, and regions that deviate.
+// Measures how closely one surface lies on another: mean distance, share of the area that deviates, and the deviating regions.
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
@@ -28,13 +28,14 @@ struct SurfaceDeviation {
 
 /// Samples at most 5000 points evenly over the faces of `mesh`. A point deviates if it is farther than `max_distance` from the
 /// other surface, or if no point of the other surface within that distance has a normal within 60 degrees of the point's normal.
-/// A face without a sample takes the state of the nearest face with a sample, counted in steps between adjacent faces.
+/// A face without a sample gets the state of the face with a sample that can be reached in the fewest steps between adjacent
+/// faces.
 SurfaceDeviation surface_deviation(const Mesh& mesh, const SurfaceSearch& other, double max_distance);
 
-/// Finds the faces of an object that form the inside of walls whose outside lies on the other surface: faces that deviate (as in
-/// surface_deviation) and whose normal points away from the normal at the nearest point of the other surface, where this nearest
-/// point in turn lies on the object. Returns one flag per face; connected regions of less than one per cent of the area are
-/// ignored.
+/// Finds the inner side of the walls of a hollow object whose outer side lies on the other surface. A face belongs to the inner
+/// side if it deviates (as in surface_deviation), if its normal is opposite to the normal at the nearest point of the other
+/// surface, and if this point lies on the object. Returns one flag per face; connected regions of less than one per cent of the
+/// area are ignored.
 std::vector<bool> inner_wall_faces(const Mesh& object, const SurfaceSearch& other, double max_distance);
 
 }  // namespace ostraka

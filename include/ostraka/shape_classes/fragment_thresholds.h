@@ -1,4 +1,4 @@
-// Thresholds that distinguish fragments of one object from fragments of other objects, learnt from the members of a class.
+// Learns, from the members of a class, thresholds that distinguish fragments of one object from fragments of different objects.
 #pragma once
 
 #include "ostraka/reconstruction/reconstruct.h"
@@ -9,11 +9,11 @@
 namespace ostraka {
 
 /// Quantities of one member from which the thresholds are learnt, as residuals of kind `geometry`; quantities that cannot be
-/// measured have no value. "residual": pieces of the member (each a landmark of the template with its nearest landmarks, a
-/// quarter of all and at least four) are registered by rotation and translation at the scale of all landmarks; the largest value
-/// over the pieces of the root mean square residual divided by the spread. "scale-tolerance": the largest difference over the
-/// pieces between the scale of the piece and the scale of the other landmarks, per cent. "slack": the largest deviation of a
-/// constraint, per cent. "residual" and "scale-tolerance" need eight landmarks.
+/// measured have no value. For the first two, the member is divided into pieces: each piece is a landmark of the template with
+/// its nearest landmarks (a quarter of all landmarks, at least four). "residual": each piece is registered by rotation and
+/// translation at the scale of all landmarks; the quantity is the largest root mean square residual of a piece divided by its
+/// spread. "scale-tolerance": the largest difference between the scale of a piece and the scale of the other landmarks, per
+/// cent. "slack": the largest deviation of a constraint, per cent. "residual" and "scale-tolerance" need eight landmarks.
 std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
                                                const std::vector<ClassQuantity>& quantities);
 
@@ -31,9 +31,9 @@ struct UsedThreshold : FragmentThreshold {
     std::string from;  ///< source of the threshold: "class", "told" (given by the user) or "default"
 };
 /// Replaces the defaults in `options` by the thresholds of the class, except options given by the user (`specified` returns
-/// whether the user gave the option of this name). Members do not show errors of scanning and measuring, so the slack of a
-/// constraint is never below the default. Returns the values of "residual", "scale-tolerance" and "slack" in effect; without a
-/// class the options are unchanged.
+/// whether the user gave the option of this name). The slack of a constraint is never below the default, because the members
+/// contain no errors of scanning and measuring. Returns the values of "residual", "scale-tolerance" and "slack" in effect;
+/// without a class the options are unchanged.
 std::vector<UsedThreshold> apply_class_thresholds(ReconstructOptions& options, const ShapeClass* learnt,
                                                   const std::function<bool(const std::string&)>& specified);
 /// JSON of thresholds, as in assembly files.

@@ -1,4 +1,4 @@
-// Classes of landmark configurations: members are landmark files with the same landmark names, without a surface.
+// Classes of landmark configurations: the members are landmark files with the same landmark names and have no surface.
 #pragma once
 
 #include "ostraka/files/file.h"
@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// Whether the file has the extension of a landmark file: .mrk.json, .fcsv, .tps, .pp.
+/// True if the file has the extension of a landmark file: .mrk.json, .fcsv, .tps, .pp.
 bool is_landmark_file(const Path& file);
 
 /// A template that consists of landmarks: one vertex per landmark, no faces, no annotations.

@@ -20,8 +20,8 @@ struct MemberFitOptions {
     AnnotationMatchOptions annotations;  ///< options for matching annotations
     bool ignore_landmarks = false;       ///< true: register the template by its surface even if there are landmarks
     int tries = 1;                       ///< without landmarks: number of initial poses that are fitted; the best fit is kept
-    double observed = 0.02;              ///< max distance between surfaces that lie on each other, as a share of the diagonal
-    double max_off = 0.125;              ///< max value of FitResiduals::off with which a template lies on an object
+    double observed = 0.02;              ///< surfaces within this distance lie on each other; a share of the diagonal
+    double max_off = 0.125;              ///< the template lies on the object if FitResiduals::off is at most this value
     MemberFitOptions() {
         fit.counterparts = NonRigidOptions::Counterparts::surface;  // the thresholds of classes were measured with this setting
         alignment.shrinkage = 0.3;
@@ -32,7 +32,7 @@ struct MemberFitOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// A whole object, not a fragment; it may have no annotations.
+/// An object that is not a fragment; it may have no annotations.
 struct WholeObject : AnnotatedMesh {
     std::string name;  ///< name of the object, see object_name
 };
@@ -52,41 +52,43 @@ struct FitResiduals {
     [[nodiscard]] double off() const { return 0.5 * (unmatched + unexplained); }
 };
 
-/// Whether an object with the template's triangles is used as given: if it has the triangles (automatic), always, or never.
+/// Treatment of objects that have the same triangles as the template (are in correspondence). given: the vertices of the object
+/// are used without a fit; fitted: the template is fitted; automatic: as `given` if the object has the template's triangles,
+/// otherwise as `fitted`.
 enum class CorrespondenceChoice { automatic, given, fitted };
 
 /// Registration of a template to an object.
 struct MemberFit {
-    std::vector<Point> points;              ///< positions of the template's vertices on the object
-    double scale = 1;                       ///< scale of the template
-    std::string placed_by;                  ///< how the template was registered: by "correspondence", "landmarks" or "surface"
-    std::string problem;                    ///< why the template is not fitted, with the remedy; empty if it is fitted
-    std::vector<std::string> notes;         ///< remarks on the registration
+    std::vector<Point> points;       ///< positions of the template's vertices on the object
+    double scale = 1;                ///< scale of the template
+    std::string placed_by;           ///< how the template was registered: by "correspondence", "landmarks" or "surface"
+    std::string problem;             ///< reason if the template could not be fitted, with the remedy; empty if it is fitted
+    std::vector<std::string> notes;  ///< remarks on the registration
     std::optional<FitResiduals> residuals;  ///< empty for members in correspondence
-    double contact_distance = 0;            ///< max distance between surfaces that lie on each other, in the object's unit
-    /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
-    /// (inner_wall_faces). The inside of the walls is excluded from the residuals and from the measures of the whole shape.
-    /// `outer` is the object without the inside, closed where it was cut off; null if there is no inside.
+    double contact_distance = 0;            ///< distance within which surfaces lie on each other, in the object's unit
+    /// Share of the object's surface that is the inner side of walls, as in a hollow figurine (inner_wall_faces). The inner
+    /// side is excluded from the residuals and from the measures of the whole shape. `outer` is the object without the inner
+    /// side, closed where it was cut off; null if the object is not hollow.
     double cavity = 0;
     std::shared_ptr<const Mesh> outer;
-    /// `foreign`: regions of the object on which no part of the template lies; `missing`: regions of the fitted template that do
-    /// not lie on the object; both in the object's coordinates. Empty in correspondence.
+    /// `foreign`: regions of the object that do not lie on the template; `missing`: regions of the fitted template that do not
+    /// lie on the object. Both are in the object's coordinates, and empty for an object in correspondence.
     std::vector<DeviatingRegion> foreign, missing;
 };
 
-/// Value of FitResiduals::off above which a fit gives no information on the object.
+/// If FitResiduals::off is above this value, the fit gives no information about the object.
 inline constexpr double uninformative_fit = 0.5;
 
 /// Message, with numbers, that the template does not lie on the object because `off()` is above `maximum`; empty if `off()` is
 /// not above, or if there are no residuals.
 std::string fit_off_message(const MemberFit& fit, double maximum);
 
-/// Messages that explain a fit, one per line: how much of the object the template explains, how much of the template lies on the
-/// object, the distance threshold, and for each deviating region its position, area, distance, and the nearest part of the
-/// template. Empty in correspondence.
+/// Messages about a fit, one per line: the share of the object that lies on the template, the share of the template that lies
+/// on the object, the distance threshold, and for each deviating region its position, area, distance and the nearest part of
+/// the template. Empty for an object in correspondence.
 std::vector<std::string> fit_explanation(const MemberFit& fit);
 
-/// Whether a member has the template's triangles: the same number of vertices and the same faces in the same order.
+/// True if a member has the template's triangles: the same number of vertices, and the same faces in the same order.
 bool in_correspondence(const Mesh& mesh, const Mesh& member);
 
 /// Registers the template (`mesh`, `set`) to the object by a similarity and then fits it (`fit_template`). The similarity comes

@@ -17,12 +17,12 @@ QuantityKind quantity_kind(const std::string& word);
 /// A quantity of a member, with its value.
 struct ClassQuantity {
     QuantityKind kind = QuantityKind::geometry;  ///< kind of quantity
-    int id = -1;                                 ///< id of the relationship, or of the annotation of an attribute; -1: none
-    std::string name;                            ///< "little finger / ring finger", "height", "distance" ...
-    std::string subject;                         ///< type of the relationship, or tag of the annotation
-    std::string unit = {};                       ///< empty for shares and ratios
-    bool one_sided = false;                      ///< true: a residual, for which smaller is never worse
-    std::optional<double> value = {};            ///< empty: the quantity cannot be measured
+    int id = -1;                       ///< id of the relationship, or of the annotation that has the attribute; -1: none
+    std::string name;                  ///< name of the quantity: "little finger / ring finger", "height", "distance" ...
+    std::string subject;               ///< type of the relationship, or tag of the annotation
+    std::string unit = {};             ///< unit of the value; empty for shares and ratios
+    bool one_sided = false;            ///< true: the quantity is a residual, which has only an upper threshold
+    std::optional<double> value = {};  ///< empty: the quantity cannot be measured
 
     /// Text that identifies the same quantity on another member.
     [[nodiscard]] std::string key() const;
@@ -30,7 +30,7 @@ struct ClassQuantity {
     [[nodiscard]] std::string text() const;
 };
 
-/// The template of a class. The template refers to objects, which must outlive it.
+/// The template of a class. A template stores references to its mesh, annotations and graph, which must outlive it.
 struct ClassTemplate : AnnotatedMeshView {
     const RelationGraph& graph;  ///< relationships between the annotations
 };
@@ -44,20 +44,20 @@ Landmarks landmarks_of(const std::vector<Point>& points);
 /// Converts a landmark configuration to points.
 std::vector<Point> points_of(const Landmarks& landmarks);
 
-/// Measures all quantities defined on the annotations of the template at the given points: for each proportion the ratio of its
-/// measures and the deviation of the ratio from the range (per cent); the deviations of the other constraints and of the
-/// geometric relations (both in the coordinate system of the template); scalar measures and descriptors of the attributes, in the
+/// Measures all quantities defined on the annotations of the template at the given points: for each proportion, the ratio of
+/// its measures and the deviation of the ratio from its range (per cent); for each other constraint and geometric relation, its
+/// deviations (in the coordinate system of the template); for each attribute with one value, its measure or descriptor, in the
 /// unit of the points. The list and its order depend only on the template. A quantity that cannot be measured has no value.
 std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_template, const std::vector<Point>& points, bool sizes);
 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
-/// "bend"; without values in correspondence.
+/// "bend"; they have no values for a member in correspondence.
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
 /// Measures of an object's own surface as quantities of kind geometry: "compactness", "geodesic mean", "geodesic most", "geodesic
 /// variation", "second", "fourth" and "sixth far point", "thickness mean", "thickness median", "thickness most".
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape);
 
-/// Whether the quantity is "unmatched" or "unexplained", which never exceed 1.
+/// True if the quantity is "unmatched" or "unexplained", which are shares of at most 1.
 bool is_share_of_surface(const ClassQuantity& quantity);
 
 }  // namespace ostraka

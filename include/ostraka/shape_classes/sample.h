@@ -1,4 +1,4 @@
-// Random new members of a class, which are accepted only if the constraints of the class hold.
+// Draws random new members of a class. A draw is accepted only if it satisfies the constraints of the class.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -9,10 +9,11 @@ namespace ostraka {
 struct SampleOptions {
     int count = 10;          ///< number of members to draw
     std::uint64_t seed = 1;  ///< random seed
-    /// modes: random coefficients of the modes; edits: the mean shape with random parts stretched or scaled.
+    /// Method of drawing. modes: random coefficients of the modes; edits: random parts of the mean shape are stretched or
+    /// scaled.
     enum class Way { modes, edits } by = Way::modes;
-    double spread = 1;  ///< factor on the range of the members' coefficients
-    double edit = 0.2;  ///< edits: standard deviation of the logarithm of a part's stretch
+    double spread = 1;  ///< coefficients are drawn within the range of the members' coefficients times this factor
+    double edit = 0.2;  ///< standard deviation of the logarithm of the factor by which a part is stretched (method edits)
     int attempts = 20;  ///< max number of draws per member
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
@@ -21,9 +22,9 @@ struct SampleOptions {
 /// A drawn member.
 struct ClassSample {
     std::vector<Point> points;         ///< positions of the template's vertices
-    std::vector<double> coefficients;  ///< coefficients of the modes as drawn; empty for edits
+    std::vector<double> coefficients;  ///< drawn coefficients of the modes; empty with the method edits
     std::vector<std::string> edits;    ///< descriptions of the edits
-    double moved = 0;  ///< largest displacement of a vertex by restoring the constraints, relative to the diagonal
+    double moved = 0;  ///< largest displacement of a vertex when the constraints were restored, relative to the diagonal
 };
 
 /// Result of `sample_class`.
@@ -37,18 +38,19 @@ struct Sampling {
     std::vector<std::string> examples;  ///< the first reason for rejection of each kind
     /// Mean distance between two samples, and between two members, relative to the mean size.
     double diversity = 0, of_members = 0;
-    /// Accepted share of the draws.
+    /// Share of the draws that were accepted.
     [[nodiscard]] double acceptance() const {
         return tried > 0 ? static_cast<double>(samples.size()) / static_cast<double>(tried) : 0;
     }
 };
 
 /// Draws new shapes of a class. Each draw has its own random stream of the seed. Coefficients are normal with the standard
-/// deviations of the modes, drawn again until they lie within `spread` times the range of the members; if sizes do not count, a
-/// centroid size is drawn from the range of the members. Then the constraints of the template are restored. A draw is accepted if
-/// all constraints hold, if every quantity on the template's annotations is in the accepted range, and if no faces intersect
-/// except faces that intersect on the template. Returns fewer than `count` shapes if the attempts are used up. Throws Error
-/// (input) for a class without modes (by modes) or a template without parts (by edits).
+/// deviations of the modes, drawn again until they lie within `spread` times the range of the members; if size is not part of
+/// the shape, a centroid size is drawn from the range of the members. Then the shape is deformed so that it satisfies the
+/// constraints of the template. A draw is accepted if all constraints hold, if every quantity on the template's annotations is
+/// in the accepted range, and if no faces intersect except faces that intersect on the template. Returns fewer than `count`
+/// shapes if the attempts are used up. Throws Error (input) for a class without modes (method modes) or a template without
+/// parts (method edits).
 Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_template, const SampleOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// A class of objects learnt from members: ranges of measured quantities, mean shape, modes of variation, thresholds (thesis,
+// Learns a class of objects from members: ranges of measured quantities, mean shape, modes of variation, thresholds (thesis,
 // section 1.2).
 #pragma once
 
@@ -15,13 +15,16 @@ namespace ostraka {
 struct LearnOptions {
     MemberFitOptions fit;  ///< options for registering the template to members
     ModeOptions modes;     ///< options of the mean shape and the modes
-    /// Whether members with the template's triangles are used as given.
+    /// Treatment of members that have the template's triangles.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
-    /// Max share of members that all thresholds together reject, if the quantities are normal or log-normal.
+    /// The thresholds are chosen so that all of them together reject at most this share of members, if the quantities are
+    /// normal or log-normal.
     double reject = 0.05;
-    double resolution = 0.02;  ///< standard deviation of the measurements of one member, as a share of the value
-    double unsure = 0.15;  ///< max share of members that are not recognised, if there are fewer than three out-of-class objects
-    double accept = 0.05;  ///< max share of out-of-class objects that are accepted by all classes queried together
+    double resolution = 0.02;  ///< standard deviation of the measurement error, as a share of the value
+    /// At most this share of members is not recognised; used if there are fewer than three out-of-class objects.
+    double unsure = 0.15;
+    /// At most this share of out-of-class objects is accepted by at least one of the classes that are queried together.
+    double accept = 0.05;
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -29,25 +32,28 @@ struct LearnOptions {
 /// The values of one quantity on the members, and the range accepted for other objects.
 struct LearntRange {
     ClassQuantity quantity;  ///< the quantity, without a value
-    /// Value of each member, relative to the other members if leave-one-out; empty: not measured.
-    std::vector<std::optional<double>> values;             ///< one per member; relative to other members: leave-one-out
+    /// Value of each member (empty: not measured). A value that is relative to the members is computed without the member
+    /// itself (leave-one-out).
+    std::vector<std::optional<double>> values;             ///< one value per member
     std::vector<std::optional<double>> out_of_class = {};  ///< value of each out-of-class object
     std::size_t count = 0;                                 ///< number of members with a value
     double min = 0, max = 0, mean = 0;                     ///< statistics of the members' values
     double percentile_5 = 0, percentile_25 = 0, median = 0, percentile_75 = 0, percentile_95 = 0;
     std::optional<double> deviation;  ///< standard deviation; empty for a single value
-    bool logarithm = false;           ///< true: the logarithm is assumed to be normal, as for positive values except constraints
-    double reject = 0;                ///< rate at which this quantity alone rejects members; 0: it cannot reject
-    /// Bounds of the accepted range; empty if they cannot be learnt; a residual has no lower bound.
+    /// True: the logarithm of the quantity is assumed to be normally distributed; used for positive values except those of
+    /// constraints.
+    bool logarithm = false;
+    double reject = 0;  ///< share of members that this quantity alone rejects; 0: the quantity cannot reject
+    /// Bounds of the accepted range. Empty if they cannot be learnt; a residual has no lower bound.
     std::optional<double> low, high;
-    /// For the dissimilarity only: max value of a recognised object. Above `recognised` an object is not recognised; above `high`
-    /// it is rejected.
+    /// Only for the dissimilarity: an object is recognised up to this value, undecided from this value to `high`, and rejected
+    /// above `high`.
     std::optional<double> recognised = {};
 };
 
 /// A member from which the class was learnt.
 struct ClassMember {
-    std::string name, placed_by;     ///< placed_by: as in MemberFit
+    std::string name, placed_by;     ///< name of the object; method by which the template was registered (MemberFit::placed_by)
     double scale = 1;                ///< scale of the template
     std::vector<std::string> notes;  ///< remarks on the member
 };
@@ -55,14 +61,14 @@ struct ClassMember {
 /// Cross products of the members' deviations from the means of their classes, for pairs of quantities.
 struct Dependence {
     std::map<std::string, Eigen::Index> rows;  ///< from the key of a quantity to its row in `products`
-    Eigen::MatrixXd products;                  ///< row and column per quantity
+    Eigen::MatrixXd products;                  ///< matrix with one row and one column per quantity
     double freedom = 0;                        ///< degrees of freedom: number of members minus number of classes
 };
 
 /// A learnt class.
 struct ShapeClass {
     std::string name;                       ///< name of the class
-    std::string template_file;              ///< file name in the folder of the class file
+    std::string template_file;              ///< file name of the template, which is in the folder of the class file
     bool sizes = false;                     ///< true: size is part of the shape
     std::vector<ClassMember> members;       ///< members from which the class was learnt
     std::vector<LearntRange> ranges;        ///< one range per quantity
@@ -71,23 +77,25 @@ struct ShapeClass {
     ShapeModes modes;                       ///< mean shape and modes of variation
     std::vector<std::string> out_of_class;  ///< names of the out-of-class objects
     double unsure = 0.15, accept = 0.05;    ///< from LearnOptions
-    /// Max value of FitResiduals::off for members; empty if the members are in correspondence.
+    /// Max value of FitResiduals::off over the members; empty if the members are in correspondence.
     std::optional<double> most_off;
-    /// From the key of a quantity to the prior of its variance, from classes queried together; not kept in files.
+    /// Prior of the variance of each quantity (by key), estimated from classes that are queried together; not stored in files.
     std::map<std::string, VariancePrior> variances;
-    std::optional<Dependence> dependence;     ///< dependence of quantities in classes queried together; not kept in files
+    /// Correlation of quantities in classes that are queried together; not stored in files.
+    std::optional<Dependence> dependence;
     double diversity = 0;                     ///< mean distance between two members, relative to the mean size
     double reject = 0.05, resolution = 0.02;  ///< from LearnOptions
-    std::vector<std::string> notes;           ///< messages on what could not be learnt
+    std::vector<std::string> notes;           ///< messages about properties that could not be learnt
 
     [[nodiscard]] const LearntRange* find(const std::string& key) const;  ///< range of the quantity with this key; null: none
-    /// Whether thresholds were learnt, which needs at least three members: two members do not determine a standard deviation
-    /// (Student's distribution with one degree of freedom has no mean).
+    /// True if thresholds were learnt. Thresholds need at least three members, because the standard deviation of two members is
+    /// too uncertain (Student's distribution with one degree of freedom has no mean).
     [[nodiscard]] bool has_thresholds() const { return members.size() >= min_members; }
     static constexpr std::size_t min_members = 3;  ///< min number of members for thresholds
 };
 
-/// Registers the template to `member`: by correspondence if `correspondence` allows, otherwise by a fit.
+/// Registers the template to `member`, by correspondence if the member has the template's triangles and `correspondence` allows
+/// it, otherwise by a fit.
 MemberFit fit_by_method(const ClassTemplate& class_template, const WholeObject& member, CorrespondenceChoice correspondence,
                         const MemberFitOptions& options);
 
@@ -103,31 +111,33 @@ struct LearntMember {
 LearntMember learn_member(const ClassTemplate& class_template, const WholeObject& member, const LearnOptions& options = {},
                           const WholeShape* whole_shape = nullptr);
 
-/// Measures the quantities of a member to which the template is already registered: on the member's own annotations where it has
-/// regions, and on the template's annotations.
+/// Measures the quantities of a member to which the template is already registered. Quantities are measured on the member's own
+/// annotations if it has regions, otherwise on the template's annotations.
 LearntMember measure_member(const ClassTemplate& class_template, const WholeObject& member, MemberFit fit,
                             const LearnOptions& options = {}, const WholeShape* whole_shape = nullptr);
 
-/// Learns a class from its members. Members with a problem are left out, and a note reports them. `out_of_class` are out-of-class
-/// objects: their values determine up to which dissimilarity an object is recognised. Throws Error (input) if no member is left.
+/// Learns a class from its members. Members with a problem are left out, and a note reports them. `out_of_class`: objects that
+/// are not members; their dissimilarities determine the bound up to which an object is recognised. Throws Error (input) if no
+/// member is left.
 ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members,
                        const LearnOptions& options = {}, const std::vector<LearntMember>& out_of_class = {});
 
-/// Sets, for each range, whether it can reject, its share of `reject`, and the accepted range: the prediction interval
-/// (`predict`) of the values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities
-/// present and among the quantities of each kind (Bonferroni), so that the total rate holds for any dependence between
-/// quantities. Quantities of single parts, and quantities that count for the dissimilarity (dissimilarity.h), only reject in
-/// combination. Attributes get bounds as if they were a separate kind; their rate is additional if attributes are set to decide.
+/// Computes for each range: whether the range can reject an object, its share of the rate `reject`, and its bounds. The
+/// bounds are the prediction interval (`predict`) of the values or their logarithms, one-sided for residuals. The rate is
+/// divided among the kinds of quantities present, and then among the quantities of each kind (Bonferroni), so that the total
+/// rate is valid for any dependence between quantities. Quantities of single parts, and quantities used for the dissimilarity
+/// (dissimilarity.h), reject only in combination. Attributes are treated as a separate kind; if attributes are allowed to
+/// reject, their rate is added to the total.
 void learn_thresholds(ShapeClass& learnt);
 
-/// Sets the thresholds of classes that are queried together. The variance of a geometry quantity, or of the combined parts, is
-/// moderated by its variance in the other classes (`variance_prior`) if at least three classes have the quantity. The
-/// dissimilarity is computed again with these variances and with the dependence of quantities pooled over the classes. The
-/// dissimilarities of members and out-of-class objects are pooled too, and the classes share the rate at which out-of-class
-/// objects are accepted.
+/// Sets the thresholds of classes that are queried together. The variance of a geometric quantity, or of the combined parts, is
+/// shrunk towards its variances in the other classes (`variance_prior`) if at least three classes have the quantity. The
+/// dissimilarity is computed again with these variances and with the correlation of quantities pooled over the classes. The
+/// dissimilarities of members and out-of-class objects are pooled too, and the rate at which out-of-class objects are accepted
+/// is divided among the classes.
 void moderate_thresholds(std::vector<ShapeClass>& classes);
 
-/// All quantities of single parts, combined into one residual of kind `part`: "sizes of the parts" or "places of the parts".
+/// One residual of kind `part` computed from the quantities of all single parts: "sizes of the parts" or "places of the parts".
 struct CombinedParts {
     ClassQuantity quantity;  ///< the combined residual
     std::size_t worst = 0;   ///< index of the range that deviates most
@@ -142,11 +152,11 @@ std::vector<CombinedParts> combined_parts(const std::vector<LearntRange>& ranges
 std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>& ranges,
                                                   std::optional<std::size_t> without = {});
 
-/// Mean distance over all pairs of shapes in correspondence, each registered to the mean of the class, relative to the mean size
-/// of the class.
+/// Mean distance between two shapes, over all pairs. The shapes are in correspondence and are registered to the mean of the
+/// class; the distance is relative to the mean size of the class.
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes);
 
-/// Shape prior that `fit` uses for the part of the shape not covered by fragments.
+/// Converts modes to the shape prior that `fit` uses for the unobserved part of an object.
 ShapePrior prior_of(const ShapeModes& modes);
 
 }  // namespace ostraka

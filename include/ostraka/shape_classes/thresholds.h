@@ -1,4 +1,5 @@
-// Thresholds that reject members at a given rate, learnt from few members: prediction intervals of a normal sample.
+// Learns thresholds from few members, such that further members are rejected at a given rate: prediction intervals of a normal
+// sample.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +8,7 @@
 
 namespace ostraka {
 
-/// Moments of the values with which a new value is compared.
+/// Mean and variance of the values with which a new value is compared.
 struct SampleMoments {
     std::size_t count = 0;  ///< number of values
     double mean = 0;
@@ -17,21 +18,22 @@ struct SampleMoments {
 /// Moments of a list of values.
 SampleMoments moments_of(std::span<const double> values);
 
-/// Interval that contains one more value of the same distribution at a given rate.
+/// Interval that contains a further value of the same distribution with a given probability.
 struct PredictionInterval {
     double low = 0, high = 0;  ///< bounds of the interval
 };
 
-/// Interval that contains one more value of the same normal distribution except at the rate `reject` (both sides together; with
-/// `one_sided` only values above are rejected): mean +- t s sqrt(1 + 1/n), where t is the quantile of Student's distribution with
-/// the variance's degrees of freedom (e.g. Hahn and Meeker 1991, section 4.7). `resolution`, a standard deviation below which
-/// values cannot be distinguished, is added to s in quadrature. Throws Error (usage) unless 0 < reject < 1, count > 0 and freedom
-/// > 0.
+/// Interval that contains a further value of the same normal distribution with probability 1 - `reject` (values on both sides
+/// are outside; with `one_sided` only values above): mean +- t s sqrt(1 + 1/n), where t is the quantile of Student's
+/// distribution with the variance's degrees of freedom (e.g. Hahn and Meeker 1991, section 4.7). `resolution`, a standard
+/// deviation below which values cannot be distinguished, is added to s in quadrature. Throws Error (usage) unless 0 < reject <
+/// 1, count > 0 and freedom > 0.
 PredictionInterval predict(const SampleMoments& moments, bool one_sided, double reject, double resolution = 0);
 
 /// Distribution of the variance of one quantity over classes: a scaled inverse chi-squared distribution.
 struct VariancePrior {
-    /// Variance and degrees of freedom of the prior; freedom is infinite if the variances differ no more than by chance.
+    /// Variance and degrees of freedom of the prior; freedom is infinite if the variances differ only as much as expected by
+    /// chance.
     double variance = 0, freedom = 0;
     /// The sample with its variance shrunk towards the prior: (d0 s0^2 + d s^2) / (d0 + d), with d0 + d degrees of freedom.
     [[nodiscard]] SampleMoments moderate(const SampleMoments& sample) const;

@@ -16,18 +16,19 @@ struct WholeShape {
     /// Geodesic distances between points of the surface, relative to the square root of the area: mean, maximum, and standard
     /// deviation divided by the mean. Bending the surface does not change these distances.
     std::optional<double> geodesic_mean, geodesic_max, geodesic_variation;
-    /// Farthest-point sampling: geodesic distance of the second, fourth and sixth point from the points before, relative to the
-    /// square root of the area. The first point is the point farthest from the centre.
+    /// Farthest-point sampling: geodesic distance of the second, fourth and sixth sampled point from the previously sampled
+    /// points, relative to the square root of the area. The first point is the point farthest from the centre.
     std::optional<double> second_point, fourth_point, sixth_point;
     /// Shape diameter (`thickness`) over the surface: mean, relative to the square root of the area; median and 90th percentile
-    /// by area, relative to the mean. Empty if the rays from a tenth of the surface or more leave the object without a hit.
+    /// by area, relative to the mean. Empty if the thickness is unknown on a tenth of the surface or more, because rays leave
+    /// the object without a hit.
     std::optional<double> thickness_mean, thickness_median, thickness_most;
-    /// Volume of the object relative to the volume of its convex hull, and compactness of the hull; empty where compactness is.
-    /// Posture changes these values.
+    /// Volume of the object relative to the volume of its convex hull, and compactness of the hull; empty if `compactness` is
+    /// empty. These values depend on posture.
     std::optional<double> hull_share, hull_compactness;
-    /// Surface integrals by face: mean curvature divided by the square root of the area (signed; 2 sqrt(pi) for a ball); the
-    /// concave part of its absolute value; absolute Gaussian curvature divided by 4 pi (1 for convex shapes). Empty without a
-    /// volume.
+    /// Curvature integrals over the surface. curvature: signed integral of the mean curvature divided by the square root of the
+    /// area (2 sqrt(pi) for a ball). concave: absolute value of the same integral over the concave part only. saddles: integral
+    /// of the absolute Gaussian curvature divided by 4 pi (1 for convex shapes). Empty if the surface is open.
     std::optional<double> curvature, concave, saddles;
     /// Spectrum of the surface by `laplace_spectrum`: twelve values, or empty.
     std::vector<double> spectrum;
@@ -35,7 +36,7 @@ struct WholeShape {
 };
 
 /// Measures a whole surface. Geodesics start from 8 sources, chosen by farthest-point sampling, on a copy simplified to 1500
-/// vertices; curvature and spectrum use the same copy. Pairs of points in different components do not count. Thickness is
+/// vertices; curvature and spectrum use the same copy. Pairs of points in different components are ignored. Thickness is
 /// measured on a copy simplified to 600 vertices. Throws Error (input) for a mesh without area.
 WholeShape measure_whole_shape(const Mesh& mesh);
 

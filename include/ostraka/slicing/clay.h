@@ -1,4 +1,4 @@
-// Clay volume of an object whose inside was scanned only in part, or not at all.
+// Bounds of the clay volume of an object whose inside was scanned only in part, or not at all.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -20,8 +20,10 @@ struct ClayOptions {
 /// Volumes in the cubed unit of the mesh. NaN: unknown.
 struct ClayVolume {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  ///< value of unknown volumes and lengths (NaN)
-    double maximum = 0;  ///< volume if regions that were not scanned are clay; unknown if no slice has an outline
-    /// Volume if regions that were not scanned are hollow except for a wall; unknown if no wall is visible or given.
+    /// Volume under the assumption that regions that were not scanned are solid clay; unknown if no slice has an outline.
+    double maximum = 0;
+    /// Volume under the assumption that regions that were not scanned are hollow except for a wall; unknown if no wall
+    /// thickness is visible or given.
     double minimum = unknown;
     double envelope = 0;    ///< volume within the outer surface, including cavities; unknown where contours cross
     double wall = unknown;  ///< wall thickness with which `minimum` was computed, in the mesh's unit
@@ -30,24 +32,24 @@ struct ClayVolume {
     /// the wall thickness.
     double wall_mean = unknown, wall_min = unknown, wall_max = unknown;
     int slices = 0;       ///< number of slices that intersect the object
-    int with_cavity = 0;  ///< number of slices with a hole whose whole outline is visible
-    /// Number of slices whose outer contours are all open; such slices are interpolated from their neighbours for `maximum` and
-    /// `envelope`, and count as zero for `minimum`.
+    int with_cavity = 0;  ///< number of slices with a hole whose outline is completely visible
+    /// Number of slices whose outer contours are all open; the areas of such slices are interpolated from their neighbours for
+    /// `maximum` and `envelope`, and are zero for `minimum`.
     int without_outline = 0;
-    /// Number of slices whose contours cross, so that areas are undefined; `maximum` takes the sum of all contours or their
-    /// convex hull, whichever is smaller; such slices count as zero for `minimum`.
+    /// Number of slices whose contours cross, so that areas are undefined; for `maximum` the smaller of the sum of all contours
+    /// and of their convex hull is used; for `minimum` the area of such slices is zero.
     int crossing = 0;
     int turned = 0;         ///< number of slices with contours whose orientation was reversed
-    bool reversed = false;  ///< true: the mesh is closed and inside out, and was reversed
+    bool reversed = false;  ///< true: the given mesh was closed and inside out, and its orientation was reversed
 };
 
-/// Sums over slices, the mid-planes of layers of equal height. In a slice whose cavity is visible, the area of the material
-/// counts. In other slices each outer contour of area A may hide a cavity: the contour holds between A and A - pi (r - t)^2 of
-/// clay, where r is the radius of the circle of area A and t the wall thickness. By the Brunn-Minkowski inequality no contour
-/// with a wall of at least t all around holds less, and a disc attains the bound. Material within t of the lowest and of the
-/// highest point is wall. t is `wall_min` if the options give no wall. Nested and open contours are ignored. Error of the sum:
-/// second order in the layer height, except at flat tops. Throws the errors of `slice_mesh`, and Error (usage) for invalid
-/// options.
+/// Sums the areas of slices, which are the mid-planes of layers of equal height. In a slice whose cavity is visible, the area
+/// is the area of the material. In other slices each outer contour of area A may hide a cavity. The area of clay is then
+/// between A - pi (r - t)^2 and A, where r is the radius of the circle of area A and t is the wall thickness: by the
+/// Brunn-Minkowski inequality a contour with a wall of at least t all around cannot contain less clay, and a disc attains the
+/// bound. All material within t of the lowest and of the highest point is wall. If the options give no wall thickness, t is
+/// `wall_min`. Nested and open contours are ignored. The error of the sum is of second order in the layer height, except at
+/// flat tops. Throws the errors of `slice_mesh`, and Error (usage) for invalid options.
 ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options = {});
 
 }  // namespace ostraka

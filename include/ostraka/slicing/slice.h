@@ -1,10 +1,10 @@
 // Slices of a mesh by parallel planes: nested, oriented contours.
 //
-// Vertices on a plane follow one rule: each vertex has a single signed height per frame. A vertex within 1e-9 of the mesh's
-// bounding box diagonal of a plane is ON the plane, and contours pass through the vertex itself. ON counts as above, so that a
-// slice is the slice of an infinitesimally lower plane. If the plane passes through the lowest point of the cut faces, ON counts
-// as below, so that an object on a flat base has the outline of the base at this height. Contours that degenerate (to a point, or
-// a curve traversed back and forth) are removed.
+// Vertices on a plane are treated consistently, because the signed height of each vertex is computed once. A vertex is ON a plane
+// if its distance from the plane is at most 1e-9 of the mesh's bounding box diagonal; contours then pass through the vertex
+// itself. ON is treated as above the plane, so that a slice equals the slice by an infinitesimally lower plane. If the plane
+// passes through the lowest point of the cut faces, ON is treated as below, so that the slice of an object on a flat base is the
+// outline of the base. Contours that degenerate (to a point, or a curve traversed back and forth) are removed.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
@@ -36,9 +36,10 @@ struct SliceFrame {
 /// A contour of a slice. On a mesh oriented outwards the material lies to the left of the contour, seen from the side to which
 /// the normal points.
 struct Contour {
-    std::vector<Eigen::Vector2d> points;  ///< for a closed contour the first point is not repeated; consecutive points differ
+    /// For a closed contour the first point is not repeated; consecutive points are distinct.
+    std::vector<Eigen::Vector2d> points;
     bool closed = true;  ///< false: the contour ends at the border of the mesh or of the selected part, and encloses no area
-    bool hole = false;   ///< true: closed and clockwise, the boundary of a hole in the material
+    bool hole = false;   ///< true: the contour is closed and clockwise and bounds a hole in the material
     /// Index of the smallest closed contour of the slice that contains this contour; -1: none, as for open contours.
     int parent = -1;
     int depth = 0;             ///< number of closed contours that contain this contour
@@ -51,31 +52,35 @@ struct Contour {
     bool turned = false;
 };
 
-/// Areas are reliable if intersecting contours affect at most this share of the outer contours' area; folds of scans stay below
-/// this share.
+/// Areas are reliable if intersecting contours affect at most this share of the outer contours' area. Small folds, as in scans,
+/// affect less.
 inline constexpr double max_doubtful = 1e-3;
 
-/// Completeness and soundness of a slice's outline. The gap of an open contour is unknown: its ends are never joined. If the open
-/// contours are longer than the closed ones and lie on a circle, `share` is the covered fraction of that circle.
+/// Completeness of a slice's outline, and reliability of its areas. The ends of an open contour are never joined, because the
+/// course of the missing part is unknown. If the open contours are longer than the closed ones and lie on a circle, `share` is
+/// the covered fraction of that circle.
 struct Completeness {
     double closed_share = 1;  ///< length of closed contours / length of all contours
-    /// Preserved fraction of the outline: 1 if all contours are closed; covered angle of the circle divided by the full turn; NaN
-    /// if undetermined: the open contours lie on no circle, or beside a longer closed contour.
+    /// Preserved fraction of the outline. 1 if all contours are closed; otherwise the angle of the circle that the open
+    /// contours cover, divided by the full turn. NaN if the open contours do not lie on a circle or if there is a longer closed
+    /// contour.
     double share = 1;
     /// Bounds of the 95 % confidence interval of `share` (`ArcFit`); NaN where `share` is NaN.
     double share_low = 1, share_high = 1;
-    /// Upper bound of the preserved fraction for any shape: length / (length + min length that joins the ends of open contours).
+    /// Upper bound of the preserved fraction for an outline of any shape: length / (length + min total length of lines that
+    /// join the ends of open contours).
     double share_at_most = 1;
-    int crossing = 0;  ///< number of closed contours that intersect other contours or themselves: the mesh intersects itself
-    int turned = 0;    ///< number of closed contours that were reversed because their orientation contradicted their nesting
-    /// Upper bound of the area that intersections may count twice or not at all, divided by the area of the outer contours.
+    /// Number of closed contours that intersect other contours or themselves, because the mesh intersects itself.
+    int crossing = 0;
+    int turned = 0;  ///< number of closed contours that were reversed because their orientation contradicted their nesting
+    /// Upper bound of the error of the area due to intersecting contours, divided by the area of the outer contours.
     double doubtful = 0;
 
-    /// Whether all contours are closed.
+    /// True if all contours are closed.
     [[nodiscard]] bool complete() const { return closed_share == 1; }
-    /// Covered angle of the circle on which the open contours lie, radians; NaN if they lie on no circle.
+    /// Angle, in radians, of the circle that the open contours cover; NaN if they do not lie on a circle.
     [[nodiscard]] double angle() const { return 2 * 3.141592653589793 * share; }
-    /// Whether the areas of the slice are reliable.
+    /// True if the areas of the slice are reliable.
     [[nodiscard]] bool has_areas() const { return doubtful <= max_doubtful; }
 };
 
@@ -83,7 +88,7 @@ struct Completeness {
 struct Slice {
     double height = 0;  ///< height of the plane above the frame's origin
     std::vector<Contour> contours;
-    Completeness completeness;  ///< all values 1 for a slice without contours, although it encloses nothing
+    Completeness completeness;  ///< for a slice without contours all fractions are 1
 };
 
 /// Slices of a mesh by parallel planes.
@@ -93,13 +98,14 @@ struct SliceStack {
     bool reversed = false;      ///< true: the mesh is closed and inside out, and all contours were reversed
 };
 
-/// Slices the mesh (or the given faces) at `heights` above the frame's origin. Faces are sorted into the planes that cross them,
-/// and segments are joined by shared edges, without comparing coordinates: O(faces log heights + output log output), in parallel,
-/// independent of the number of threads. A plane that misses the mesh gives a slice without contours. Open and self-intersecting
-/// meshes are sliced as well: contours may be open or intersect; a contour that intersects another contour is nested in it if
-/// most of five of its points lie inside. A shell is reversed if most of its contours contradict their nesting (oriented like
-/// their parent, or an outermost hole of a closed mesh). Throws Error (usage) for a frame that is not right-handed with unit
-/// vectors, a height that is not finite, or a face that is not in the mesh; Error (input) for a mesh (or part) without faces.
+/// Slices the mesh (or the given faces) at `heights` above the frame's origin. Faces are assigned to the planes that cross
+/// them, and segments are joined at shared mesh edges, without comparing coordinates. Time: O(faces log heights + output log
+/// output), in parallel; the result does not depend on the number of threads. A plane that does not intersect the mesh gives a
+/// slice without contours. Open and self-intersecting meshes are sliced as well: contours may be open or intersect; a contour
+/// that intersects another contour is nested in it if at least three of five sample points lie inside. A shell is reversed if
+/// the orientation of most of its contours contradicts their nesting (a contour is oriented like its parent, or an outermost
+/// contour of a closed mesh is a hole). Throws Error (usage) for a frame that is not right-handed with unit vectors, a height
+/// that is not finite, or a face that is not in the mesh; Error (input) for a mesh (or part) without faces.
 SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights,
                       const std::vector<Index>& faces = {});
 
@@ -117,9 +123,9 @@ std::vector<double> slice_heights(double lowest, double highest, int count);
 /// more than a million heights.
 std::vector<double> slice_heights_spaced(double lowest, double highest, double spacing);
 
-/// Splits a slice into components: each outer contour with the holes directly in it, as a separate slice (an island in a hole is
-/// a component too; the completeness of a component is the completeness of its closed contours). Open contours, and holes outside
-/// all outer contours, belong to no component.
+/// Splits a slice into components: each outer contour with the holes directly in it, as a separate slice (an island in a hole
+/// is a component too). The completeness of a component refers to its closed contours. Open contours, and holes that lie in no
+/// outer contour, are in no component.
 std::vector<Slice> components(const Slice& slice);
 
 }  // namespace ostraka

@@ -1,5 +1,5 @@
-// Axes through the barycentres of slices, straightness of an object, evenness of its wall, and its tubular part (thesis, section
-// 3.2).
+// Axes through the barycentres of slices, straightness of an object, homogeneity of its wall thickness, and its tubular part
+// (thesis, section 3.2).
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -10,15 +10,15 @@
 
 namespace ostraka {
 
-/// For each slice that has a barycentre, in the order of the stack: barycentre of the material or (`of_outline`) of the filled
-/// outline, in the mesh's coordinates.
+/// Barycentres of the slices that have one, in the order of the stack and in the mesh's coordinates: barycentres of the
+/// material or, with `of_outline`, of the filled outline.
 std::vector<Point> barycentres(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors,
                                bool of_outline = false);
 
 /// An axis through the barycentres of slices.
 struct SliceLine {
     Point point{0, 0, 0};       ///< a point on the axis
-    Vector direction{0, 0, 1};  ///< unit vector of the axis, on the side of the frame's normal
+    Vector direction{0, 0, 1};  ///< unit vector of the axis; its angle with the frame's normal is at most 90 degrees
 };
 
 /// The line in the direction of the slices' normal through the mean of the barycentres (as in the thesis). Throws Error (input)
@@ -27,7 +27,7 @@ SliceLine mean_line(const SliceFrame& frame, const std::vector<Point>& barycentr
 /// The total least squares line through the barycentres. Throws Error (input) for fewer than two distinct points.
 SliceLine regression_line(const SliceFrame& frame, const std::vector<Point>& barycentres);
 
-/// Distances of the barycentres from an axis: how straight an object is.
+/// Straightness of an object: statistics of the distances of the barycentres from an axis.
 struct Straightness {
     /// Mean, standard deviation (divisor n - 1; 0 for a single barycentre) and maximum of the distances, in the mesh's unit.
     double mean = 0, deviation = 0, maximum = 0;
@@ -40,13 +40,13 @@ Straightness straightness(const std::vector<Point>& barycentres, const SliceLine
 /// without points.
 Straightness straightness(const std::vector<Point>& barycentres, const std::vector<Point>& polyline);
 
-/// Evenness of the wall. Values are NaN if no slice qualifies. The wall of a slice is measured between its main outline and the
-/// main hole in this outline. A slice qualifies if it has no other outer contour or hole larger than a fiftieth of the main ones,
-/// as handles and feet have, and no intersecting contours.
+/// Homogeneity of the wall thickness. The wall of a slice is measured between its main outline and the main hole in this
+/// outline. A slice qualifies if it has no intersecting contours and no other outer contour or hole larger than a fiftieth of
+/// the main one (handles and feet have such contours). Values are NaN if no slice qualifies.
 struct ThicknessHomogeneity {
     static constexpr double absent = std::numeric_limits<double>::quiet_NaN();  ///< value of absent results (NaN)
     std::size_t slices = 0;                                                     ///< number of slices that qualify
-    std::size_t beside = 0;  ///< number of slices excluded because of handles or other parts beside or within the wall
+    std::size_t beside = 0;  ///< number of slices excluded because they have further contours, as of handles
     double mean = absent;    ///< median of the slices' mean wall thickness, in the mesh's unit
     /// Median over the slices of the coefficient of variation (standard deviation / mean) of the thickness around the slice.
     double within = absent;
@@ -56,13 +56,13 @@ struct ThicknessHomogeneity {
     /// Coefficient of variation of the thickness over all qualifying slices together, with equal weights.
     double overall = absent;
 };
-/// Measures the evenness of the wall over these slices.
+/// Measures the homogeneity of the wall thickness over these slices.
 ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices);
 
 struct TubeOptions {
     /// Min ratio of the short to the long side of the minimum-area bounding rectangle of a slice in a tube.
     double min_eccentricity = 0.7;
-    /// Max mean distance of the outline of a slice in a tube from its circle, as a share of the radius.
+    /// Max mean distance of the outline of a slice in a tube from its fitted circle, as a share of the radius.
     double max_roundness = 0.1;
     double similarity = 0.1;  ///< max root mean square distance of a cluster's slices from the centre of the cluster
     std::uint64_t seed = 1;   ///< random seed of the clustering
@@ -73,7 +73,7 @@ struct TubeOptions {
 /// The tubular part of an object.
 struct Tube {
     bool found = false;               ///< true: there is a tubular part
-    std::string reason;               ///< why no tube was found
+    std::string reason;               ///< reason why no tube was found; empty if a tube was found
     std::size_t first = 0, last = 0;  ///< indices of the first and last slice of the tube, in the order of heights
     /// For each slice, in the order of heights, the index of its cluster; -1: the slice cannot belong to a tube.
     std::vector<int> cluster;
@@ -82,8 +82,8 @@ struct Tube {
 /// The longest run of consecutive slices (by height) that each have one closed, round outer contour and belong to the same
 /// cluster. Round slices are clustered by three dimensionless values: equivalent radius divided by its median, eccentricity,
 /// relative roundness. The clustering is k-means with the smallest number of clusters for which every cluster has a root mean
-/// square distance from its centre of at most `similarity`. A single slice is not a tube. Throws Error (usage) unless there is
-/// one set of descriptors per slice.
+/// square distance from its centre of at most `similarity`. A tube has at least two slices. Throws Error (usage) unless there
+/// is one set of descriptors per slice.
 Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors, const TubeOptions& options = {});
 
 }  // namespace ostraka

@@ -1,13 +1,14 @@
 // Descriptors of a slice (thesis, sections 3.2 and 3.2.1, with the corrected hole-area ratio).
 //
-// The descriptors describe the closed contours only: an open contour encloses no area and is never closed by a straight line.
-// Values that need an area are absent (NaN) in a slice without a closed outer contour; if the slice also has open contours,
-// `Completeness` gives the missing fraction. Only the circle may be fitted to open contours, with a confidence interval of its
-// radius; open contours have no roundness, since the missing part need not be round. The shape of a slice is its material: outer
-// contours without their holes. The outline of a slice consists of the outermost contours, filled. Circles are compared with the
-// largest outermost contour, the main outline, so that handles and arms beside the body do not count. If contours intersect (a
-// self-intersecting mesh) by more than `max_doubtful`, only the hull, the values derived from the hull, and the lengths of closed
-// and open contours are present. Integrals along contours are by arc length, so that subdividing segments changes nothing.
+// Descriptors are computed from closed contours only; an open contour encloses no area and is never closed by a straight line.
+// Descriptors that need an area are absent (NaN) in a slice without a closed outer contour; if the slice also has open
+// contours, `Completeness` gives the missing fraction. Only the fitted circle is also computed for open contours, with a
+// confidence interval of its radius. The roundness of open contours is not computed, because the missing part need not be
+// round. The material of a slice is the inside of the outer contours without their holes. The outline of a slice consists of
+// the outermost contours, filled. Circles are compared with the largest outermost contour, the main outline, so that handles
+// and arms beside the body are ignored. If contours intersect (a self-intersecting mesh) by more than `max_doubtful`, only the
+// hull, the values derived from the hull, and the lengths of closed and open contours are present. Integrals along contours are
+// with respect to arc length, so that the subdivision of segments does not change them.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -39,7 +40,7 @@ struct SliceDescriptors {
     /// Mean squared distance of the outline from the sides of the MBR, divided by (M m / pi).
     double rectangular_variance = absent;
 
-    /// True: the numbers of components and holes and the Euler number are known; they are 0 if contours intersect.
+    /// True: `components`, `holes` and `euler_number` are known; false: contours intersect, and these numbers are 0.
     bool counted = true;
     int components = 0, holes = 0;    ///< number of components, and of holes
     int euler_number = 0;             ///< components - holes
@@ -50,8 +51,9 @@ struct SliceDescriptors {
     double roundness_equivalent = absent;           ///< mean over the main outline of ||p - c| - r|; unit (thesis, 3.2)
     double roundness_equivalent_relative = absent;  ///< roundness_equivalent / r
 
-    /// Radius of the least squares circle of the main outline, or of all open contours that run counter-clockwise around their
-    /// own circle, whichever is longer; for open contours only if they lie on a circle (`ArcFit::is_round`).
+    /// Radius of the least squares circle of the main outline or, if they are longer, of all open contours that run
+    /// counter-clockwise around their fitted circle. For open contours the radius is given only if they lie on a circle
+    /// (`ArcFit::is_round`).
     double fitted_radius = absent;
     /// For open contours: 95 % confidence interval of the radius (`fit_arc`); the upper end is absent if a straight line fits
     /// too.
@@ -78,9 +80,9 @@ struct NamedDescriptor {
 /// All descriptors of a slice, in the order of the table.
 std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& descriptors);
 
-/// Computes the descriptors of a slice. Takes time linear in the number of segments, except for sorting (hull) and searching
-/// (thickness). Thickness is integrated by two-point Gauss quadrature on pieces of at most 1/500 of the contour; all other values
-/// are exact or accurate to about 1e-12.
+/// Computes the descriptors of a slice. Time: linear in the number of segments, except for sorting (hull) and searching
+/// (thickness). Thickness is integrated by two-point Gauss quadrature on intervals of at most 1/500 of the contour; all other
+/// values are exact or accurate to about 1e-12.
 SliceDescriptors describe_slice(const Slice& slice);
 /// The descriptors of all slices, in parallel.
 std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices);

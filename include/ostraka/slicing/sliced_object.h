@@ -1,4 +1,4 @@
-// An object as a stack of slices: by parallel planes, or across a curve.
+// Slices of an object by parallel planes, or by planes perpendicular to a curve.
 #pragma once
 
 #include "ostraka/slicing/medial_axis.h"
@@ -23,9 +23,9 @@ struct SlicedObject {
     double lowest = 0, highest = 0;  ///< height range of the object above the origin of the frames; for a curve, the arc length
     std::string reason = {};         ///< why the object could not be sliced; empty if it was sliced
 
-    /// For each slice that has one, the barycentre of the material.
+    /// The barycentres of the material, for all slices that have one.
     [[nodiscard]] std::vector<Point> centres() const;
-    /// Whether any slice has contours.
+    /// True if at least one slice has contours.
     [[nodiscard]] bool met() const;
     /// The slices as a stack, for parallel slices.
     [[nodiscard]] SliceStack stack() const { return {frames.empty() ? SliceFrame{} : frames[0], slices, reversed}; }
@@ -55,10 +55,12 @@ SlicedObject slice_parallel(const Mesh& mesh, const SliceFrame& frame, const std
 /// Slices an object across a curve at `count` places and computes the descriptors. Throws the errors of slice_along.
 SlicedObject slice_across(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces = {});
 
-/// Computes the medial axes of all slices, in parallel; `residues` as in medial_axis, in any order.
+/// Computes the medial axes of all slices, in parallel. `residues`: thresholds for pruning the axis (see medial_axis.h), in any
+/// order.
 void add_medial_axes(SlicedObject& cut, std::vector<double> residues);
 
-/// Whether an object is hollow: at least a quarter of 24 slices across `up` are at least half empty by area.
+/// True if an object is hollow: in at least a quarter of 24 slices perpendicular to `up`, holes take up at least half of the
+/// area.
 bool is_hollow(const Mesh& mesh, const Vector& up, const std::vector<Index>& faces = {});
 
 /// The frame of parallel slices, moved to the median of the barycentres of the slices' outlines, which is robust to an arm or a

@@ -37,9 +37,9 @@ public:
         std::int32_t row, position;  ///< row of B; column of B, as position of the point in ids()
         double value;                ///< coefficient in B
     };
-    /// The matrix B. The first `direct` rows of B are the first `direct` points in their order; if `centred`, minus the mean of
-    /// these points (N_i of equation 4.7, stored implicitly and never as a dense block). Rows with entries follow. The last
-    /// `observed` rows are read by the projection but have no weight.
+    /// The matrix B. The first `direct` rows of B x are the first `direct` points, in order; if `centred`, the mean of these
+    /// points is subtracted (N_i of equation 4.7, stored implicitly and never as a dense block). Then follow the rows given by
+    /// `entries`. The last `observed` rows are inputs of the projection but have weight zero in the objective.
     struct Map {
         Eigen::Index direct = 0;     ///< number of direct rows
         bool centred = false;        ///< true: the mean is subtracted from the direct rows
@@ -72,8 +72,8 @@ public:
     /// Solver::set_weight, which also updates the solver's matrices.
     void set_weight(double weight);
 
-    /// Computes the closest admissible rows; rows are unweighted. The result is never NaN for finite rows. Both arguments have
-    /// map().rows columns and must not overlap.
+    /// Projects `rows` (the rows of B x, not multiplied by the weight) to the closest rows that satisfy the constraint. The
+    /// result is never NaN for finite rows. Both arguments have map().rows columns and must not overlap.
     virtual void project(const RowsIn& rows, RowsOut projected) const = 0;
 
     /// Prescribed components of rows: the components along `directions` (orthonormal rows) are equal to `values`, which has one
@@ -108,7 +108,7 @@ public:
     [[nodiscard]] double normalised_residual(const Points& points) const;
     /// The squared distance |B x - P(B x)|^2, the term that the solver multiplies by the weight.
     [[nodiscard]] double squared_distance(const Points& points) const;
-    /// Largest distance of a weighted row from its projection.
+    /// Largest distance of a row from its projection, over the rows that have a weight.
     [[nodiscard]] double greatest_distance(const Points& points) const;
 
 protected:

@@ -1,5 +1,5 @@
-// Hard constraints, which must hold to a tolerance, combined with soft constraints: an augmented Lagrangian method around the
-// local/global solver.
+// Solves for hard constraints, which must be satisfied up to a tolerance, together with soft constraints: an augmented
+// Lagrangian method around the local/global solver.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -37,8 +37,8 @@ struct HardSummary {
 /// gives the violation.
 class HardSolver {
 public:
-    /// `hard`: for each constraint, whether it is hard; `rest`: points at rest. Throws Error (usage) for a wrong number of flags,
-    /// and as MeshSpaceSolver does. Hard constraints need a positive weight, which scales their initial penalty.
+    /// `hard`: for each constraint, true if it is hard; `rest`: points at rest. Throws Error (usage) for a wrong number of
+    /// flags, and the errors of MeshSpaceSolver. Hard constraints need a positive weight, which scales their initial penalty.
     HardSolver(std::vector<std::unique_ptr<Constraint>> constraints, const std::vector<bool>& hard, const Points& rest);
     ~HardSolver();
 

@@ -1,9 +1,9 @@
-// Kinds of constraints on points: positions, fitted shapes, strain, Laplacians, groups that keep their shape, segments. Each type
-// holds the parameters of one kind. part_kinds.h has the kinds for the parts of an object.
+// Kinds of constraints on points: positions, fitted shapes, strain, Laplacians, preserved shapes, segments. Each type holds the
+// parameters of one kind. part_kinds.h has the kinds for the parts of an object.
 //
-// A kind is defined by its rows B x and by the rows that it admits (constraint.h). Rows are lengths in the points' unit.
-// "Centred" rows are the points minus their mean. Where ShapeOp (Deuss et al. 2015) has the kind, its name and its order of ids
-// are used.
+// A kind is defined by its rows B x and by the set of admissible rows, onto which P projects (constraint.h). Rows are lengths
+// in the points' unit. "Centred" rows are the points minus their mean. Where ShapeOp (Deuss et al. 2015) has the kind, its name
+// and its order of ids are used.
 #pragma once
 
 #include "ostraka/solver/constraint.h"
@@ -187,8 +187,9 @@ struct Rectangle {
 
 // ---- Segments. Rows: differences of points, which have lengths and directions. "Pairs": two ids for each segment.
 
-/// The angle at the first point between the directions to the two others is in a range (radians, at most pi). Both sides rotate,
-/// the shorter side more: with squared lengths A, B and the excess D, A sin^2 a + B sin^2 (D - a) is minimal. Rows: both sides.
+/// The angle at the first point between the directions to the two others is in a range (radians, at most pi). The projection
+/// rotates both sides, the shorter side more: if the angle has to change by D, one side is rotated by a and the other by D - a
+/// so that A sin^2 a + B sin^2 (D - a) is minimal, where A and B are the squared lengths. Rows: both sides.
 struct Angle {
     static constexpr KindInfo kind{"Angle", 3, 3};  ///< name of the kind, min and max number of points
     Interval angle{0, 3.14159265358979323846};      ///< range of the angle, radians
@@ -204,14 +205,15 @@ struct Parallel {
     static constexpr KindInfo kind{"Parallel", 4};  ///< name of the kind, and min number of points
 };
 
-/// The length of a polyline is in a range: all edges change their length by the same amount, to zero at most.
+/// The length of a polyline is in a range: the projection changes the lengths of all edges by the same amount, but not below
+/// zero.
 struct PolylineLength {
     static constexpr KindInfo kind{"PolylineLength", 2};  ///< name of the kind, and min number of points
     Interval length{1, 1};                                ///< range of the length, relative to the length at rest or absolute
     bool absolute = false;  ///< true: the range is in the unit of the points; false: relative to the rest state
 };
 
-/// All segments (pairs of ids) have the same length, the length of their mean.
+/// All segments (pairs of ids) have the same length; the projection sets it to their mean length.
 struct EqualLengths {
     static constexpr KindInfo kind{"EqualLengths", 4};  ///< name of the kind, and min number of points
 };

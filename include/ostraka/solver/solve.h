@@ -27,18 +27,19 @@ struct SolveOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Why a solve stopped.
+/// The reason why a solve stopped.
 enum class StopReason { converged, residual, iterations, stalled };
 /// The reason why a solve stopped as text, e.g. "no point moves any more".
 std::string_view describe(StopReason reason);
 
 /// Computing times of a solve, in seconds.
 struct SolveTimes {
-    double symbolic = 0, factor = 0;  ///< symbolic and numerical factorisation, in this solve or in the initialisation before
+    /// Symbolic and numerical factorisation, in this solve or in the preceding initialisation.
+    double symbolic = 0, factor = 0;
     double project = 0, solve = 0, accelerate = 0;  ///< local steps, global steps, and acceleration
 };
 
-/// Result of a solve besides the points.
+/// Statistics of a solve.
 struct SolveSummary {
     int iterations = 0;             ///< number of global steps
     std::vector<double> objective;  ///< value of phi at the start and after each iteration; never increases
@@ -47,8 +48,11 @@ struct SolveSummary {
     int accelerated = 0, refused = 0;
     StopReason stop = StopReason::iterations;  ///< why the solve stopped
     SolveTimes times;                          ///< computing times
-    int floating_parts = 0;  ///< number of connected sets of points without a fixed position, whose mean stays at rest
-    /// True: the system was still singular, and all points are attracted to the rest positions with the weight `regularisation`.
+    /// Number of connected sets of points whose position no constraint determines; the mean of such a set stays at its rest
+    /// position.
+    int floating_parts = 0;
+    /// True: the system was singular also after this, and all points are attracted to their rest positions with the weight
+    /// `regularisation`.
     bool regularised = false;
     double regularisation = 0;  ///< weight with which points are attracted to the rest positions; 0: none
     int updated_rows = 0;       ///< number of rows with changed weight, applied as a low-rank update of an older factorisation
@@ -57,9 +61,9 @@ struct SolveSummary {
     std::string text() const;   ///< the summary as a few lines of text
 };
 
-/// Constraints over points, and the matrices for solving them. Singular systems are attracted to points at rest, which are
-/// independent of the constraints' own rest states. Changes of weights and targets are cheap where possible; matrices are
-/// recomputed when needed.
+/// Solver for constraints over points; base class of the two solvers below. If the system is singular, points are attracted to
+/// rest positions, which are independent of the rest states of the constraints. Changes of weights and targets are cheap where
+/// possible; matrices are recomputed when needed.
 class Solver {
 public:
     virtual ~Solver() = default;
@@ -72,9 +76,9 @@ public:
 
     /// Computes missing factorisations; solve() calls this function if necessary. Throws Error (failure) when memory is short.
     virtual void initialize() = 0;
-    /// Changes the weight of a constraint. Throws Error (usage) as Constraint::set_weight.
+    /// Changes the weight of a constraint. Throws the errors of Constraint::set_weight.
     void set_weight(std::size_t constraint, double weight);
-    /// Changes the target of a constraint. Throws Error (usage) as Constraint::set_target.
+    /// Changes the target of a constraint. Throws the errors of Constraint::set_target.
     void set_target(std::size_t constraint, const Points& target);
 
     /// Solves from the initial `variables` (points of the shape, or of the cage) and stores the result in `variables`. The result
@@ -116,10 +120,10 @@ public:
     void initialize() override;
 
     /// Enforces constraints with prescribed components (Constraint::given_components) exactly, by elimination: the solution has
-    /// these components, and the weights of these constraints no longer matter. Returns false without changes if this is
-    /// impossible: other constraints do not fix all of the constraints' points, a constraint has no prescribed components, or the
-    /// constraints have more than 256 rows. Contradictory constraints are satisfied in the least-squares sense. Throws Error
-    /// (usage) for a constraint index out of range.
+    /// these components, and the weights of these constraints have no effect. Returns false without changes if this is
+    /// impossible: other constraints do not fix all of the constraints' points, a constraint has no prescribed components, or
+    /// the constraints have more than 256 rows. Contradictory constraints are satisfied in the least-squares sense. Throws
+    /// Error (usage) for a constraint index out of range.
     bool enforce(const std::vector<std::size_t>& constraints);
 
 protected:
@@ -137,10 +141,11 @@ private:
 /// Weights of a cage: one row per point of the shape, one column per point of the cage.
 using CageWeights = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Solver over the points c of a cage, x = W c (equation 4.9). Q W is formed once, for constrained points only, and only for rows
-/// whose projections change. Large groups are reduced to their moments, so that the cost of an iteration does not depend on the
-/// size of the groups. Dense Cholesky factorisation of the cage's size. Deformations that the weights cannot represent leave a
-/// residual: Constraint::residual of points_of(weights, cage).
+/// Solver over the points c of a cage, x = W c (equation 4.9). The product Q W is computed once, only for constrained points
+/// and only for rows whose projections change. Constraints on many points are evaluated by moments (Constraint::Moments), so
+/// that the time of an iteration does not depend on the number of points. The normal equations of the size of the cage are
+/// factorised by dense Cholesky factorisation. If the weights cannot represent a deformation, a residual remains:
+/// Constraint::residual of points_of(weights, cage).
 class CageSpaceSolver final : public Solver {
 public:
     /// Throws Error (usage) for ids out of range of the rows of `weights`, weights that are not finite, and a cage whose number

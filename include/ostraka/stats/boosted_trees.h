@@ -41,7 +41,7 @@ public:
     /// A decision or leaf of a tree. A sample goes left if its feature is at most the threshold, otherwise right.
     struct Node {
         int feature = -1;         ///< index of the feature; -1: a leaf
-        float threshold = 0;      ///< max value of the feature that goes left
+        float threshold = 0;      ///< samples with a feature value up to the threshold go left
         int left = 0, right = 0;  ///< indices of the children in the tree; unused in a leaf
         float value = 0;          ///< contribution of a leaf to the log odds
     };
@@ -57,7 +57,7 @@ public:
 };
 
 /// Learns trees that minimise the logistic loss (Friedman 2001; second-order leaf values and histograms of 64 quantiles as in
-/// Chen and Guestrin 2016). `truth`: for each row, whether it is positive; `weights`: one per row, or empty. Features must be
+/// Chen and Guestrin 2016). `truth`: for each row, true if it is positive; `weights`: one per row, or empty. Features must be
 /// finite. The result is bit-identical for any number of threads. Throws Error (input) for no rows or rows of one class only,
 /// (usage) for lists of different lengths.
 BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, const std::vector<double>& weights = {},

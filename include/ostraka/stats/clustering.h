@@ -9,10 +9,10 @@ namespace ostraka {
 
 /// DBSCAN clustering (Ester, Kriegel, Sander and Xu 1996) of the rows of `samples`. A sample with at least `minimum` samples
 /// (including itself) at distances of at most `epsilon` is a core point. Returns one label per sample: 0, 1, ... in the order of
-/// the clusters' first core points, and -1 for noise; a border point of two clusters belongs to the first. With minimum 1 there
-/// is no noise, and clusters are the sets of samples connected by steps of `epsilon`. Takes time quadratic in the number of
-/// samples. Throws Error (input) for no sample and values that are not finite, and Error (usage) for an epsilon below 0 or a
-/// minimum below 1.
+/// the clusters' first core points, and -1 for noise; a border point within `epsilon` of two clusters belongs to the first of
+/// them. With minimum 1 there is no noise, and clusters are the sets of samples connected by steps of `epsilon`. Time:
+/// quadratic in the number of samples. Throws Error (input) for no sample and values that are not finite, and Error (usage) for
+/// an epsilon below 0 or a minimum below 1.
 std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int minimum);
 
 /// Radius `epsilon` for DBSCAN: the radius within which a sample would have `minimum` samples on average, if the samples were
@@ -36,8 +36,8 @@ struct Linkage {
     std::vector<Merge> merges;  ///< merges by increasing height
 };
 
-/// How the distance of two clusters follows from the distances between their members: mean (UPGMA, Sokal and Michener 1958),
-/// minimum, or maximum.
+/// Definition of the distance of two clusters: the mean (average; UPGMA, Sokal and Michener 1958), minimum (single) or maximum
+/// (complete) of the distances between their members.
 enum class LinkageMethod { average, single, complete };
 /// Hierarchical clustering by nearest-neighbour chains (Murtagh 1983), quadratic in the number of samples. Throws Error (input)
 /// for a matrix that is not symmetric, not finite or has negative entries.

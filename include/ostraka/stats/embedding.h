@@ -1,4 +1,4 @@
-// Coordinates from a matrix of similarities or distances.
+// Low-dimensional coordinates of samples: spectral embedding of a matrix, and principal components.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,10 +11,11 @@ struct Embedding {
     Eigen::VectorXd eigenvalues;  ///< eigenvalue of each column, by decreasing magnitude
 };
 
-/// The eigenvectors of the `dimensions` eigenvalues of largest magnitude (of equal magnitudes the positive eigenvalue first);
-/// fewer if the matrix has fewer rows. The sign of an eigenvector is such that its entry of largest magnitude (the first of
-/// several equal to 1e-9) is positive. For equal eigenvalues the basis of their eigenspace is arbitrary. Throws Error (input) for
-/// a matrix that is empty, not finite or not symmetric to 1e-9 of its largest entry, Error (usage) for dimensions below 1.
+/// The eigenvectors of the `dimensions` eigenvalues of largest magnitude (among equal magnitudes, positive eigenvalues first);
+/// fewer eigenvectors if the matrix has fewer rows. The sign of an eigenvector is such that its entry of largest magnitude (the
+/// first of several equal to 1e-9) is positive. For equal eigenvalues the basis of their eigenspace is arbitrary. Throws Error
+/// (input) for a matrix that is empty, not finite or not symmetric to 1e-9 of its largest entry, Error (usage) for dimensions
+/// below 1.
 Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions);
 
 /// Principal components of samples: rows projected onto the directions of largest variance; signs as for spectral_embedding.

@@ -29,10 +29,11 @@ struct Interval {
 };
 
 /// Confidence interval of the standard deviation of a population that need not be normal (Bonett 2006), from the kurtosis about a
-/// trimmed mean; with `relative`, confidence interval of the coefficient of variation: the error of the mean and its correlation
-/// with the error of the deviation (the third moment) are added to first order. In closed form, and for few values closer to the
-/// nominal coverage than the bootstrap. Empty for fewer than three values (more for a confidence above 0.95), for values without
-/// variation, or if the mean is 0. Throws Error (usage) unless 0 < confidence < 1.
+/// trimmed mean; with `relative`, the confidence interval of the coefficient of variation, in which the error of the mean and
+/// its correlation with the error of the deviation (the third moment) are included to first order. The interval has a closed
+/// form; for few values its coverage is closer to the nominal coverage than that of the bootstrap. Empty for fewer than three
+/// values (more for a confidence above 0.95), for values without variation, or if the mean is 0. Throws Error (usage) unless 0
+/// < confidence < 1.
 std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, double confidence = 0.95);
 
 struct StabilityOptions {
@@ -49,13 +50,13 @@ struct ClusterStability {
     double jaccard = 0;    ///< mean over the resamples of the largest Jaccard overlap of the cluster with a new cluster
     double recovered = 0;  ///< share of the resamples with an overlap above 0.75
     double dissolved = 0;  ///< share of the resamples with an overlap of at most 0.5
-    int resamples = 0;     ///< number of resamples that contain a sample of the cluster; 0: stability unknown
+    int resamples = 0;     ///< number of resamples that contain at least one sample of the cluster; 0: the stability is unknown
 };
 
-/// Stability of each cluster (labels from 0 up; below 0 is noise) by Hennig (2007): Jaccard overlap of the cluster, restricted to
-/// a resample, with the best matching cluster of the resample. `cluster` returns labels for the samples of the given indices, in
-/// the order of the indices. Resamples run in parallel: `cluster` must not modify shared data. Throws Error (usage) if the number
-/// of returned labels differs from the number of samples.
+/// Stability of each cluster (labels from 0 up; labels below 0 are noise) by the method of Hennig (2007): Jaccard overlap of
+/// the cluster, restricted to a resample, with the best matching cluster of the resample. `cluster` returns labels for the
+/// samples of the given indices, in the order of the indices. Resamples run in parallel: `cluster` must not modify shared data.
+/// Throws Error (usage) if the number of returned labels differs from the number of samples.
 std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
                                                 const std::function<std::vector<int>(const std::vector<std::size_t>&)>& cluster,
                                                 const StabilityOptions& options = {});

@@ -19,7 +19,8 @@ struct KMeansOptions {
 
 /// Result of k-means clustering.
 struct KMeansResult {
-    /// For each sample, the index of its cluster; clusters by decreasing size, ties by their first sample.
+    /// For each sample, the index of its cluster. Clusters are numbered by decreasing size, and clusters of equal size by their
+    /// first sample.
     std::vector<int> labels;
     Eigen::MatrixXd centres;  ///< one row per cluster; fewer than requested if there are fewer distinct samples
     double cost = 0;          ///< sum of the squared distances of the samples from their cluster's centre
@@ -28,9 +29,9 @@ struct KMeansResult {
 };
 
 /// k-means clustering (MacQueen 1967; Lloyd's iterations) of the rows of `samples`, initialised by k-means++ (Arthur and
-/// Vassilvitskii 2007). A cluster that loses all samples is assigned the sample farthest from that sample's centre. Columns are
-/// not scaled: `standardised` does this. Initialisations run in parallel; the result does not depend on the number of threads.
-/// Throws Error (input) for no sample or a sample that is not finite, Error (usage) for options out of range.
+/// Vassilvitskii 2007). A cluster that loses all its samples gets the sample that is farthest from its current centre. Columns
+/// are not scaled; use `standardised` to scale them. Initialisations run in parallel; the result does not depend on the number
+/// of threads. Throws Error (input) for no sample or a sample that is not finite, Error (usage) for options out of range.
 KMeansResult k_means(const Eigen::MatrixXd& samples, const KMeansOptions& options = {});
 
 /// Scales each column to mean 0 and standard deviation 1 (divisor n - 1); constant columns become 0. Throws Error (input) for no
@@ -39,8 +40,8 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples);
 
 /// Silhouette of each sample (Rousseeuw 1987): (b - a) / max(a, b), where a is the mean distance to the other samples of its
 /// cluster and b the mean distance to the samples of the nearest other cluster; 0 for a cluster of one sample, for noise (labels
-/// below 0) and if there is only one cluster. Takes time quadratic in the number of samples. Throws Error (input) for no sample
-/// or a sample that is not finite, and Error (usage) unless there is one label per sample.
+/// below 0) and if there is only one cluster. Time: quadratic in the number of samples. Throws Error (input) for no sample or a
+/// sample that is not finite, and Error (usage) unless there is one label per sample.
 std::vector<double> silhouettes_of_samples(const Eigen::MatrixXd& samples, const std::vector<int>& labels);
 /// Silhouette of each sample, from a symmetric matrix of the distances between samples.
 std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
@@ -61,7 +62,8 @@ struct ClusterCount {
         int clusters = 0;       ///< number of clusters
         double cost = 0;        ///< k-means cost
         double silhouette = 0;  ///< mean silhouette of the samples; 0 for one cluster
-        double gap = 0;  ///< gap statistic: expected logarithm of the cost for data without clusters minus the observed logarithm
+        /// Gap statistic: expected logarithm of the cost for data without clusters, minus the logarithm of the observed cost.
+        double gap = 0;
         double gap_error = 0;  ///< standard error of the gap, s_k of the paper
     };
     std::vector<Row> rows;  ///< criteria for 1, 2, ... clusters
@@ -71,10 +73,10 @@ struct ClusterCount {
     int proposed = 1;  ///< the number proposed by the criterion in the options
 };
 
-/// Evaluates the criteria for 1 to `max_clusters` clusters, at most the number of distinct samples (and exactly that number only
-/// if each distinct sample occurs twice on average). The silhouette cannot propose 1; the gap statistic can (Tibshirani, Walther
-/// and Hastie 2001, version b: reference data drawn uniformly from the box along the principal directions). Costs below 1e-24 of
-/// the cost of one cluster are raised to that value. Throws the errors of k_means.
+/// Evaluates the criteria for 1 to `max_clusters` clusters. The number of clusters stays below the number of distinct samples,
+/// or may equal it if each distinct sample occurs twice on average. The silhouette cannot propose one cluster; the gap
+/// statistic can (Tibshirani, Walther and Hastie 2001, version b: reference data drawn uniformly from the box along the
+/// principal directions). Costs below 1e-24 of the cost of one cluster are raised to that value. Throws the errors of k_means.
 ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const ClusterCountOptions& options = {});
 
 }  // namespace ostraka

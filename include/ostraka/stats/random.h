@@ -9,8 +9,8 @@
 namespace ostraka {
 
 /// Random numbers drawn from std::mt19937_64, whose output is fixed by the C++ standard, unlike the output of the standard
-/// distributions. Streams of one seed are independent: give each restart, resample or object a stream of its own, so that the
-/// order of draws does not matter.
+/// distributions. Streams of one seed are independent. Use a separate stream for each restart, resample or object, so that
+/// results do not depend on the order of draws.
 class Random {
 public:
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0);  ///< a stream of random numbers for this seed
@@ -42,8 +42,8 @@ private:
     bool has_spare_ = false;  ///< true: spare_ was not used yet
 };
 
-/// Element `counter` of the random sequence of a seed (SplitMix64; Steele, Lea and Flood 2014), in [0, 1), independent of
-/// previous calls.
+/// Element `counter` of the random sequence of a seed (SplitMix64; Steele, Lea and Flood 2014), a number in [0, 1); the result
+/// does not depend on previous calls.
 double random_share(std::uint64_t seed, std::uint64_t counter);
 
 }  // namespace ostraka

@@ -36,17 +36,18 @@ ConfusionScores confusion(const std::vector<bool>& predicted, const std::vector<
 /// A point of an ROC curve.
 struct RocPoint {
     double false_positive_rate = 0, true_positive_rate = 0;
-    double threshold = 0;  ///< min value classified as positive; infinite at the first point (0, 0)
+    double threshold = 0;  ///< values of at least this threshold are classified as positive; infinite at the first point (0, 0)
 };
-/// Receiver operating characteristic of a value.
+/// Receiver operating characteristic of a quantity that separates two classes.
 struct RocCurve {
     std::vector<RocPoint> points;  ///< points from (0, 0) to (1, 1), one per distinct value
-    /// Area under the curve: probability that a positive sample has a larger value than a negative one, where ties count half.
+    /// Area under the curve: the probability that a positive sample has a larger value than a negative sample, plus half the
+    /// probability of equal values.
     double area = 0;
 };
-/// ROC curve of values that are expected to be larger for positive samples; `truth`: for each value, whether its sample is
-/// positive. Throws Error (input) for values that are not finite or without both positive and negative samples, Error (usage) for
-/// lists of different lengths.
+/// ROC curve of values that are expected to be larger for positive samples; `truth`: for each value, true if its sample is
+/// positive. Throws Error (input) for values that are not finite, and unless there are both positive and negative samples;
+/// Error (usage) for lists of different lengths.
 RocCurve roc_curve(const std::vector<double>& values, const std::vector<bool>& truth);
 
 /// The side of a threshold on which values are classified as positive.
@@ -57,12 +58,12 @@ struct Threshold {
     double value = 0;        ///< value of the threshold
     bool above = true;       ///< true: values of at least `value` are positive; false: values of at most `value` are
     ConfusionScores scores;  ///< scores on the samples from which the threshold was chosen
-    /// Whether the threshold classifies the value x as positive.
+    /// True if the threshold classifies the value x as positive.
     [[nodiscard]] bool positive(double x) const { return above ? x >= value : x <= value; }
 };
 /// The threshold with the largest F1. The threshold lies midway between consecutive values (or is the min or max value if all
-/// values are classified as positive). Ties: the widest gap, then `above` before `below`, then the lowest threshold. Throws the
-/// errors of roc_curve.
+/// values are classified as positive). Among thresholds of equal F1, the one in the widest gap between values is chosen, then
+/// `above` before `below`, then the lowest threshold. Throws the errors of roc_curve.
 Threshold best_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side = Side::above);
 
 struct CrossValidationOptions {
@@ -74,7 +75,7 @@ struct CrossValidationOptions {
 
 /// Scores of a cross-validation.
 struct CrossValidation {
-    std::vector<double> f1;             ///< for each repeat, the F1 of all held-out answers
+    std::vector<double> f1;             ///< for each repeat, the F1 computed from the answers for all held-out samples
     double mean_f1 = 0, deviation = 0;  ///< mean and standard deviation over the repeats of F1; deviation 0 for a single repeat
     double mean_precision = 0, mean_recall = 0, mean_accuracy = 0;  ///< means over the repeats
     ConfusionScores first;                                          ///< scores of the first repeat
@@ -82,7 +83,8 @@ struct CrossValidation {
     std::vector<double> positive;  ///< for each sample, the share of the repeats that classified it as positive
 };
 
-/// Learns from the `training` samples and returns, for each `test` sample, whether it is classified as positive.
+/// Function that trains a classifier on the `training` samples (indices) and returns for each `test` sample true if it is
+/// classified as positive.
 using Learner = std::function<std::vector<bool>(const std::vector<std::size_t>& training, const std::vector<std::size_t>& test)>;
 
 /// Stratified cross-validation: positive and negative samples are assigned to the folds in random order, in equal proportions;

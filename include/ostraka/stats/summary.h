@@ -10,15 +10,15 @@ namespace ostraka {
 /// Statistics of weighted values; the median and the percentiles are quantiles of the weighted distribution.
 struct Statistics {
     std::size_t count = 0;           ///< number of values
-    double weight = 0;               ///< sum of the weights: for values per face weighted by area, the area
+    double weight = 0;               ///< sum of the weights; if the weights are areas of faces, the total area
     double integral = 0;             ///< sum of the products of value and weight
     double mean = 0, deviation = 0;  ///< weighted mean and standard deviation
     double min = 0, max = 0, median = 0;
     double percentile_5 = 0, percentile_25 = 0, percentile_75 = 0, percentile_95 = 0;
 };
 
-/// Statistics of values with weights. Values of weight zero are ignored, also for min and max, unless all weights are zero (then
-/// each value counts once). Throws Error (input), naming `where`, if there is no value, a value is not finite, or a weight is
+/// Statistics of values with weights. Values of weight zero are ignored, also for min and max, unless all weights are zero
+/// (then all weights are 1). Throws Error (input), naming `where`, if there is no value, a value is not finite, or a weight is
 /// negative or not finite.
 Statistics statistics(const std::vector<double>& values, const std::vector<double>& weights, const std::string& where = "map");
 

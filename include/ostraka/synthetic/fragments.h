@@ -1,4 +1,4 @@
-// Synthetic fragments of a mesh, with known pose and known position on the object.
+// Generates fragments of a mesh, with known pose and known position on the object.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -14,7 +14,7 @@ struct FragmentOptions {
     double roughness = 0.1;  ///< amplitude of the waves of the fracture line, as a share of the fragment's size
     double noise = 0;    ///< standard deviation of the vertex displacement along the normal, as a share of the object's diagonal
     double erosion = 0;  ///< width of the eroded strip along the fracture, as a share of the object's diagonal
-    bool moved = true;   ///< apply a random rigid motion to the fragment
+    bool moved = true;   ///< true: apply a random rigid motion to the fragment
     std::uint64_t seed = 1;  ///< random seed
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges

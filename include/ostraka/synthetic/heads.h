@@ -33,9 +33,9 @@ struct HeadShape {
     int lock_ridges = 12;  ///< number of ridges on long hair
     double lock_width = 3.3, lock_forward = 0;
     double ear_height = 21.5, ear_size = 3.6;
-    /// Accidental features of the archetype: lateral shifts of features (mm) and low bumps.
+    /// Accidental asymmetries of the archetype: lateral shifts of features, mm.
     double nose_skew = 0, mouth_skew = 0, eye_skew = 0;
-    /// A low bump on the front, at (y, z).
+    /// A low bump on the front at (y, z), with radius and height, mm.
     struct Bump {
         double y, z, radius, height;
     };
@@ -44,7 +44,7 @@ struct HeadShape {
 
 struct ArchetypeOptions {
     bool long_hair = false;  ///< true: long hair behind the ears; false: short hair
-    bool hand_made = false;  ///< true: freely formed, with a hat; proportions vary 1.6 times as much
+    bool hand_made = false;  ///< true: hand-formed, with a hat; proportions vary 1.6 times as much
     double difference = 1;   ///< variation between archetypes; 1: standard deviation of proportions of about 8 %
     std::uint64_t seed = 1;  ///< random seed
 
@@ -55,17 +55,18 @@ HeadShape head_archetype(const ArchetypeOptions& options);
 
 /// Hand-formed features of one cast: the back of the head, a beard, dents.
 struct HandWork {
-    double back_depth = 0, back_width = 0;  ///< mm added to the skull behind the area that the mould shapes
-    bool beard = false;                     ///< true: a beard is added
+    /// Depth and width, mm, that are added to the skull behind the area shaped by the mould.
+    double back_depth = 0, back_width = 0;
+    bool beard = false;  ///< true: a beard is added
     double beard_width = 6, beard_length = 7, beard_forward = 2, beard_skew = 0;
-    /// A dent on the front, at (y, z), mm.
+    /// A dent on the front at (y, z), with radius and depth, mm.
     struct Dent {
         double y, z, radius, depth;
     };
     std::vector<Dent> dents;  ///< dents on the front
     /// X of the plane behind which the head belongs to the part `back`, mm; negative values are behind the ears.
     double cut_back = 0;
-    double cut_tilt = 0, cut_turn = 0;  ///< slopes of the plane at `cut_back`
+    double cut_tilt = 0, cut_turn = 0;  ///< slopes of this plane
     /// The body of a head, a flared tube, mm; height 0: no body.
     struct Body {
         double height = 0, base = 18, radius = 13, shoulder = 15;
@@ -74,7 +75,8 @@ struct HandWork {
     } body;
 };
 
-/// The solid of a head, with parts as in head_part_names(). The front comes from the archetype, the rest from the hand work.
+/// The solid of a head, with parts as in head_part_names(). The front is determined by the archetype `shape`, the rest by
+/// `work`.
 std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const HandWork& work = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Implicit solids, i.e. signed functions with gradients, from which synthetic objects are built.
+// Implicit solids, given by signed functions with gradients; synthetic objects are built from them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@ namespace ostraka {
 /// Value (negative inside) and gradient of an implicit function at a point.
 struct Sample {
     double value = 0;                                    ///< negative inside, zero on the surface
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< gradient of the value
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< gradient of the implicit function
 };
 
 /// A closed solid given by a function with Lipschitz constant 1 that is zero on the surface of the solid.
@@ -27,7 +27,8 @@ public:
     [[nodiscard]] virtual double parameter(const Eigen::Vector3d&) const { return 0; }
     /// Bounding box of the solid.
     [[nodiscard]] virtual Eigen::AlignedBox3d box() const = 0;
-    /// Lower bound of the ratio of the function's value to the distance to the solid, outside the solid (1 for true distances).
+    /// Lower bound, outside the solid, of the ratio of the function's value to the distance from the solid (1 for true
+    /// distances).
     [[nodiscard]] virtual double flatness() const { return 1; }
 };
 using SolidPointer = std::unique_ptr<const Solid>;
@@ -56,14 +57,14 @@ struct Bead {
     double radius;
 };
 /// A tube: union of the balls along the cubic spline through the beads (at least two). Value of the function: min over t of |p -
-/// c(t)| - r(t), exact outside. `parameter` is the chord length up to the touching ball.
+/// c(t)| - r(t), exact outside. `parameter` is the chord length along the path up to the ball that attains the minimum.
 SolidPointer make_tube(const std::vector<Bead>& beads);
 /// For each bead, the chord length from the first bead: the parameter of the bead on a tube.
 std::vector<double> chord_lengths(const std::vector<Bead>& beads);
 
 /// A solid of revolution around the vertical axis. The profile is the cubic spline through points (distance from the axis,
-/// height), from the axis at the bottom upwards along the outside back to the axis, which the profile meets at right angles.
-/// Value of the function: true signed distance.
+/// height). The profile starts on the axis at the bottom, runs upwards along the outside and ends on the axis, and it meets the
+/// axis at right angles. Value of the function: true signed distance.
 SolidPointer make_revolved(const SolidPose& pose, const std::vector<Eigen::Vector2d>& profile);
 /// For each point of a profile, the chord length from the first point.
 std::vector<double> chord_lengths(const std::vector<Eigen::Vector2d>& profile);

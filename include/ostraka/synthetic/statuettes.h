@@ -1,5 +1,5 @@
-// Synthetic populations of votive statuettes with known technique and sizes: wheel-thrown and hand-built bodies as scanned
-// (after the terracottas of Ayia Irini; thesis, chapter 3).
+// Synthetic scans of votive statuettes with known technique and sizes: wheel-thrown and hand-built bodies (modelled on the
+// terracottas of Ayia Irini; thesis, chapter 3).
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -27,7 +27,7 @@ struct StatuetteParameters {
     double wall = 5;         ///< mean wall thickness, mm; 0: solid
     double wall_noise = 0;   ///< root mean square variation of the wall thickness, as a share of the mean thickness
     double off_centre = 0;   ///< offset of the cavity from the tube's centre, as a share of the wall thickness
-    double cavity_seen = 1;  ///< share of the cavity's depth that was scanned, 0 to 1
+    double cavity_seen = 1;  ///< share of the cavity's depth that the scan contains, 0 to 1
     enum class Interior { closed, open } interior = Interior::closed;  ///< end of the scanned cavity: a flat wall, or open
     double scan_noise = 0;   ///< standard deviation of the vertex displacement along the normal, mm
     int holes = 0;           ///< number of patches of the body that are missing in the scan
@@ -57,7 +57,7 @@ struct Statuette {
     std::vector<std::int32_t> face_labels;  ///< for each face, the index of its part
     /// Landmarks: "base right", "base left" (ends of the longest diameter), "base centre" (not for open bases), "top of the
     /// head", "head joint" (at the back of the neck), and for each arm "arm joint", "arm outside 1" to "arm outside 5", "hand
-    /// end", each followed by " right" or " left". Landmarks in a missing patch are left out.
+    /// end", each followed by " right" or " left". Landmarks in a missing part of the surface are left out.
     std::vector<StatuetteLandmark> landmarks;
 };
 
@@ -68,7 +68,7 @@ std::unique_ptr<const SyntheticObject> statuette_object(const StatuetteParameter
 /// Generates the scan of a statuette. Throws the errors of statuette_object and make_mesh.
 Statuette generate_statuette(const StatuetteParameters& parameters);
 
-/// Parameters that distinguish techniques: medians over a population of one technique.
+/// Medians, over a population of one technique, of the parameters that distinguish the techniques.
 struct TechniqueLevel {
     double ovality, ovality_drift, finger_marks, sway, wall_noise, off_centre;
 };
@@ -88,9 +88,9 @@ struct PopulationOptions {
     std::uint64_t seed = 1;          ///< random seed
     std::uint64_t vertices = 10000;  ///< target number of vertices of each statuette
     double scan_noise = 0.05;        ///< standard deviation of the vertex displacement along the normal, mm
-    /// End of the scanned cavities: both kinds in turn, flat walls, or open.
+    /// End of the scanned cavities. closed: a flat wall; open: open; mixed: alternately closed and open.
     enum class Interior { mixed, closed, open } interior = Interior::mixed;
-    double cavity_seen = 0.35;  ///< min share of a cavity\'s depth that was scanned, 0 to 1
+    double cavity_seen = 0.35;  ///< min share of a cavity's depth that a scan contains, 0 to 1
     int holes = 0;              ///< max number of patches that are missing in a scan
     double size_spread = 0.07;  ///< standard deviation of the logarithm of each size
 
@@ -100,7 +100,8 @@ struct PopulationOptions {
 /// Parameters of every statuette of a population; the parameters of statuette i do not depend on the number of statuettes.
 std::vector<StatuetteParameters> draw_population(const PopulationOptions& options);
 
-/// Options of wheel-thrown statuettes with a common size factor and individual factors, and with some sizes in fixed proportion.
+/// Options of a population of wheel-thrown statuettes. Each statuette has a common size factor and individual factors for its
+/// sizes; some sizes are in fixed proportion.
 struct ProportionedOptions {
     int objects = 40;  ///< number of statuettes
     /// Names of the sizes that are in fixed proportion to each other, from `size_names`.
@@ -113,7 +114,7 @@ struct ProportionedOptions {
 
     /// Names of the four sizes.
     static constexpr std::array<const char*, 4> size_names{"total height", "base diameter", "arm length", "head height"};
-    /// Whether this size is in fixed proportion to other sizes.
+    /// True if this size is in fixed proportion to other sizes.
     [[nodiscard]] bool is_fixed(const std::string& size) const;
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

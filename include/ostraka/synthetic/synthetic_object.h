@@ -15,8 +15,8 @@ namespace ostraka {
 /// A solid of an object, blended with the previously added solids.
 struct Member {
     SolidPointer solid;  ///< the solid
-    double blend = 0;    ///< width of the smooth union or difference, mm; 0: a crease
-    /// True: the solid is subtracted instead of added; the resulting walls belong to the nearest other member.
+    double blend = 0;    ///< width of the smooth transition of the union or difference, mm; 0: a sharp crease
+    /// True: the solid is subtracted instead of added; the resulting surface gets the part of the nearest other member.
     bool carves = false;
     /// An interval of the solid's parameter that forms a part.
     struct Stretch {
@@ -37,7 +37,7 @@ struct Relief {
 /// Changes the part `from` to the part `to` where the function `side` is negative.
 struct Cut {
     int from, to;                                        ///< indices of the parts
-    std::function<double(const Eigen::Vector3d&)> side;  ///< negative where the part changes
+    std::function<double(const Eigen::Vector3d&)> side;  ///< negative where the part `from` becomes the part `to`
 };
 
 /// An object composed of implicit solids, with its ground truth.
@@ -49,15 +49,16 @@ public:
     std::vector<std::array<std::uint8_t, 3>> part_colours;  ///< red, green, blue of each part
     int genus = 0;                                          ///< number of handles (holes) of the surface
     std::size_t minimum_vertices = 300;                     ///< min number of vertices that represents the shape
-    /// Thinnest wall or gap, mm: a coarser lattice would tear or bridge it.
+    /// Thickness of the thinnest wall or gap, mm. The lattice must be finer, otherwise the mesh has a hole in the wall or a
+    /// bridge across the gap.
     double thinnest = std::numeric_limits<double>::infinity();
     std::optional<double> exact_area, exact_volume;  ///< area and volume, if a formula is known
     std::vector<Member> members;                     ///< solids in the order in which they are blended
     std::vector<Relief> reliefs;                     ///< flowers in low relief
-    std::vector<Cut> cuts;                           ///< cuts that divide parts
+    std::vector<Cut> cuts;                           ///< cuts that divide a part into two parts
 
-    /// Implicit function of the object, negative inside, and its gradient. Away from the surface the value is a lower bound of
-    /// the distance up to `slack`; close to the surface the function is continuously differentiable.
+    /// Implicit function of the object, negative inside, and its gradient. Away from the surface, the value minus `slack` is a
+    /// lower bound of the distance from the surface; close to the surface the function is continuously differentiable.
     [[nodiscard]] Sample sample(const Eigen::Vector3d& p) const;
     /// Value of the implicit function at p.
     [[nodiscard]] double value(const Point& p) const { return sample({p.x(), p.y(), p.z()}).value; }

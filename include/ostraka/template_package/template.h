@@ -1,5 +1,5 @@
-// The template of an object class as files: a mesh with annotations, relations and deformation data, listed in one JSON file and
-// checked as a whole (thesis, section 1.2; doc/templates.md).
+// Template packages: the template of an object class as a set of files (a mesh with annotations, relations and deformation
+// data). One JSON file lists the files, and they are checked together (thesis, section 1.2; doc/templates.md).
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-/// A file that is a part of a template.
+/// One file of a template package, here called a part.
 struct PackagedFile {
     std::string role;    ///< kind of the part, one of template_roles()
     std::string name;    ///< file name as in the template's JSON file: relative to its folder, with '/'
@@ -34,7 +34,7 @@ struct TemplateFile {
 
 struct TemplateOptions {
     bool allow_outside = false;  ///< true: parts may lie outside the template's folder
-    bool force_mesh = false;     ///< true: accept annotations of another mesh if their indices and edges fit
+    bool force_mesh = false;     ///< true: accept annotations made for another mesh if their indices and edges exist in this mesh
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
@@ -72,11 +72,11 @@ struct Template {
 };
 
 /// Reads every part and checks the parts together. Defects: a part that is missing or cannot be parsed, a wrong checksum,
-/// annotations that do not fit the mesh, a graph with unknown annotations, tags and attributes that are not in the vocabulary,
-/// violated rules of the class, a cage that is not closed, coordinates without a row for each vertex of the mesh or a column for
-/// each vertex (or face) of a cage, a unit that differs from the unit of the annotations. Remarks: contradicting upward
-/// directions and classes (the template's values are used), a cage that does not enclose the mesh, parts without a checksum.
-/// Throws only if memory is exhausted.
+/// annotations that refer to elements missing in the mesh, a graph that refers to missing annotations, tags and attributes that
+/// are not in the vocabulary, violated rules of the class, a cage that is not closed, coordinates that do not have one row per
+/// vertex of the mesh and one column per vertex (or face) of a cage, a unit that differs from the unit of the annotations.
+/// Remarks: contradicting upward directions and classes (the template's values are used), a cage that does not enclose the
+/// mesh, parts without a checksum. Throws only if memory is exhausted.
 Template load_template(TemplateFile file, const TemplateOptions& options = {});
 
 /// Throws Error (input) that names the file and the part, unless the template has a mesh and no defects; `file` names the

@@ -1,4 +1,4 @@
-// A mesh with annotations, colours and labels, which are preserved when the resolution of the mesh changes.
+// Changes the resolution of a mesh while its annotations, colours, labels and texture are preserved.
 #pragma once
 
 #include "ostraka/annotation/annotated_mesh.h"
@@ -12,8 +12,9 @@
 
 namespace ostraka {
 
-/// A mesh with all data bound to it. The data are updated by each call of `simplify` and `refine`, which may be called
-/// repeatedly. Seams of the texture are simplified along their curves; the coordinates of corners follow the surface.
+/// A mesh with its annotations, colours, labels, texture and values. Each call of `simplify` and `refine` updates these data;
+/// both may be called repeatedly. Seams of the texture are simplified along their curves, and the texture coordinates of
+/// corners are interpolated on the surface.
 class BoundMesh {
 public:
     /// `annotated`: annotations of the mesh; empty: none.
@@ -21,17 +22,18 @@ public:
 
     /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as parts to be preserved; with
     /// `options.outlines` = protect, the pins of measures are marked as well, and so is the border if a region covers the whole
-    /// mesh. Throws as ostraka::simplify does.
+    /// mesh. Throws the same errors as ostraka::simplify.
     SimplifyResult simplify(const SimplifyOptions& options);
-    /// Refines the mesh. A new vertex gets the mean of the colours and values of the two vertices between which it lies, and the
-    /// label of one of the two; a new corner gets the mean of the texture coordinates. Throws as ostraka::refine does.
+    /// Refines the mesh. A new vertex gets the mean of the colours and values of the two vertices between which it was
+    /// inserted, and the label of one of them; a new corner gets the mean of the texture coordinates. Throws the same errors as
+    /// ostraka::refine.
     RefineResult refine(const RefineOptions& options);
 
     /// Current state of the mesh and its data. Measures and known descriptors of the annotations are recomputed after each step.
     Mesh mesh;
     MeshExtras extras;                         ///< colours, labels, texture and values
     std::optional<AnnotationSet> annotations;  ///< annotations of the mesh; empty: none
-    std::vector<std::string> notes;            ///< remarks on data that could not be preserved
+    std::vector<std::string> notes;            ///< messages about data that could not be preserved
 
     /// Size of the mesh.
     struct Totals {
@@ -58,14 +60,15 @@ public:
     std::vector<Change> changes;  ///< one entry per annotation, in the order at construction
 
 private:
-    /// Keeps the mesh and the annotations before a step, if some annotations are free.
+    /// Stores a copy of the mesh and the annotations before a step, if some annotations are free.
     void keep_curved();
-    /// Attaches the annotations to the elements of the mesh, so that they follow changes of the mesh.
+    /// Stores the annotations in property maps of the mesh, so that they are preserved when the mesh changes.
     AnnotationTable attach();
-    /// Reads back the annotations attached by `attach`; `vertex_map`: for each vertex of the mesh at that time, its vertex now.
+    /// Reads back the annotations attached by `attach`; `vertex_map`: for each vertex of the mesh when `attach` was called, its
+    /// current vertex.
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
-    /// Elements to be preserved; `protects`: true to mark the pins of measures as well, and the border if a region is the whole
-    /// mesh.
+    /// The elements that simplification has to preserve. `protects`: true to mark the pins of measures as well, and the border
+    /// if a region is the whole mesh.
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool protects) const;
     [[nodiscard]] Size size_of(const Annotation& annotation) const;  ///< current size of an annotation
 

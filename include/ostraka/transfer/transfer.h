@@ -15,16 +15,18 @@ namespace ostraka {
 
 struct TransferOptions {
     CorrespondenceOptions correspondence;       ///< options for finding corresponding points
-    PathMetric metric = PathMetric::euclidean;  ///< quantity that paths between corresponding vertices minimise
-    /// How spikes of an outline are treated: removed, avoided while tracing, or kept.
+    PathMetric metric = PathMetric::euclidean;  ///< length that paths between corresponding vertices minimise
+    /// Treatment of spikes of an outline: removed (prune), avoided while paths are traced (avoid), or kept.
     enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
-    /// Assignment of faces that the true outline crosses: by the edge paths; to the side with most of their area; or so that area
-    /// and perimeter are preserved.
+    /// Assignment of target faces that the projected outline crosses. path: by the edge paths; area: to the side with most of
+    /// the face's area; balanced: so that area and perimeter of the region are preserved.
     enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
-    /// Whether a transferred region overlaps the source region, encloses it or is enclosed by it.
+    /// Position of a transferred region relative to the source region: it overlaps the source region, encloses it, or is
+    /// enclosed by it.
     enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
-    /// Course of outlines and lines on the target. partitions: regions that partition the surface become free, the others keep
-    /// their kind; kept: all keep their kind; free: all become free; edges: all run along edges of the target.
+    /// Representation of outlines and lines on the target: as free curves or as paths of edges. partitions: regions that
+    /// partition the surface become free, and other annotations keep their representation; kept: all annotations keep their
+    /// representation; free: all become free; edges: all become paths of edges of the target.
     enum class Outlines { partitions, kept, free, edges } outlines = Outlines::partitions;
     bool refine = false;                  ///< true: insert vertices on the target so that outlines are exact
     bool overlap = true;                  ///< true: measure the overlap with the source region
@@ -42,21 +44,23 @@ struct TransferScore {
     std::string tag;  ///< tag of the annotation
     /// Types before and after the transfer.
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
-    TransferOutcome outcome = TransferOutcome::kept;  ///< whether the annotation was kept
-    std::string note;                                 ///< further remarks
+    TransferOutcome outcome = TransferOutcome::kept;  ///< outcome of the transfer
+    std::string note;                                 ///< messages about the transfer of this annotation
     double source_area = 0, target_area = 0;          ///< areas of regions
     double source_length = 0, target_length = 0;      ///< perimeter of regions, length of lines
     /// Two-sided Hausdorff distance between the outlines (lines, points); empty if one of them is empty.
     std::optional<double> hausdorff;
     std::optional<double> overlap;  ///< intersection over union of the areas; empty: not measured
-    /// Area on the wrong side of the outline, summed over source and target; empty: not measured.
+    /// Area that is inside only one of the two regions: the sum of the parts of the source region outside the target region and
+    /// of the target region outside the source region. Empty: not measured.
     std::optional<double> wrong_side;
     std::size_t vertices = 0;  ///< number of outline vertices, line vertices or points of the source
-    /// Number of source vertices with each kind of correspondence (CorrespondenceKind), and of those assigned another candidate.
+    /// Number of source vertices with each kind of correspondence (CorrespondenceKind), and number of vertices with a relocated
+    /// correspondence.
     std::size_t by_ray = 0, by_closest_point = 0, without_place = 0, relocated = 0;
-    std::size_t detours = 0;          ///< number of pairs of consecutive vertices that no short path connects
+    std::size_t detours = 0;          ///< number of pairs of consecutive vertices that are not connected by a short path
     bool crossings_resolved = false;  ///< true: outlines intersected, and the interior was computed by winding numbers
-    bool voted = false;               ///< true: the interior was computed face by face instead of from outlines
+    bool voted = false;               ///< true: the interior was computed for each face separately, not from the outlines
 };
 
 /// Distortions of a region as in Table 2.1 of the thesis: |target / source - 1| for area A, perimeter P, P / A, A / P and
@@ -81,11 +85,11 @@ struct TransferResult {
 
 /// Transfers all annotations. Points are transferred to the corresponding vertices; poly-lines and outlines become edge paths
 /// between corresponding vertices; regions are the faces to the left of their outlines; measures are transferred with their pins
-/// and recomputed. A region too small for the target becomes a line or a point, and the note of its score reports this. Three
-/// kinds of annotations are projected by their curves (project_curves.h) and keep their type, however small: free annotations;
-/// with `outlines` = free, all annotations; with `outlines` = partitions, regions that partition the whole surface (unless
-/// `refine` or `cover` require edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless
-/// options.force.
+/// and recomputed. A region too small for the target becomes a line or a point, and the note of its score reports this. Some
+/// annotations are projected by their curves (project_curves.h) and keep their type, even if they are very small: free
+/// annotations; with `outlines` = free, all annotations; with `outlines` = partitions, regions that partition the whole surface
+/// (unless `refine` or `cover` require edges). Throws Error (input) if the meshes differ in unit, position or orientation,
+/// unless options.force.
 TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options = {});
 
 }  // namespace ostraka

@@ -37,7 +37,7 @@ struct RelationRule {
 
 /// A rule of one of the three kinds; the other two kinds are empty.
 struct ClassRule {
-    std::string id, note;  ///< id of the rule, and a remark
+    std::string id, note;  ///< id of the rule, and a comment
     std::optional<CountRule> count;
     std::optional<AttributeRule> attribute;
     std::optional<RelationRule> relation;
@@ -47,7 +47,7 @@ struct ClassRule {
 struct ClassRules {
     std::string object_class;      ///< name of the class
     std::vector<ClassRule> rules;  ///< the rules
-    /// True if any rule concerns relationships.
+    /// True if at least one rule concerns relationships.
     [[nodiscard]] bool uses_relations() const;
 };
 
@@ -66,14 +66,15 @@ struct RelationFact {
 
 /// A violated rule, with a text that explains the violation.
 struct RuleViolation {
-    std::string rule;               ///< id of the rule
-    std::optional<int> annotation;  ///< id of the annotation that violates the rule; empty: not a single annotation
-    std::string text;               ///< explanation of the violation
+    std::string rule;  ///< id of the rule
+    /// Id of the annotation that violates the rule; empty: the violation concerns no single annotation.
+    std::optional<int> annotation;
+    std::string text;  ///< explanation of the violation
 };
 
-/// All violations of the rules; a rule that applies to each annotation is listed once for each annotation that violates it. Tags
-/// and words are compared by the vocabulary (labels in any language, narrower concepts), or without a vocabulary by spelling.
-/// Throws Error (input) if a rule names a tag that is not in the vocabulary; `where` names the file of the rules.
+/// Returns all violations of the rules. A rule that applies to each annotation is listed once for each annotation that violates
+/// it. Tags and words are compared by the vocabulary (labels in any language, narrower concepts), or without a vocabulary by
+/// spelling. Throws Error (input) if a rule names a tag that is not in the vocabulary; `where` names the file of the rules.
 std::vector<RuleViolation> check_class_rules(const AnnotationSet& set, const ClassRules& rules, const Vocabulary* vocabulary,
                                              const std::vector<RelationFact>& relations, const std::string& where);
 

@@ -17,16 +17,16 @@ struct Inference {
 struct InferenceResult {
     AnnotationSet annotations;        ///< annotations with the inferred attributes, whose `origin` names the rule
     std::vector<Inference> inferred;  ///< the inferred attributes
-    /// Messages on rules that contradict each other or stated attributes, and were therefore not applied.
+    /// Messages about rules that were not applied, because they contradict each other or an attribute stated by a person.
     std::vector<std::string> contradictions;
-    std::vector<std::string> missing;  ///< messages on rules that could not be evaluated, with the missing input
+    std::vector<std::string> missing;  ///< messages about rules that could not be evaluated, with the missing input
 };
 
-/// Applies the vocabulary's inference rules to every annotation whose tag means exactly one concept. A rule holds if all its
-/// conditions hold; inferred attributes are inputs of other rules. If rules that hold contradict each other, the attribute is
-/// omitted and the contradiction reported; attributes stated by a person are kept, and a rule that contradicts them is reported.
-/// Attributes inferred earlier are removed first, so that inference is idempotent. Bounds without a unit are in the unit that the
-/// vocabulary states for the attribute.
+/// Applies the vocabulary's inference rules to every annotation whose tag names exactly one concept. A rule applies if all its
+/// conditions hold; inferred attributes are inputs of other rules. If applicable rules contradict each other, the attribute is
+/// omitted and the contradiction is reported; attributes stated by a person are kept, and a rule that contradicts them is
+/// reported. Attributes inferred earlier are removed first, so that inference is idempotent. Bounds without a unit are in the
+/// unit that the vocabulary states for the attribute.
 InferenceResult infer(const AnnotationSet& set, const Vocabulary& vocabulary);
 
 /// The unit of the bounds of a condition: the unit that the condition states, or the unit of the vocabulary's attribute; empty if

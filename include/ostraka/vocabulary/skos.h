@@ -5,13 +5,13 @@
 
 namespace ostraka {
 
-/// Whether the file name has an extension of SKOS files: .ttl, .turtle, .nt (Turtle), .rdf, .owl, .xml (RDF/XML).
+/// True if the file name has an extension of SKOS files: .ttl, .turtle, .nt (Turtle), .rdf, .owl, .xml (RDF/XML).
 bool is_skos(const Path& file);
 
 /// Reads the concepts of a SKOS scheme. `scheme` is the scheme's URI; it may be empty if the file has at most one scheme.
-/// Statements about concepts that Ostraka does not use are kept if their object is a URI or a text; notes report statements that
-/// are dropped. Accesses neither the network nor other files. Throws Error (input) with file, line and reason, also for
-/// everything that read_vocabulary rejects.
+/// Statements of kinds that Ostraka does not use are stored (ForeignStatement) if their object is a URI or a text; notes report
+/// statements that are dropped. The function accesses neither the network nor other files. Throws Error (input) with file, line
+/// and reason, also if the vocabulary violates the checks of read_vocabulary.
 Vocabulary read_skos(const Path& file, const std::string& scheme = {});
 /// Reads a vocabulary from SKOS text, with the checks of read_skos.
 Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme = {});

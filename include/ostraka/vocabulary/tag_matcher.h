@@ -1,4 +1,4 @@
-// Matches tags with words: by the concepts of a vocabulary in any language, or without a vocabulary by spelling.
+// Compares tags with words by meaning, using the concepts of a vocabulary in any language, or without a vocabulary by spelling.
 #pragma once
 
 #include "ostraka/vocabulary/vocabulary.h"
@@ -28,15 +28,17 @@ public:
     /// there are none.
     [[nodiscard]] std::vector<std::size_t> require(const AnnotationSet& set, const std::string& name,
                                                    const std::string& where) const;
-    /// Renames tags of `set` to the equivalent tags of `reference`. If there is no equivalent tag, a tag takes the only tag of
-    /// the reference that it means ("grip" becomes "handle" if the reference has only handles). Other tags are unchanged.
+    /// Renames tags of `set` to the equivalent tags of `reference`. If there is no equivalent tag, a tag is replaced by a
+    /// broader tag of the reference, provided that only one tag of the reference is broader ("grip" becomes "handle" if the
+    /// reference has only handles). Other tags are unchanged.
     void rename_like(AnnotationSet& set, const AnnotationSet& reference) const;
 
 private:
     std::shared_ptr<const VocabularySearch> search_;
 };
 
-/// Throws Error (input): the annotations of `where` have none with this name; suggests the nearest tag.
+/// Throws Error (input) with the message that the annotations of `where` have none with this name, and suggests the nearest
+/// tag.
 [[noreturn]] void fail_unknown_annotation(const AnnotationSet& set, const std::string& name, const std::string& where);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Text comparison that ignores case and blanks, and finds similar spellings.
+// Compares texts without regard to case and blanks, and finds similar spellings.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ std::string did_you_mean(const std::vector<std::string>& suggestions);
 /// A list of names as text: "'a', 'b' or 'c'".
 std::string alternatives(const std::vector<std::string>& names);
 
-/// A text in normal form without a blank and a number at its end.
+/// Removes a number, and the blank before it, from the end of a text in normal form.
 std::string without_number(const std::string& folded_text);
 
 /// Converts a value to another unit: lengths (um, mm, cm, dm, m, km, in, ft), their squares, cubes and reciprocals ("mm^2",

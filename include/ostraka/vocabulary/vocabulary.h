@@ -15,7 +15,7 @@
 
 namespace ostraka {
 
-/// From a language ("en", "it", "de-AT") to the text in this language; the key "" holds text without a language.
+/// Texts by language ("en", "it", "de-AT"); the key "" holds a text without a language.
 using Labels = std::map<std::string, std::string>;
 
 /// An allowed value of a qualitative attribute.
@@ -48,10 +48,10 @@ struct ForeignStatement {
 
 /// A concept that a tag may name.
 struct Concept {
-    std::string id;                                                ///< id of the concept within the vocabulary
-    std::string uri;                                               ///< empty: the vocabulary's URI followed by the id
-    Labels labels;                                                 ///< names in several languages
-    std::map<std::string, std::vector<std::string>> alternatives;  ///< from a language to the alternative labels
+    std::string id;   ///< id of the concept within the vocabulary
+    std::string uri;  ///< URI of the concept; empty: the vocabulary's URI followed by the id
+    Labels labels;    ///< names in several languages
+    std::map<std::string, std::vector<std::string>> alternatives;  ///< alternative labels by language
     std::vector<std::string> broader;                              ///< ids of the broader concepts
     std::vector<std::string> part_of;                              ///< ids of the concepts of which this concept is a part
     Labels definition;                                             ///< definition in several languages
@@ -66,7 +66,8 @@ struct Operand {
     auto operator<=>(const Operand&) const = default;
 };
 
-/// A condition of a rule: a number (an attribute, or the ratio of two attributes) is within bounds, or a word is in a list.
+/// A condition of a rule: a number (an attribute, or the ratio of two attributes) is within bounds, or a qualitative attribute
+/// has one of the listed values.
 struct Condition {
     Operand operand;                     ///< attribute that is tested, or numerator of the ratio
     std::optional<Operand> divisor;      ///< denominator of the ratio; empty: no ratio
@@ -79,7 +80,7 @@ struct Condition {
 /// A rule that infers a qualitative attribute of annotations of a concept if all conditions hold (thesis, section 2.2.3).
 struct InferenceRule {
     std::string id;                     ///< id of the rule
-    std::string note;                   ///< remark on the rule
+    std::string note;                   ///< comment on the rule
     std::string concept_id;             ///< concept of the annotations, including narrower concepts; empty: any annotation
     std::vector<Condition> conditions;  ///< conditions, all of which must hold
     std::string attribute, value;       ///< name and value of the inferred attribute
@@ -93,28 +94,29 @@ struct Vocabulary {
     std::vector<Concept> concepts;             ///< the concepts
     std::vector<InferenceRule> rules;          ///< rules that infer attributes
     std::vector<ForeignStatement> others;      ///< statements that are not interpreted
-    std::vector<std::string> notes;            ///< remarks from reading a file; not written
+    std::vector<std::string> notes;            ///< messages about reading a file; not written to files
 };
 
 /// Reads a vocabulary file (*.vocabulary.json; doc/vocabularies.md). Throws Error (input) that names the file, the JSON pointer
 /// and the remedy, for a file that does not match its schema, duplicate concept ids, a missing broader concept, a cycle of
-/// broader concepts, a duplicate attribute, a range with min above max, a rule that refers to something not in the vocabulary.
+/// broader concepts, a duplicate attribute, a range with min above max, a rule that refers to a concept, attribute or value
+/// that is not in the vocabulary.
 Vocabulary read_vocabulary(const Path& file);
 /// Reads a vocabulary from JSON, with the checks of read_vocabulary.
 Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& where);
 Json vocabulary_to_json(const Vocabulary& vocabulary);  ///< the vocabulary as a JSON document
 /// Writes a vocabulary after the checks that `read_vocabulary` performs. Reading and writing again gives the same bytes.
 void write_vocabulary(const Path& file, const Vocabulary& vocabulary);
-/// Performs the checks of `read_vocabulary` on a vocabulary in memory; `where` names the vocabulary in errors. Takes time linear
-/// in the size of the vocabulary.
+/// Performs the checks of `read_vocabulary` on a vocabulary in memory; `where` names the vocabulary in errors. Time: linear in
+/// the size of the vocabulary.
 void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 
 /// Reports properties of a vocabulary that are allowed but may be unintended: concepts without labels or with labels shared by
 /// other concepts, languages in which only some concepts have labels, rules that contradict each other if both apply.
 std::vector<Finding> examine(const Vocabulary& vocabulary);
 
-/// Queries on a vocabulary, which must have passed check_vocabulary and must outlive this object. Construction is linear. The
-/// search is not thread-safe: attribute names of queried concepts are cached.
+/// Queries on a vocabulary, which must have passed check_vocabulary and must outlive this object. Construction takes linear
+/// time. The object is not thread-safe, because it caches attribute names of queried concepts.
 class VocabularySearch {
 public:
     explicit VocabularySearch(const Vocabulary& vocabulary);
@@ -131,8 +133,8 @@ public:
     [[nodiscard]] bool is_a(std::size_t concept_index, std::size_t other) const;
     /// Indices of the concept and of all broader concepts, nearest first.
     [[nodiscard]] std::vector<std::size_t> lineage(std::size_t concept_index) const;
-    /// Indices of the concepts of which this concept is a part, as stated by the concept or by a broader concept, followed by the
-    /// concepts of which these are parts; one list per level, nearest first.
+    /// Indices of the concepts of which this concept is a part, directly or indirectly; one list per level, nearest first. The
+    /// first level are the concepts stated by this concept or by a broader concept.
     [[nodiscard]] std::vector<std::vector<std::size_t>> containing_concepts(std::size_t concept_index) const;
     /// The attributes that annotations of the concept may have: attributes of the concept, of broader concepts, and of every
     /// concept; among equal names the attribute of the nearer concept is used.
@@ -162,7 +164,7 @@ private:
     std::vector<std::vector<std::size_t>> broader_, part_of_;
 };
 
-/// The allowed value of an attribute that a text means, by name or label; nullptr if there is none.
+/// The allowed value of an attribute with this name or label; nullptr if there is none.
 const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 
 struct CheckVocabularyOptions {
@@ -171,11 +173,11 @@ struct CheckVocabularyOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
-/// Checks the tags and attributes of annotations. Defects: a tag that no concept or several concepts have, a qualitative
-/// attribute that the concept may not have, a value outside the attribute's list, a word instead of a number or a number instead
-/// of a word, a quantity outside its range or in a unit that cannot be converted. Suggests similar names. Remarks: quantities
-/// that are not in the vocabulary (defects if `strict`), stale quantities, and quantities without a unit, whose range was not
-/// checked.
+/// Checks the tags and attributes of annotations. Defects: a tag that names no concept or several concepts, a qualitative
+/// attribute that the vocabulary does not allow for the concept, a value outside the attribute's list, a word instead of a
+/// number or a number instead of a word, a quantity outside its range or in a unit that cannot be converted. Suggests similar
+/// names. Remarks: quantities that are not in the vocabulary (defects if `strict`), stale quantities, and quantities without a
+/// unit, whose range was not checked.
 std::vector<Finding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
                                               const CheckVocabularyOptions& options = {});
 /// Throws Error (input) with the first defect that `check_against_vocabulary` finds; `where` names the file of the annotations.

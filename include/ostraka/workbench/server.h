@@ -1,4 +1,4 @@
-// HTTP and WebSocket server for the workbench's page, on one local port (doc/workbench.md, "Safety").
+// HTTP and WebSocket server for the workbench's web page, on one local port (doc/workbench.md, "Safety").
 #pragma once
 
 #include "ostraka/workbench/workbench.h"
@@ -10,17 +10,17 @@ namespace ostraka {
 /// Limits of the server. Unauthenticated connections are counted separately, so that they cannot prevent the page from
 /// connecting.
 struct ServerLimits {
-    std::size_t unauthenticated = 128;      ///< max number of unauthenticated connections; beyond this, the oldest is dropped
-    std::size_t pages = 32;                 ///< max number of authenticated connections; beyond this, new ones are refused
-    std::size_t header = 8192;              ///< max size of a request head in bytes
-    std::size_t message = 4'000'000;        ///< max size of a message from the page in bytes
-    std::size_t waiting = 64;               ///< max number of unanswered requests of one page
+    std::size_t unauthenticated = 128;  ///< max number of unauthenticated connections; if there are more, the oldest is closed
+    std::size_t pages = 32;             ///< max number of authenticated connections; further ones are refused
+    std::size_t header = 8192;          ///< max size of a request head in bytes
+    std::size_t message = 4'000'000;    ///< max size of a message from the page in bytes
+    std::size_t waiting = 64;           ///< max number of unanswered requests of one page
     std::size_t waiting_bytes = 8'000'000;  ///< max total size of the unanswered requests of one page, bytes
     std::size_t queue_bytes = 64'000'000;   ///< max total size of the requests of all pages, including closed pages, bytes
     /// Max size of unread answers of a page, bytes; above it no further request of the page is started.
     std::size_t unsent = 4'000'000;
     double seconds = 5;   ///< time limit for a request head and for closing, in seconds
-    double stalled = 30;  ///< time without progress of an answer after which the page is dropped, in seconds
+    double stalled = 30;  ///< if sending an answer makes no progress for this time, in seconds, the connection is closed
 };
 
 /// Listens on the loopback address. Serves pages that present the secret token; the workbench processes their messages one at a

@@ -1,5 +1,6 @@
-// The history of a workbench session. Each step is an operation or a choice of the user. All steps are kept in a folder, can be
-// undone back to the first step, and form a study file that the command can repeat (doc/workbench.md).
+// The history of a workbench session. Each step is an operation or a choice of the user. All steps are stored in a folder and
+// can be undone. Together they form a study file, with which the command `ostraka run` can repeat the session
+// (doc/workbench.md).
 #pragma once
 
 #include "ostraka/operations/table.h"
@@ -12,8 +13,8 @@ namespace ostraka {
 /// An object of the session: a mesh with its associated files. File names are relative to the session's folder, with '/'.
 struct SessionObject {
     std::string name;  ///< name of the object
-    /// From the name of a part to its file: "mesh", "annotations", "graph", "cage", "coordinates", "recipe"; during a deformation
-    /// also "edit", "deformed", "deformed cage" and "... annotations".
+    /// Files of the object by kind of part: "mesh", "annotations", "graph", "cage", "coordinates", "recipe"; during a
+    /// deformation also "edit", "deformed", "deformed cage" and "... annotations".
     std::map<std::string, std::string> parts;
     /// File of a part; empty if the object has no such part.
     [[nodiscard]] std::string part(const std::string& which) const;
@@ -40,8 +41,8 @@ struct SessionStep {
     std::string name;       ///< name of the step, such as "s012"; for an operation also the name of its folder in "steps"
     std::string title;      ///< description for people
     std::string operation;  ///< name of the operation; empty for a choice, which writes no file
-    Json with, keep;        ///< inputs and options, and outputs with their file names, in the form of study files
-    std::map<std::string, std::string> sha256;  ///< from the name of an output to its SHA-256
+    Json with, keep;        ///< inputs and options (with), and outputs with their file names (keep), as in study files
+    std::map<std::string, std::string> sha256;  ///< SHA-256 of each output, by name
     bool holds = true;                          ///< false: the answer of the operation was "no"
     SessionState state;                         ///< state after the step
 };
@@ -50,9 +51,9 @@ struct SessionStep {
 class Session {
 public:
     /// Resumes the session in `folder`, or starts a new session. Files are opened from `root` and its subfolders, and saved
-    /// there. A new folder and the session file are accessible to their owner only. Throws Error (input) if the folder holds
-    /// other data; if the session is damaged, lacks files, names files or holds links outside `folder` and `root`; or if another
-    /// process uses the session.
+    /// there. A new folder and the session file are accessible only to their owner. Throws Error (input) if the folder holds
+    /// other data; if the session is damaged, lacks files, names files or holds links outside `folder` and `root`; or if
+    /// another process uses the session.
     Session(Path folder, Path root);
     ~Session();
     Session(const Session&) = delete;
@@ -126,7 +127,7 @@ private:
     void check_file(const std::string& file) const;
     /// Throws Error (input) if a file or folder to be written leads out of the session's folder.
     void check_folders() const;
-    /// Removes files of steps that were never recorded, since their process was killed, and uploads that no step reads.
+    /// Removes files of steps that were not recorded because the process was killed, and uploads that no step reads.
     void sweep() const;
     void lock();  ///< locks the folder; throws Error (input) if another process uses it
 

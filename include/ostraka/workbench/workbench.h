@@ -25,7 +25,7 @@ public:
         std::string bytes;     ///< binary data to which the JSON refers; may be empty
         bool changed = false;  ///< true: the session is at a different step than before
     };
-    /// Answers a request {"id": NUMBER, "do": WORD, ...}. Never throws, whatever the text.
+    /// Answers a request {"id": NUMBER, "do": WORD, ...}. Never throws, even if the text is invalid.
     Reply answer(std::string_view request);
 
     /// Called with the progress of a request: phase, and share done (0 to 1). The answering thread calls this function.
@@ -45,7 +45,7 @@ private:
     struct Deformation;
     /// Member function that answers a request by filling in `result` and `bytes`.
     using Answer = void (Workbench::*)(const JsonValue& request, Json& result, std::string& bytes);
-    /// From the word in "do" to the function that answers the request.
+    /// The functions that answer requests, by the word in "do".
     static const std::map<std::string, Answer>& answers();
 
     [[nodiscard]] std::unique_ptr<Context> fresh_context();  ///< context with the memory limit
@@ -80,7 +80,7 @@ private:
     double memory_limit_;
     std::mutex mutex_;  ///< guards context_, which is replaced after a cancelled request
     std::unique_ptr<Context> context_;
-    /// From file name, size and modification time at reading to the mesh.
+    /// Cached meshes, by file name, size and modification time of the file.
     std::map<std::string, std::shared_ptr<const MeshFile>> meshes_;
     std::unique_ptr<Deformation> deformation_;
 };

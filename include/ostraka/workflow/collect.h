@@ -16,15 +16,15 @@ struct StudyTable {
     std::vector<std::string> columns;      ///< titles of the columns
     std::vector<std::vector<Json>> cells;  ///< cells of each row; null: empty cell
     std::vector<int> digits;               ///< for each column, number of significant digits
-    std::vector<bool> percent;             ///< for each column, whether values are shown in per cent
+    std::vector<bool> percent;             ///< for each column: true if values are shown in per cent
 
-    /// The table with cells as texts.
+    /// Converts the cells to texts.
     [[nodiscard]] TextTable text() const;
     /// Index of the column with this title; the number of columns if there is none.
     [[nodiscard]] std::size_t column(const std::string& title) const;
 };
 
-/// Builds the tables of a study from the reports in the run folder; uses instances that are done or unchanged.
+/// Builds the tables of a study from the reports in the run folder; only instances with the state done or unchanged are used.
 std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder);
 
 /// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: returns the path to

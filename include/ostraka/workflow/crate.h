@@ -1,4 +1,4 @@
-// The run folder of a study as a Process Run Crate, and the data needed to repeat the run.
+// Describes the run folder of a study as a Process Run Crate, and stores the data needed to repeat the run.
 #pragma once
 
 #include "ostraka/workflow/run.h"

@@ -13,11 +13,12 @@ inline constexpr std::size_t no_instance = std::numeric_limits<std::size_t>::max
 /// An input of an instance: a file, or an output of another instance.
 struct StudyInput {
     std::string slot;                    ///< name of the operation's input
-    std::string label;                   ///< the part NAME of an input given as NAME=FILE
+    std::string label;                   ///< NAME, if the input was given as NAME=FILE
     Path file;                           ///< path of the file; empty for an output of another instance
     std::size_t instance = no_instance;  ///< index of the instance that produces the output; no_instance for a file
     std::string output;                  ///< name of the output
-    bool on_disk = false;                ///< true: passed as a file, because the file beside it is read too (NAME.ant.json)
+    /// True: the input is passed as a file, because the annotation file beside it (NAME.ant.json) is read too.
+    bool on_disk = false;
 };
 
 /// A step with one combination of parameter values.
@@ -29,10 +30,11 @@ struct StudyInstance {
     Path folder;        ///< relative to the run folder: steps/NAME or steps/NAME/LABEL
     std::shared_ptr<const Json> options;         ///< options of the operation
     std::vector<StudyInput> inputs;              ///< inputs of the operation or program
-    std::map<std::string, std::string> outputs;  ///< from the name of a requested output to its file name
+    std::map<std::string, std::string> outputs;  ///< file names of the requested outputs, by name of the output
     std::set<std::string> kept;                  ///< names of the outputs that are written to files
-    std::vector<std::string> program;  ///< words of a command; words for inputs and for the folder are filled in at run time
-    std::vector<std::size_t> needs;    ///< indices of the instances whose outputs the instance uses
+    /// Words of the command of an external program; words for inputs and for the folder are filled in at run time.
+    std::vector<std::string> program;
+    std::vector<std::size_t> needs;  ///< indices of the instances whose outputs the instance uses
 
     /// Name for messages: "transfer (vertices=5000)".
     [[nodiscard]] std::string title(const Study& study) const;
@@ -86,18 +88,18 @@ private:
     void check_counts(const StudyInstance& instance);  ///< throws Error (input) if the instances have too many inputs
     /// Marks an output of an instance as requested; `keep`: it is written to a file.
     void request_output(std::size_t instance, const std::string& output, bool keep);
-    /// Instance of a step with the parameter values of `user`.
+    /// Index of the instance of `step` that has the parameter values of the instance `user`.
     [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& user) const;
     void make_outputs(StudyInstance& instance);       ///< chooses the file names of the requested outputs
     void check(const StudyInstance& instance) const;  ///< checks the call of an instance
     void check_outputs() const;                       ///< checks that requested outputs do not overwrite each other
 
-    /// For each step, from the value indices to the index of the instance.
+    /// For each step: index of the instance for each combination of value indices.
     std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;
     std::size_t inputs_ = 0;  ///< total number of inputs
 };
 
-/// Whether an object of kind `available` is accepted as an input of kind `required`.
+/// True if an object of kind `available` is accepted as an input of kind `required`.
 bool is_compatible(Kind available, Kind required);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Records of the instances that ran, which determine whether an instance has to run again, and why.
+// Records of the instances that ran. They determine whether an instance has to run again, and the reason.
 #pragma once
 
 #include "ostraka/workflow/plan.h"
@@ -11,7 +11,8 @@ namespace ostraka {
 /// Record of an output, for its instance and for the instances that use the output.
 struct OutputRecord {
     std::string file;  ///< file name; the file is in the instance's folder if it is kept
-    /// Checksum of the file, whether written or not; for a folder: checksum of the list of names and checksums.
+    /// Checksum of the output, also if it was not written to a file; for a folder, checksum of the list of names and checksums
+    /// of its files.
     std::string sha256;
     bool kept = false;       ///< true: the file was written
     bool is_folder = false;  ///< true: the output is a folder
@@ -19,15 +20,15 @@ struct OutputRecord {
 
 /// Record of an instance that ran.
 struct StudyRecord {
-    /// Everything on which the result depends: pairs of a description, and a value or checksum.
+    /// The dependencies of the result: pairs of a description and a value or checksum.
     std::vector<std::pair<std::string, std::string>> depends;
     /// Files that the inputs refer to, as pairs of name and checksum; names are relative to the study file or, with the prefix
     /// "run:", to the run folder.
     std::vector<std::pair<std::string, std::string>> read;
-    std::map<std::string, OutputRecord> outputs;  ///< from the name of an output to its record
+    std::map<std::string, OutputRecord> outputs;  ///< records of the outputs, by name
     bool holds = true;                            ///< false: the answer of the operation was "no"
     double seconds = 0;                           ///< duration in seconds
-    std::string began, ended;                     ///< start and end, UTC, ISO 8601
+    std::string began, ended;                     ///< start and end of the run, UTC, ISO 8601
 };
 
 /// Properties of a file that change when the file is written, so that changes are detected without reading it.
@@ -52,16 +53,16 @@ public:
     void forget(const Path& file);
     /// Sets the checksum of a file that another reader computed.
     void store(const Path& file, const std::string& sha256);
-    /// Files with known checksums that have changed since, or whose checksums differed between readers.
+    /// Files that changed after their checksums were computed, or for which two readers found different checksums.
     std::vector<Path> changed();
-    /// Whether the checksum of a file is known.
+    /// True if the checksum of a file is known.
     bool is_known(const Path& file);
 
 private:
     struct Entry {
         std::string sha256;              ///< checksum of the file
         std::optional<FileStamp> stamp;  ///< properties of the file when it was read; empty: not known
-        bool differs = false;            ///< another reader found different content
+        bool differs = false;            ///< true: another reader found different content
     };
     std::mutex mutex_;
     std::map<Path, Entry> entries_;  ///< from the path of a file to its checksum
@@ -73,8 +74,8 @@ std::optional<StudyRecord> read_record(const Path& folder);
 /// Writes FOLDER/record.json of an instance.
 void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance& instance, const StudyRecord& record);
 
-/// Dependencies of the result of an instance, given the records of the instances that it needs. `program_folder`: folder of the
-/// programs.
+/// Computes the dependencies of the result of an instance from the records of the instances that it needs. `program_folder`:
+/// folder of the programs.
 std::vector<std::pair<std::string, std::string>> dependencies(const StudyPlan& plan, const StudyInstance& instance,
                                                               const std::function<const StudyRecord&(std::size_t)>& record_of,
                                                               FileChecksums& checksums, const Path& program_folder);

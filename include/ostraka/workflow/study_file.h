@@ -1,4 +1,4 @@
-// Study files: steps, each of which names an operation with its inputs and options, and grids of parameters.
+// Study files. A study consists of steps (operations with their inputs and options) and of parameters with lists of values.
 #pragma once
 
 #include "ostraka/files/json.h"
@@ -13,7 +13,7 @@ namespace ostraka {
 
 /// A reference "${name}" or "${name.member}" to the value of a parameter or to an output of a step.
 struct StudyReference {
-    std::string name, member;  ///< member: empty for "${name}"
+    std::string name, member;  ///< name of the parameter or step; name of the member or output, empty for "${name}"
 };
 /// A text that may contain references.
 struct StudyText {
@@ -25,9 +25,9 @@ struct StudyText {
 /// Parses a text with references. Throws Error (input) if "${" is not followed by a name and "}".
 StudyText study_text(const std::string& text, const std::string& where);
 
-/// One value of a parameter: its members by name, with "" for the value itself. Members are texts, numbers or booleans.
+/// One value of a parameter: a text, number or boolean, stored as the member "", or an object with several named members.
 struct ParameterValue {
-    std::map<std::string, std::shared_ptr<const Json>> members;            ///< from the name of a member to its value
+    std::map<std::string, std::shared_ptr<const Json>> members;            ///< values of the members, by name
     std::string label;                                                     ///< text for the value in tables and folder names
     [[nodiscard]] const JsonValue* find(const std::string& member) const;  ///< value of a member; null: no such member
 };
@@ -36,7 +36,7 @@ struct StudyParameter {
     std::string name;                    ///< name of the parameter
     std::vector<ParameterValue> values;  ///< values for which steps run
     bool by_caller = false;              ///< true: the values come from the caller, not from the study file
-    bool varies = false;                 ///< true: given as a list, a range or files, so that steps run once per value
+    bool varies = false;  ///< true: the parameter was given as a list, a range or files, so that steps run once per value
 };
 
 /// An input or option of a step, as in the study file.
@@ -52,12 +52,12 @@ struct StudyStep {
     const OperationEntry* operation = nullptr;  ///< null: the step runs a program
     std::vector<StudySetting> settings;         ///< inputs and options of the operation
     std::vector<StudySetting> program, reads;   ///< words of the program's command, and the files that the program reads
-    /// From the name of an output to be written to its file name; empty file name: default name.
+    /// File names of the outputs that are written, by name of the output; an empty file name stands for the default name.
     std::map<std::string, StudyText> keep;
     bool is_slow = false;              ///< true: quick runs omit the step
     std::vector<std::size_t> needs;    ///< indices of the steps whose outputs the step uses
     std::vector<std::size_t> gathers;  ///< indices of the needed steps of which the step uses all instances
-    std::vector<bool> parameters;      ///< for each parameter of the study, whether the step varies with it
+    std::vector<bool> parameters;      ///< for each parameter of the study: true if the step varies with it
 };
 
 /// A study, read from its file.
@@ -101,7 +101,7 @@ struct StudyOptions {
 /// returns the operation with a given name. Throws Error (input) with the file, the place in the file and a remedy.
 Study read_study(const Path& file, const FindOperation& find, const StudyOptions& options = {});
 
-/// Whether a program with this name belongs to the toolkit, so that every study may start it.
+/// True if a program with this name belongs to the toolkit; every study may start such programs.
 bool is_own_program(const std::string& name);
 
 /// A parameter value as text.

@@ -36,8 +36,7 @@ struct AnnotationApply final : Operation {
             fail_usage(mesh_labels ? "--from-ply-labels takes a mesh and an output"
                                    : "a mesh, a recipe or label file, and an output are needed",
                        mesh_labels ? "leave out the recipe or label file" : "give them, or --from-ply-labels");
-        if (edited && !is_document(recipe))
-            fail_usage("--edit goes with a recipe", "give a recipe whose steps edit the annotations");
+        if (edited && !is_document(recipe)) fail_usage("--edit needs a recipe", "give a recipe whose steps edit the annotations");
     }
 
     void run(Context& context, Report& report) override {

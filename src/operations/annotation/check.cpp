@@ -27,7 +27,7 @@ struct AnnotationCheck final : Operation {
     }
 
     void check() const override {
-        if (graph && !rules) fail_usage("--graph goes with --rules", "add --rules FILE");
+        if (graph && !rules) fail_usage("--graph needs --rules", "add --rules FILE");
     }
 
     void run(Context&, Report& report) override {

@@ -35,13 +35,13 @@ struct AnnotationCreases final : Operation {
         }
         if (creases.empty()) {
             report.note(fmt::format(
-                "no crease stands out at this scale, so {} is not written: try another --scale, or a lower --weak and --strong",
+                "no crease was found at this scale, so {} is not written: try another --scale, or lower --weak and --strong",
                 output.file()));
             return report.answer_no();
         }
         report.line(
-            fmt::format("strength: mean response along the line, in robust deviations of the response over the surface (--weak "
-                        "{}, --strong {})",
+            fmt::format("strength: mean response of the crease filter along the line, in robust standard deviations of its "
+                        "response over the surface (--weak {}, --strong {})",
                         number(options.weak), number(options.strong)));
         output.write(std::move(set), surface, mesh.file());
     }

@@ -45,7 +45,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "annotation to edit: its id, or its tag if no other annotation has the same tag");
-        p.options("merge", merge, "id or tag of an annotation that is merged into that of --annotation; repeatable");
+        p.options("merge", merge, "id or tag of an annotation that is merged into the annotation of --annotation; repeatable");
         p.options("tag", tag, "new tag of the annotation");
         p.options("note", note, "new note of the annotation");
         p.options("colour", colour, "new colour: 200,30,60 or #c81e3c");
@@ -97,7 +97,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         if (up) edited.up = direction();
         if (unit && *unit != edited.unit) {
             change_length_unit(surface, edited, *unit);
-            notes.emplace_back("the numbers stay as they are: the unit is that of the mesh's coordinates");
+            notes.emplace_back("numbers are not converted: the unit names the unit of the mesh's coordinates");
         }
         report.notes(notes);
         report("annotations", edited.annotations.size());

@@ -19,8 +19,8 @@ struct AnnotationFacets final : Operation {
                         "write the annotations to this file, and leave the input file unchanged")
             .updates(annotations);
         p.output_option("probability", Kind::values, probability,
-                        "file to write (.npy, or text): for each face, its probability of being fracture surface, from the "
-                        "features of this face alone");
+                        "file to write (.npy, or text): for each face, its probability of being fracture surface, computed from "
+                        "the features of the face alone");
         p.options("unit", unit, "unit of the mesh's coordinates for a new file, e.g. mm");
         options.list_options(p.options);
         p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
@@ -49,8 +49,8 @@ struct AnnotationFacets final : Operation {
         report("shell", facets.shell);
         if (facets.shell) report("thickness", facets.thickness);
         report("confidence", facets.confidence);
-        report.line(!facets.shell ? std::string("a solid: no wall with two sides")
-                                  : fmt::format("a wall {}{} thick", number(facets.thickness, 3),
+        report.line(!facets.shell ? std::string("the fragment is solid: it has no wall with two sides")
+                                  : fmt::format("the fragment has a wall {}{} thick", number(facets.thickness, 3),
                                                 set.unit.empty() ? "" : " " + printable(set.unit, 60)));
         if (facets.area(Facet::fracture) > 0) {
             update_facet_annotations(set, facets);

@@ -25,14 +25,14 @@ Collection single_object(const Path& file) {
                 object.mesh = file.parent_path() / (object.name + mesh);
         if (object.mesh.empty())
             fail_input(file.string(), "there is no mesh of the same name in its folder",
-                       fmt::format("put {}.ply (or .obj, .glb, .gltf, .off, .stl, .3mf) there", object.name));
+                       fmt::format("put {}.ply (or .obj, .glb, .gltf, .off, .stl, .3mf) into this folder", object.name));
     } else {
         object.name = file.stem().string();
         object.mesh = file;
         object.annotations = file.parent_path() / (object.name + ending);
         if (!file_exists(object.annotations))
             fail_input(file.string(), "there are no annotations of the same name in its folder",
-                       fmt::format("put {}{} there", object.name, ending));
+                       fmt::format("put {}{} into this folder", object.name, ending));
     }
     object.checksum = ResultStore::key({sha256_of_file(object.mesh), sha256_of_file(object.annotations)});
     Collection collection;
@@ -140,7 +140,7 @@ struct AnnotationFind final : Operation {
             if (values[reference].empty())
                 fail_usage(fmt::format("query: object '{}' has no attribute '{}'", printable(reference.object, 60),
                                        printable(reference.attribute, 60)),
-                           "'ostraka annotation list' shows what it has");
+                           "'ostraka annotation list' shows its attributes");
         }
         return values;
     }

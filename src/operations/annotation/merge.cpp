@@ -13,7 +13,8 @@ namespace {
 struct AnnotationMerge final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh to which all three sets of annotations belong");
-        p.input("base", Kind::annotations, base, "set of annotations from which both changed sets were made (.ant.json)");
+        p.input("base", Kind::annotations, base,
+                "common base: set of annotations from which both changed sets were made (.ant.json)");
         p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
         p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
@@ -44,10 +45,10 @@ struct AnnotationMerge final : Operation {
             return std::any_of(merged.conflicts.begin(), merged.conflicts.end(),
                                [&](const Conflict& conflict) { return conflict.field == field; });
         };
-        report.line(fmt::format("{}; nothing written (resolve them in the files, or choose with --prefer{}{})",
-                                counted(count, "conflict"),
-                                any_conflict("both added") ? "; --renumber keeps both where both added under one id" : "",
-                                any_conflict("geometry") ? "; --merge-faces joins regions that both changed" : ""));
+        report.line(fmt::format(
+            "{}; nothing written (resolve them in the files, or choose with --prefer{}{})", counted(count, "conflict"),
+            any_conflict("both added") ? "; --renumber keeps both annotations where both sets added one with the same id" : "",
+            any_conflict("geometry") ? "; --merge-faces merges regions that both sets changed" : ""));
     }
 
     MeshInput mesh;

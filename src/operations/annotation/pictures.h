@@ -17,7 +17,7 @@ struct AnnotationPictures {
         p.output_option("ply", Kind::mesh, coloured,
                         "mesh file to write, coloured by its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,
-                        "labels to write: for each face, the id of the smallest region on it, or -1");
+                        "label file to write: for each face, the id of the smallest region that contains the face, or -1");
     }
     void write(AnnotatedMeshView object, Report& report) const {
         if (coloured) coloured.write(object.mesh, colour_by_annotation(object));

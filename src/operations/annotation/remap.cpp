@@ -33,12 +33,12 @@ struct AnnotationRemap final : Operation {
 
     void check() const override {
         if (is_document(annotations)) {
-            if (!vertex_map) fail_usage("annotations follow a vertex map", "add --vertex-map FILE");
+            if (!vertex_map) fail_usage("annotations need a vertex map", "add --vertex-map FILE");
             return;
         }
-        if (!face_map) fail_usage("labels follow a face map", "add --face-map FILE");
+        if (!face_map) fail_usage("labels need a face map", "add --face-map FILE");
         if (pictures.coloured || pictures.labels)
-            fail_usage("--ply and --labels-out go with annotations", "apply the new labels with 'annotation apply'");
+            fail_usage("--ply and --labels-out need annotations, not labels", "apply the new labels with 'annotation apply'");
     }
 
     void run(Context& context, Report& report) override {

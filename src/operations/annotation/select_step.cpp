@@ -24,8 +24,9 @@ void check_threshold(const std::string& of) {
     if (std::find(names.begin(), names.end(), of) != names.end() || of.starts_with(file_values_prefix) ||
         !extension(of).empty() || file_exists(of))
         return;
-    fail_usage("--threshold '" + printable(of, 60) + "' is no known quantity and no file",
-               "use " + joined(names) + ", values:NAME for the values NAME of the mesh file, or a file of values (.npy or text)");
+    fail_usage(
+        "--threshold '" + printable(of, 60) + "' is no known quantity and no file",
+        "use " + joined(names) + ", values:NAME for the property NAME of the mesh file, or a file of values (.npy or text)");
 }
 
 }  // namespace
@@ -34,20 +35,22 @@ void SelectStep::list_options(OptionList& list) {
     list("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
     list.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
     list("all", all, "the whole mesh");
-    list("rectangle", rectangle, "selects what the rectangle x0,y0,x1,y1 covers, in pixels of the camera's picture");
-    list("polygon", polygon, "selects what the polygon x,y,x,y,... encloses, in pixels of the camera's picture");
-    list("box", box, "selects what lies in this box: its minimum and maximum corner, as six numbers");
-    list("sphere", sphere, "selects what lies in the sphere x,y,z,radius");
-    list("halfspace", halfspace, "selects one side of a plane: a point and the normal towards this side, as six numbers");
+    list("rectangle", rectangle, "selects elements inside the rectangle x0,y0,x1,y1, in pixels of the camera's picture");
+    list("polygon", polygon, "selects elements inside the polygon x,y,x,y,..., in pixels of the camera's picture");
+    list("box", box, "selects elements inside a box, given by its minimum and maximum corner as six numbers");
+    list("sphere", sphere, "selects elements inside the sphere x,y,z,radius");
+    list("halfspace", halfspace, "selects one side of a plane, given by a point and the normal towards this side as six numbers");
     list("nearest", nearest, "selects the vertex nearest to x,y,z");
     list("threshold", threshold,
-         "selects places where this quantity lies between --above and --below; distance is measured from --seed, colour is the "
+         "selects elements where this quantity lies between --above and --below; distance: distance from --seed; colour: "
          "difference (CIEDE2000) from the colour at --seed or from --like",
-         Words{threshold_names(), "values:NAME for the values NAME of the mesh file, a file of values (.npy or text)",
+         Words{threshold_names(), "values:NAME for the property NAME of the mesh file, a file of values (.npy or text)",
                check_threshold});
-    list("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
+    list("segment", segment,
+         "number of thickness levels: segments the mesh by thickness and selects the segment that contains --seed",
+         Range{2, 100});
     list("path", path, "selects the shortest paths along edges that join these picks").words();
-    list("lasso", lasso, "selects the part that a path through these picks encloses; --seed lies within the part").words();
+    list("lasso", lasso, "selects the part enclosed by a path through these picks; --seed is a pick within the part").words();
     list("brush", brush, "selects the geodesic discs of --radius around these picks").words();
     list("vertices", vertices, "selects the vertices at these picks").words();
     list("component", component, "selects the connected component of this pick");
@@ -63,24 +66,25 @@ void SelectStep::list_options(OptionList& list) {
     list("radius", radius, "with --brush: geodesic radius, in the unit of --frame");
     list("stroke", stroke, "with --brush: paint along the path through the picks");
     list("above", above,
-         "with --threshold: minimum value; lengths in the unit of --frame, curvature in the inverse of this unit, values of a "
-         "file unchanged");
+         "with --threshold: minimum value; lengths are in the unit of --frame, curvatures in the inverse of this unit, values of "
+         "a file in their own unit");
     list("below", below, "with --threshold: maximum value, in the unit of --above");
     list("like", like, "with --threshold colour: the colour, as #rrggbb");
     list("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
-    list("scale", scale, "with --threshold of a curvature: radius of averaging; 0: automatic", Range{0, 1},
-         "share of the diagonal");
-    list("smoothing", smoothing, "with --segment: preference for short borders in concave places", Range{0, 1});
+    list("scale", scale, "with --threshold of a curvature: radius over which the curvature is averaged; 0: automatic",
+         Range{0, 1}, "share of the diagonal");
+    list("smoothing", smoothing, "with --segment: weight of short borders along concave edges", Range{0, 1});
     list("grow", grow, "number of rings of neighbours by which the selection is dilated", Range{0, 1000000});
     list("shrink", shrink, "number of rings of neighbours by which the selection is eroded", Range{0, 1000000});
     list("invert", invert, "select the complement");
     list("frame", frame,
-         "how coordinates and lengths are given: in the unit of the mesh (mesh), or relative to its bounding box (box): "
-         "coordinates from 0 to 1, lengths as shares of the diagonal",
+         "unit of coordinates and lengths: the unit of the mesh (mesh), or relative to its bounding box (box): coordinates from "
+         "0 to 1, lengths as shares of the diagonal",
          Choices{"mesh", "box"});
 
-    list.group("Camera (that of 'ostraka render' without legend and title)");
-    list("camera", camera_text, "camera: a name in the recipe, or JSON (from 'render --json'); replaces --view to --size");
+    list.group("Camera (as in 'ostraka render' without legend and title)");
+    list("camera", camera_text,
+         "camera: its name in the recipe, or JSON (from 'render --json'); replaces the options --view to --size");
     list("view", view, "view direction", view_words());
     list("up", up, "upward direction, stored in new files; default: that of the annotations, or 0,0,1", direction_words("--up"));
     list("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
@@ -90,12 +94,11 @@ void SelectStep::list_options(OptionList& list) {
     list.group("Annotation");
     list("tag", tag, "tag of the annotation");
     list("id", id, "id of the annotation; if left out, a new annotation gets an unused id");
-    list("type", type, "type of a new annotation; by default the type that the selection has",
-         Choices{"point", "line", "region"});
+    list("type", type, "type of a new annotation; by default the type of the selection", Choices{"point", "line", "region"});
     list("outline", outline,
-         "course of outlines: through the faces (free) or along edges (edges); by default an edited outline keeps its kind, and "
-         "a new outline is free if the selection has a border between vertices (volume, polygon, threshold on vertices, brush, "
-         "lasso or distance)",
+         "representation of outlines: curves through the faces (free) or paths of edges (edges); by default an edited outline "
+         "keeps its representation, and a new outline is free if the selection has a border between vertices (volume, polygon, "
+         "threshold on vertices, brush, lasso or distance)",
          Choices{"edges", "free"});
     list("colour", colour, "colour of the annotation, as red,green,blue", Range{0, 255});
     list("action", action, "effect of the selection on the annotation with --id",
@@ -202,11 +205,11 @@ private:
         } else if (of == "x" || of == "y" || of == "z") {
             add_members(value, a_, "coordinate", direction_of(of, "--threshold"));
         } else if (of == "distance") {
-            if (step_.seed.empty()) fail_usage("a threshold on the distance needs a place to start from", "add --seed PICK");
+            if (step_.seed.empty()) fail_usage("a threshold on the distance needs a starting point", "add --seed PICK");
             add_members(value, a_, "distance", picks({step_.seed}, "seed"));
         } else if (of == "colour") {
             if (step_.seed.empty() == step_.like.empty())
-                fail_usage("a threshold on the colour needs a place or a colour to compare with",
+                fail_usage("a threshold on the colour needs a reference point or a reference colour",
                            "add --seed PICK, or --like '#rrggbb'");
             if (step_.like.empty()) {
                 JsonValue seeds = picks({step_.seed}, "seed");
@@ -285,8 +288,7 @@ private:
             const Json parsed = parse_json(step_.expression, "expression");
             if (given.size() == 1) result.CopyFrom(parsed, a_);
         }
-        if (given.empty())
-            fail_usage("nothing says what to select", "give an expression or a tool, such as --rectangle x0,y0,x1,y1");
+        if (given.empty()) fail_usage("no selection is given", "give an expression or a tool, such as --rectangle x0,y0,x1,y1");
         if (given.size() > 1)
             fail_usage("two tools at once: " + given[0] + " and " + given[1],
                        "give one; join them by an expression, or by two commands");

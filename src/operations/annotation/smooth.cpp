@@ -30,7 +30,7 @@ struct AnnotationSmooth final : Operation {
             const Annotation& annotation = find_annotation(set, name, annotations.file());
             ids.push_back(annotation.id);
             if (annotation.type == AnnotationType::point || annotation.all)
-                report.note(name_of(annotation) + " has no outline and no line: it stays as it is");
+                report.note(name_of(annotation) + " has no outline and no line: it is unchanged");
         }
         report.empty_table("annotations");
         for (const FairedAnnotation& faired :

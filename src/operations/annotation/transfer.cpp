@@ -40,15 +40,16 @@ struct AnnotationTransfer final : Operation {
         p.input("annotations", Kind::annotations, annotations, "annotations of the source mesh (.ant.json)");
         p.input("target", Kind::mesh, target, "mesh of the same object at another resolution");
         p.output("output", Kind::annotations, output, "annotations of the target mesh to write (.ant.json)");
-        p.output_option("back", Kind::annotations, back,
-                        "file to write: the result transferred back to the source, which is also scored");
+        p.output_option(
+            "back", Kind::annotations, back,
+            "annotation file to write: the result transferred back to the source mesh; this second transfer is scored as well");
         p.output_option("ply", Kind::mesh, coloured,
                         "target mesh to write, coloured by its annotations (PLY or another format with colours)");
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
         p.output_option("map", Kind::index_map, map,
                         "with --refine: JSON file to write: for each new face, the index of the old face");
         options.list_options(p.options);
-        p.options("register", registers, "first register the source onto the target, which may differ in unit and pose",
+        p.options("register", registers, "first register the source onto the target; the two meshes may differ in unit and pose",
                   Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));
@@ -70,7 +71,7 @@ struct AnnotationTransfer final : Operation {
         if (options.refine != static_cast<bool>(refined))
             fail_usage("--refine inserts vertices on the target",
                        "give --refine together with --refined-mesh FILE for the mesh that results");
-        if (map && !refined) fail_usage("--map goes with --refine", "leave it out or refine");
+        if (map && !refined) fail_usage("--map needs --refine", "leave it out or refine");
         if (const std::string kind = extension(refined.file()); kind == ".stl" || kind == ".glb")
             fail_usage("annotations need a mesh whose vertices keep their order, which " + kind + " files do not",
                        "write a .ply, .obj or .off");
@@ -141,7 +142,7 @@ struct AnnotationTransfer final : Operation {
         report("registration", json_object(report.allocator(), "verdict", to_string(found.verdict), "matrix",
                                            pose_to_json(found.motion, report.allocator()), "scale", found.motion.scale, "rms",
                                            found.agreement.rms, "share", found.agreement.share));
-        report.line("registered: turned by " + number(Eigen::AngleAxisd(found.motion.rotation).angle() / degree, 4) +
+        report.line("registered: rotated by " + number(Eigen::AngleAxisd(found.motion.rotation).angle() / degree, 4) +
                     " degrees, scaled by " + number(found.motion.scale, 6) + "; " + message_about(found, diagonal));
         if (registered.annotations.unit != set.unit)
             report.note("lengths were in " + printable(set.unit, 20) + " and are " +

@@ -29,7 +29,7 @@ struct CheckOfCage final : Operation {
 
     void check() const override {
         if (static_cast<bool>(annotations) != static_cast<bool>(graph))
-            fail_usage("--annotations and --graph belong together", "give both");
+            fail_usage("--annotations and --graph need each other", "give both");
         if (!graph && (weights || edit)) fail_usage("--weights and --edit are for --graph", "add --annotations and --graph");
     }
 

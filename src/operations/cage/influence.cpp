@@ -20,9 +20,10 @@ struct CageInfluence final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage of the mesh");
         p.input("weights", Kind::coordinates, weights, "weights written by 'cage weights' (.npy)");
-        p.output("output", Kind::mesh, output,
-                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage with --annotation, otherwise "
-                 "the mesh; by default coloured by how many cage vertices carry 95 % of the weight of each mesh vertex");
+        p.output(
+            "output", Kind::mesh, output,
+            "coloured mesh to write (PLY, with the values as the property quality): with --annotation the cage, otherwise the "
+            "mesh; by default each mesh vertex is coloured by the number of cage vertices that carry 95 % of its weight");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.options("cage-vertex", cage_vertex, "index of a cage vertex: colour the mesh by the weights of this cage vertex");
         p.options("annotation", annotation, "id or tag of an annotation: colour the cage by the influence on this annotation");

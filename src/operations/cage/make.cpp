@@ -24,13 +24,13 @@ struct CageMake final : Operation {
                        "annotations of the mesh (.ant.json): the vertex density of the cage is four times as high near points, "
                        "lines and outlines");
         p.input_option("graph", Kind::graph, graph,
-                       "relationships (.graph.json): a mirror symmetry in the file makes the cage, and the cages of symmetric "
-                       "parts, symmetric");
+                       "relationships (.graph.json): if they contain a mirror symmetry, the cage of the object and the cages of "
+                       "its symmetric parts are made symmetric");
         p.input_option("for", Kind::graph, constraints,
                        "relationships (.graph.json) with constraints that the cage must be able to satisfy: near the constrained "
                        "parts the cage is denser and closer to the mesh, with up to twice the vertices (exit code 3: a "
                        "constraint cannot be satisfied)");
-        vocabulary.declare(p, "by which tags of annotations are matched with --parts");
+        vocabulary.declare(p, "used to match tags of annotations with --parts");
         options.list_options(p.options);
         p.options("levels", levels, "numbers of vertices, separated by commas, of nested cages, written as output-NUMBER",
                   Range{4, 1000000});
@@ -54,12 +54,11 @@ struct CageMake final : Operation {
 
     void check() const override {
         if (constraints && (!levels.empty() || !parts.empty() || !details.empty()))
-            fail_usage("--for with --levels, --parts or --detail",
-                       "let --for choose where the cage is dense, or specify it yourself");
+            fail_usage("--for with --levels, --parts or --detail", "leave out --for, or the options that specify the density");
         if (constraints && !annotations) fail_usage("--for without --annotations", "add --annotations");
         const auto sizes = wanted();
         if (std::adjacent_find(sizes.begin(), sizes.end()) != sizes.end())
-            fail_usage("--levels has a number twice", "give each once");
+            fail_usage("--levels contains a number twice", "give each once");
         if (!annotations && !details.empty()) fail_usage("--detail without --annotations", "add --annotations");
         if (!annotations && (!parts.empty() || graph))
             fail_usage(fmt::format("{} without --annotations", parts.empty() ? "--graph" : "--parts"), "add --annotations");
@@ -110,18 +109,18 @@ struct CageMake final : Operation {
             if (result.cage.number_of_vertices() < sizes[i])
                 report.note(fmt::format("{} has {} vertices instead of {}: {}", name, result.cage.number_of_vertices(), sizes[i],
                                         result.wrap_vertices < sizes[i]
-                                            ? "its wrap has no more, a smaller --alpha gives more"
-                                            : "a mirrored cage has as many on both sides of the plane"));
+                                            ? "its wrap has no more vertices; a smaller --alpha gives more"
+                                            : "a mirrored cage has the same number of vertices on both sides of the plane"));
             report.row("cages")("file", file, name)("level", results.size() - 1 - i)("part", "")(
                 "vertices", result.cage.number_of_vertices())("faces", result.cage.number_of_faces())("reached", result.reached)(
                 "genus", check.genus)("clearance", check.clearance)("alpha", result.alpha);
         }
-        if (!reached) report.note("a cage with fewer vertices would leave a part of the mesh outside");
+        if (!reached) report.note("with fewer vertices a part of the mesh would be outside");
         if (genera.size() > 1)
-            report.note("the levels differ in genus: the wrap of a coarser one closes holes that a finer one follows");
+            report.note("the levels differ in genus: the wrap of a coarser cage closes openings that a finer cage preserves");
         if (left_out > 0)
-            report.note(fmt::format("{} {} not inside the cage, which is made around faces: remove with 'mesh repair'", left_out,
-                                    left_out == 1 ? "vertex without faces is" : "vertices without faces are"));
+            report.note(fmt::format("{} {} not inside the cage, because the cage is made around faces: remove with 'mesh repair'",
+                                    left_out, left_out == 1 ? "vertex without faces is" : "vertices without faces are"));
         if (!reached || left_out > 0) report.answer_no();
         if (one_file || !regions.empty()) {
             output.write(nested({object, set}, relations, regions, results, report));
@@ -140,7 +139,8 @@ struct CageMake final : Operation {
         report_reach(report, cage_for.reach, object.annotations);
         for (const ConstraintReach& reach : cage_for.reach) {
             if (reach.reached) continue;
-            report.note(ostraka::describe(reach, object.annotations) + "; 'deform --space auto' solves for it over the mesh");
+            report.note(ostraka::describe(reach, object.annotations) +
+                        "; 'deform --space auto' solves for this constraint over the mesh");
             report.answer_no();
         }
         std::vector<CageResult> results;

@@ -36,8 +36,8 @@ struct CageCoordinates final : Operation {
             in_file(cage.file(), [&] { return certify(coordinates, around, points_of(subject), options); });
         if (coordinates.has_normals())
             report.note(kind +
-                        " coordinates serve deformation without constraints only: the constrained solve through the cage "
-                        "leaves out their normal term");
+                        " coordinates can only be used for deformation without constraints, because the solve over the cage "
+                        "vertices ignores their normal term");
         report_result(report, certificate, check_cage(around, subject), coordinates);
         output.write(std::move(coordinates), subject, around, certificate);
     }
@@ -54,7 +54,9 @@ struct CageCoordinates final : Operation {
             row(property, value ? number(*value, 3) : "-", value ? meaning : "not defined on the cage");
         };
         row("partition of unity", number(c.partition, 3), "largest |sum of a point's weights - 1|");
-        row("linear precision", number(c.linear, 3), "largest error of a point at rest, in diagonals of the cage");
+        row("linear precision", number(c.linear, 3),
+            "largest distance between a point and its reconstruction from the undeformed cage, as a fraction of the cage's "
+            "diagonal");
         on_cage("Lagrange property", c.lagrange, "largest deviation at the cage's vertices");
         on_cage("linear on edges", c.edges, "largest deviation at three points per edge");
         on_cage("linear on faces", c.on_faces, "largest deviation at three points per face");
@@ -73,7 +75,8 @@ struct CageCoordinates final : Operation {
         if (!phases.empty()) row("time", joined(phases), "of each phase");
         report("storedShare", coordinates.stored_share());
         const double factor = amplification(coordinates);
-        row("amplification", number(factor, 3), "upper bound on how far a point moves, relative to the cage");
+        row("amplification", number(factor, 3),
+            "upper bound of the displacement of a point, relative to the largest displacement of a cage vertex");
         report("amplification", factor)("outside", cage.outside.size())("crossed", cage.crossing.size())(
             "cageIntersections", cage.intersections.size());
         std::vector<std::string> objections = reasons_against_deformation(cage, coordinates);

@@ -13,7 +13,7 @@ namespace ostraka {
 
 void Conformance::describe_kit(Parameters& p) {
     p.input_option("kit", Kind::folder, kit, "folder of the conformance kit (conformance.json); by default the installed kit");
-    p.options("only", only, "names of the operations or cases to run; all if left out").words();
+    p.options("only", only, "names of the operations or cases to run; if left out, all are run").words();
     p.output_option("junit", Kind::report, junit, "write the results as JUnit XML");
     p.options("time-limit", time_limit, "time limit of each case", Range{0.1, 86400}, "s").unrecorded();
     p.report.values(text("kit", "kit"), integer("cases", "cases"), integer("agree", "agree"), integer("differ", "differ"),

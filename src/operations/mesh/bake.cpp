@@ -11,10 +11,11 @@ namespace {
 struct MeshBake final : Operation {
     void declare(Parameters& p) override {
         p.input("target", Kind::mesh, target, "mesh that gets the colours");
-        p.input("source", Kind::mesh, source, "mesh of the same object, in the same place, with the colours or the detail");
+        p.input("source", Kind::mesh, source,
+                "mesh of the same object, in the same position, with the colours or the geometric detail");
         p.output("output", Kind::mesh, output.with_ascii_option(),
                  "target with its new texture (.obj, .ply, .glb) or vertex colours (.ply, .obj, .off, .glb)");
-        p.options("to", to, "what receives the colours: an image, or the vertices", Choices{"image", "vertices"});
+        p.options("to", to, "destination of the colours: an image, or the vertices", Choices{"image", "vertices"});
         p.options("layout", layout, "texture coordinates of the image: a new atlas, or the target's own", Choices{"new", "own"});
         baking.list_texel(p.options);
         baking.bake.list_options(p.options);
@@ -30,9 +31,9 @@ struct MeshBake final : Operation {
             fail_usage(fmt::format("a {} file does not keep an image", extension(output.file())),
                        "write .obj, .ply or .glb, or bake --to vertices");
         if (to == BakeTarget::vertices && layout == Layout::own)
-            fail_usage("--layout with --to vertices", "leave out --layout, which is for images");
+            fail_usage("--layout cannot be used with --to vertices", "leave out --layout, which applies to images only");
         if (layout == Layout::own && baking.texel > 0)
-            fail_usage("--texel with --layout own", "leave out --texel: the target's image has its size");
+            fail_usage("--texel cannot be used with --layout own", "leave out --texel: the target's image has its size");
     }
 
     void run(Context&, Report& report) override {

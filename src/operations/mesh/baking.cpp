@@ -10,7 +10,7 @@ void report_counts(Report& report, const BakeCounts& counts) {
     report("by_ray", counts.by_ray)("by_nearest", counts.by_nearest)("without_source", counts.without)(
         "mean_distance", counts.mean_distance)("largest_distance", counts.largest_distance);
     if (counts.total() > 0 && counts.without == counts.total())
-        report.note("no part of the source was found near the target: do both have the same place, scale and unit?");
+        report.note("no part of the source was found near the target: do both have the same position, scale and unit?");
     else if (counts.without > 0)
         report.note(fmt::format("{:.2g} % of the samples lie farther from the source than --distance",
                                 100 * static_cast<double>(counts.without) / static_cast<double>(counts.total())));
@@ -35,8 +35,8 @@ void Baking::declare_report(ReportLayout& layout) {
                   number("largest_stretch", "largest stretch"), integer("samples", "rays per row of a texel"),
                   integer("by_ray", "samples found by ray"), integer("by_nearest", "samples found as the nearest point"),
                   integer("without_source", "samples without source"), number("mean_distance", "mean distance", "length"),
-                  number("largest_distance", "largest distance", "length"), number("black", "value of black"),
-                  number("white", "value of white"));
+                  number("largest_distance", "largest distance", "length"), number("black", "value shown as black"),
+                  number("white", "value shown as white"));
 }
 
 void Baking::to_image(const Mesh& target, MeshExtras& extras, const MeshFile& source, const std::string& source_file,

@@ -24,7 +24,7 @@ struct MeshBreak final : Operation {
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the fragment to write (.ant.json)");
         p.output_option("pose-out", Kind::pose, pose_out,
-                        "JSON file to write: 4 x 4 matrix that moves the fragment back to its place");
+                        "JSON file to write: 4 x 4 matrix that moves the fragment back to its position on the object");
         options.list_options(p.options);
         p.options("at", at, "centre of the fragment: coordinates x,y,z, or the tag of an annotation").required();
         p.report.values(integer("vertices"), integer("faces"), any("pose"));
@@ -77,7 +77,7 @@ struct MeshBreak final : Operation {
                        set != nullptr ? "give the tag of an annotation, or three numbers like 0,0,10"
                                       : "give three numbers like 0,0,10, or --annotations that have this tag");
         if (set != nullptr && !annotations_out)
-            fail_usage("--annotations are neither needed for --at nor written",
+            fail_usage("--annotations are not used: --at names no annotation, and --annotations-out is missing",
                        "give --annotations-out, or leave out --annotations");
         for (const double x : numbers)
             if (!std::isfinite(x)) fail_usage("--at is not finite", "give a place on the object");

@@ -18,7 +18,7 @@ struct MeshConvert final : Operation {
         p.input_option("polygons-of", Kind::mesh, polygons_of,
                        "polygon file from which the triangles of the input were made, possibly with other vertex positions; the "
                        "polygons of this file are written instead of triangles (.obj, .off, .ply)");
-        p.options("binary", binary, "write PLY and STL as bytes (the default)");
+        p.options("binary", binary, "write PLY and STL in binary encoding (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));
     }
 

@@ -17,13 +17,14 @@ struct MeshExtract final : AnnotatedMeshOperation {
         describe_inputs(p);
         p.output("output", Kind::mesh, output, "mesh of the part to write");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
-        vocabulary.declare(p, "by which tags of annotations are matched with --annotation and --without");
+        vocabulary.declare(p, "used to match tags of annotations with --annotation and --without");
         p.options("annotation", names,
                   "id or tag of regions that form the part; a tag means all its regions; default: whole mesh")
             .words();
         p.options("without", without, "id or tag of regions that are removed from the part").words();
         p.options("closed", closed, "close the cuts by triangles, annotated with the tag 'cut'");
-        p.options("labels", labels, "label each face of the mesh file (PLY) with the id of the smallest region around it");
+        p.options("labels", labels,
+                  "label each face of the mesh file (PLY) with the id of the smallest region that contains the face");
         p.report.values(integer("vertices"), integer("faces"), number("area", "", "length^2"), integer("cuts"),
                         integer("closed"));
     }

@@ -68,8 +68,8 @@ struct MeshInfo final : Operation {
         const double joining = std::max(width, std::min(2 * width, 0.3 * diagnosis.mean_edge));
         report("crack_width", width);
         report.note(
-            fmt::format("the surface has cracks along its edges: most points of its border have another one within {} (join "
-                        "them: ostraka mesh repair {} OUTPUT --merge-distance {})",
+            fmt::format("the surface has cracks along its edges: most points of its border have another border point within {} "
+                        "(join them: ostraka mesh repair {} OUTPUT --merge-distance {})",
                         number(width, 2), input.file(), digits(joining / diagnosis.diagonal, 2)));
     }
 

@@ -34,10 +34,9 @@ Matrix3d matrix_of_axes(const std::string& text) {
     if (text == "z-up") return matrix_of_axes("x,-z,y");
     if (text == "y-up") return matrix_of_axes("x,z,-y");
     const auto fail = [&] {
-        fail_usage(
-            fmt::format("--axes is '{}'", printable(text, 60)),
-            "give z-up (for an object whose y axis points up), y-up (for one whose z axis does), or the axes that become x, y "
-            "and z, each axis once: x,z,-y");
+        fail_usage(fmt::format("--axes is '{}'", printable(text, 60)),
+                   "give z-up (for an object whose y axis points up), y-up (for an object whose z axis points up), or the axes "
+                   "that become x, y and z, each axis once: x,z,-y");
     };
     Matrix3d matrix = Matrix3d::Zero();
     const auto words = split_words(text, ",");
@@ -157,21 +156,20 @@ void MotionSteps::declare(Parameters& p) {
     p.input_option("matrix", Kind::pose, matrix_,
                    "motion to apply first: 16 numbers row by row (text), JSON that 'mesh register --matrix' or 'mesh move "
                    "--transform' wrote, or an assembly of 'fit'; shear and unequal scales are refused");
-    p.options("inverse", inverse_, "apply the inverse of --matrix, which undoes a motion");
+    p.options("inverse", inverse_, "apply the inverse of --matrix, to undo a motion");
     p.options("from-unit", from_unit_, "unit of the coordinates of the input; default: the unit that the annotations state",
               Choices(length_units));
     p.options("to-unit", to_unit_, "unit of the coordinates of the output", Choices(length_units));
-    p.options(
-        "axes", axes_,
-        "exchange axes: z-up (y axis pointed up), y-up (z axis pointed up), or the axes that become x, y and z, like x,z,-y",
-        Words{{"z-up", "y-up"}, "three axes like x,z,-y", [](const std::string& text) { (void)matrix_of_axes(text); }});
-    p.options("scale", scale_, "factor of all lengths; the object becomes larger or smaller, in the same unit",
-              Range{1e-30, 1e30});
+    p.options("axes", axes_,
+              "exchange axes: z-up (if the y axis of the input points up), y-up (if the z axis of the input points up), or the "
+              "axes that become x, y and z, like x,z,-y",
+              Words{{"z-up", "y-up"}, "three axes like x,z,-y", [](const std::string& text) { (void)matrix_of_axes(text); }});
+    p.options("scale", scale_, "factor by which all lengths are multiplied; the unit is unchanged", Range{1e-30, 1e30});
     p.options("mirror", mirror_, "mirror along this axis; triangles are reversed, so that the surface stays oriented outwards",
               direction_words("--mirror"));
     p.options("rotate", rotate_, "axis and angle in degrees, counter-clockwise seen against the axis: z,90 or 0,0,1,90");
     p.options("quaternion", quaternion_, "rotation as a quaternion w,x,y,z");
-    p.options("about", about_, "place that --scale, --mirror and --rotate leave where it is",
+    p.options("about", about_, "fixed point of --scale, --mirror and --rotate",
               Words{{"origin", "box", "centroid"}, "three numbers like 0,0,1", [](const std::string& text) {
                         if (text != "origin" && text != "box" && text != "centroid") (void)three_numbers(text, "--about");
                     }});
@@ -181,7 +179,7 @@ void MotionSteps::declare(Parameters& p) {
         "on the ground)",
         Choices{"box", "centroid", "base"});
     up_.declare(p, "upward direction after the rotation, for --centre base; default: that of the annotations, or z");
-    p.options("translate", translate_, "x,y,z that are added to all coordinates, last, like 10,0,-2.5");
+    p.options("translate", translate_, "vector x,y,z that is added to all coordinates after all other steps, like 10,0,-2.5");
 }
 
 void MotionSteps::check() const {

@@ -28,10 +28,9 @@ struct MeshMove final : Operation {
     void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to move, of any topology");
         p.output("output", Kind::mesh, output.with_ascii_option(), "moved mesh to write");
-        p.output_option(
-            "transform", Kind::pose, transform,
-            "JSON file to write: the motion, with the rows of its 4 x 4 matrix; --matrix takes it, with --inverse to undo "
-            "the motion");
+        p.output_option("transform", Kind::pose, transform,
+                        "JSON file to write: the motion, with the rows of its 4 x 4 matrix; --matrix reads this file, and "
+                        "--matrix with --inverse undoes the motion");
         steps.declare(p);
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json), moved with the mesh");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "moved annotations to write (.ant.json)");

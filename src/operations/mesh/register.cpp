@@ -14,12 +14,11 @@ namespace {
 struct MeshRegister final : Operation {
     void declare(Parameters& p) override {
         p.input("source", Kind::mesh, source, "mesh that is moved onto the target");
-        p.input("target", Kind::mesh, target,
-                "mesh of the same object, in any unit and pose, at any resolution; it stays unchanged");
+        p.input("target", Kind::mesh, target, "mesh of the same object, in any unit, pose and resolution; it is not moved");
         p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: the source registered onto the target")
             .optional();
         p.output_option("matrix", Kind::pose, matrix,
-                        "JSON file to write: transformation of the source, as the rows of a 4 x 4 matrix");
+                        "JSON file to write: transformation of the source onto the target, as the rows of a 4 x 4 matrix");
         options.list_options(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),

@@ -32,7 +32,7 @@ struct MeshRemesh final : MeshResize {
         const MeshExtras& extras = input->extras;
         if (!extras.vertex_labels.empty() || !extras.face_labels.empty() || !extras.vertex_values.empty() ||
             !extras.face_values.empty())
-            report.note("labels and values belong to the old mesh and are left out");
+            report.note("labels and values of the old mesh are not transferred");
         const Stopwatch stopwatch;
         RemeshResult result = in_file(input.file(), [&] { return remesh(mesh, options); });
         report.run("seconds", stopwatch.seconds());
@@ -57,7 +57,7 @@ struct MeshRemesh final : MeshResize {
         if (!has_colours(input->extras)) return baked;
         const bool image = texture == Texture::image && keeps_texture(output);
         if (texture == Texture::none) {
-            report.note("colours and texture belong to the old mesh and are left out");
+            report.note("colours and texture of the old mesh are not transferred");
         } else if (image) {
             baking.to_image(mesh, baked, *input, input.file(), output.file(), nullptr, report);
         } else {

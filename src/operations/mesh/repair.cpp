@@ -19,7 +19,7 @@ struct MeshRepair final : Operation {
                         "JSON file to write: new index of each old vertex, -1 if it was dropped");
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: new index of each old triangle, -1 if it was dropped");
-        p.output_option("report", Kind::report, report_file, "JSON file to write: the same report as --json prints");
+        p.output_option("report", Kind::report, report_file, "JSON file to write: the report that --json prints");
         options.list_options(p.options);
         p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));
         p.report.table("steps", text("step"), any("counts"));

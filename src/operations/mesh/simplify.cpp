@@ -18,7 +18,7 @@ struct MeshSimplify final : MeshResizeBound {
         options.list_options(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");
-        p.options("protect-outlines", protect, "same effect as --outlines protect; the pins of measures also stay unchanged")
+        p.options("protect-outlines", protect, "same effect as --outlines protect, and the pins of measures are protected too")
             .unrecorded();
         p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
                         integer("isolated_dropped"));

@@ -28,12 +28,14 @@ struct MeshSurface final : Operation {
                   "triangles farther than this from the nearest point are removed, in multiples of the point spacing; 0: none; "
                   "if left out, 4 for poisson, else 0",
                   Range{0, 1e6});
-        p.options("trim-length", trim_length, "as --trim, in the unit of the coordinates", Range{0, 1e60});
+        p.options("trim-length", trim_length, "same effect as --trim, but in the unit of the coordinates", Range{0, 1e60});
         p.options("outliers", outliers,
-                  "points are removed whose mean distance to their neighbours is more than this many times the median; 0: keep "
-                  "all",
+                  "outliers are removed: points whose mean distance to their neighbours is more than this factor times the "
+                  "median; 0: keep all points",
                   Range{0, 1e6});
-        p.options("carry", carry, "number of nearest points whose colours and intensities a vertex gets, weighted by distance",
+        p.options("carry", carry,
+                  "number of nearest points from which the colour and intensity of a vertex are interpolated, weighted by the "
+                  "inverse distance",
                   Range{1, 1000});
         poisson.list_options(p.options);
         front.list_options(p.options);

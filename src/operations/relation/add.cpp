@@ -20,7 +20,7 @@ struct RelationAdd final : RelationOperation {
         p.output("output", Kind::graph, output, "graph to write (.graph.json); if left out, the file of --graph is updated")
             .optional()
             .updates(graph);
-        Words known{{}, "a type of your own with --own-type"};
+        Words known{{}, "or a user-defined type with --own-type"};
         for (const RelationType& one : relation_types()) known.names.push_back(one.name);
         p.options("type", type, "type of the relationship", std::move(known));
         p.options("annotation", members, "id or tag of a member of the relationship, once per member; the first is the subject")
@@ -30,7 +30,7 @@ struct RelationAdd final : RelationOperation {
                   "than once; the other options apply to all relationships")
             .words();
         p.options("own-type", own_type, "the type in --type is user-defined");
-        p.options("directed", directed, "the relationship has a direction: the first annotation is the subject");
+        p.options("directed", directed, "the relationship is directed: the first annotation is its subject");
         p.options("constraint", is_constraint, "the relationship is a constraint on deformations");
         p.options("parameters", parameters, "JSON object with the parameters of the constraint");
         p.options("weight", weight, "weight of the constraint", Range{0, 1e300});
@@ -43,21 +43,23 @@ struct RelationAdd final : RelationOperation {
     }
 
     void check() const override {
-        if (!output && !graph) fail_usage("nothing says where the graph goes", "give a file to write, or --graph");
+        if (!output && !graph) fail_usage("no file for the graph is given", "give a file to write, or --graph");
         if (graph && !graph.exists() && output.file() != graph.file())
-            fail_input(graph.file(), "cannot be opened for reading", "check the name; without an output it is begun");
+            fail_input(graph.file(), "cannot be opened for reading",
+                       "check the name; if --output is left out, a new graph is created");
         if (!several.empty() && (!type.empty() || !members.empty()))
-            fail_usage("--relation with --type or --annotation", "say all in one way: --relation 'TYPE: A, B', once for each");
+            fail_usage("--relation with --type or --annotation",
+                       "use one form only: --relation 'TYPE: A, B', once per relationship");
         if (several.empty() && type.empty())
             fail_usage("the type of the relationship is missing", "add --type, or --relation 'TYPE: A, B'");
         if (several.empty() && members.empty())
-            fail_usage("nothing says between which annotations", "add --annotation, once for each member");
+            fail_usage("the annotations of the relationship are missing", "add --annotation, once for each member");
         for (const Stated& one : stated()) {
             if (find_relation_type(one.type) == nullptr && !own_type)
                 fail_usage("'" + printable(one.type, 60) + "' is not a known type of relationship",
                            "did you mean '" + nearest_relation_type(one.type) + "'? --own-type adds a type of your own");
             if (own_name(one.type) == "equal attributes" && attribute.empty())
-                fail_usage("nothing says which attribute is equal", "add --attribute NAME");
+                fail_usage("the name of the equal attribute is missing", "add --attribute NAME");
             for (const std::string& text : tolerances) static_cast<void>(tolerance_of(text, own_name(one.type)));
         }
     }
@@ -73,7 +75,7 @@ struct RelationAdd final : RelationOperation {
                 check_constraint(object(), relationship, output.file());
             } catch (const Error& error) {
                 if (error.kind() == ErrorKind::cancelled) throw;
-                report.note(std::string("'deform' will refuse this as it is: ") + error.what());
+                report.note(std::string("'deform' will refuse this constraint: ") + error.what());
             }
         }
         report_result(report, added);

@@ -16,7 +16,7 @@ struct RelationCheckAll final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         p.input_option("rest", Kind::mesh, rest,
-                       "same mesh before the deformation (rest shape), with which constraints that preserve a quantity compare");
+                       "the same mesh before the deformation (rest shape); constraints that preserve a quantity compare with it");
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf): a rule for a concept also applies to narrower concepts");
@@ -28,7 +28,7 @@ struct RelationCheckAll final : RelationOperation {
     }
 
     void check() const override {
-        if (vocabulary && !rules) fail_usage("--vocabulary goes with --rules", "add --rules FILE");
+        if (vocabulary && !rules) fail_usage("--vocabulary needs --rules", "add --rules FILE");
     }
 
     void run(Context&, Report& report) override {

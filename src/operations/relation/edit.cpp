@@ -21,14 +21,14 @@ struct RelationEdit final : RelationOperation {
         p.options("range", range, "MIN,MAX: new values of minValue and maxValue of the constraint");
         p.options("parameters", parameters,
                   "JSON object whose members replace the parameters of the constraint; null removes a parameter");
-        p.options("constraint", constraint, "whether the relationship is a constraint on deformations",
+        p.options("constraint", constraint, "true: the relationship is a constraint on deformations",
                   Choices{"unchanged", "yes", "no"});
         describe_relationships(p.report);
     }
 
     void check() const override {
         if (!weight && range.empty() && parameters.empty() && constraint == Constrains::unchanged)
-            fail_usage("nothing is changed", "give --weight, --range, --parameters or --constraint");
+            fail_usage("no change is given", "give --weight, --range, --parameters or --constraint");
         if (!range.empty()) {
             const std::vector<double> ends = numbers_of<double>(range, "--range");
             if (ends.size() != 2 || !(ends[0] <= ends[1]))

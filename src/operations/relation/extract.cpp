@@ -16,7 +16,7 @@ struct RelationExtract final : RelationOperation {
         describe_inputs(p);
         describe_output(p);
         p.input_option("graph", Kind::graph, graph,
-                       "graph (.graph.json) whose user-specified relationships are copied to the output");
+                       "existing graph (.graph.json); its user-specified relationships are copied to the output");
         Words told;
         for (const RelationType& type : relation_types())
             if (type.geometric) told.names.push_back(type.name);
@@ -25,8 +25,8 @@ struct RelationExtract final : RelationOperation {
                   std::move(told))
             .words();
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: adds 'part of' between a part and "
-                       "the annotated whole around it");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: adds a relationship 'part of' "
+                       "between a part and the annotated whole that contains it");
         tolerances.list_options(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
@@ -48,8 +48,8 @@ struct RelationExtract final : RelationOperation {
                  part_relationships(found.order, set(), vocabulary.load<Vocabulary>(read_vocabulary), free_id(found.graph)))
                 if (find_equivalent(found.graph, part) == nullptr) found.graph.relationships.push_back(std::move(part));
         if (!found.skipped_types.empty())
-            report.note("not looked for, as the annotations do not say what is up: " + joined(found.skipped_types) +
-                        " ('ostraka annotation edit --set-up x,y,z' says it)");
+            report.note("not searched, because the annotations have no upward direction: " + joined(found.skipped_types) +
+                        " ('ostraka annotation edit --set-up x,y,z' sets it)");
         report.empty_table("tree");
         std::string text = "the whole shape\n";
         for (const auto& [place, depth] : containment_tree(found.order)) {

@@ -8,17 +8,21 @@ namespace ostraka {
 
 void StudyFiles::declare(Parameters& p, bool labels, const std::string& collections) {
     p.input("collection", Kind::collection, collection, collections);
-    p.output("output", Kind::folder, output, "folder for tables, plots and report; finished results in it are reused").flag();
+    p.output("output", Kind::folder, output,
+             "folder for tables, plots and report; results of an earlier run in this folder are reused")
+        .flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "pdf", "png"}).unrecorded();
-    p.options("shard", shard_, "K/N: process and store the K-th of N shards of the objects; if left out, results are gathered")
+    p.options("shard", shard_,
+              "K/N: process only the K-th of N shards of the objects, and store the results; if left out, the results of all "
+              "shards are gathered")
         .unrecorded();
     p.report.table("failed", text("name"), text("problem"));
     p.report.values(integer("part.objects"), integer("part.failed"));
     if (!labels) return;
-    p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
+    p.input_option("truth", Kind::table, truth_, "known labels of the objects: CSV with the columns name and label");
     p.options("own-truth", own_truth_,
-              "use the known answers in truth.csv in the folder of the collection, as written by 'study make'");
-    p.options("truth-column", truth_column_, "name of the column with the known answers; 'label' if left out");
+              "use the known labels in the file truth.csv in the folder of the collection, as written by 'study make'");
+    p.options("truth-column", truth_column_, "name of the column with the known labels; 'label' if left out");
     p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }
 
@@ -89,7 +93,7 @@ KnownAnswers::KnownAnswers(const std::vector<std::string>& labels) : objects(lab
 void KnownAnswers::report_result(Report& report) const {
     if (labelled == 0) return;
     std::string text = fmt::format("answers are known for {} of {} objects", labelled, objects);
-    if (!scorable()) text += labelled < 2 ? ": too few for scores" : ", all of one kind: no scores are possible";
+    if (!scorable()) text += labelled < 2 ? ": too few for scores" : ", all of which are the same: no scores are possible";
     report.line(text);
 }
 

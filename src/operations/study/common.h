@@ -56,7 +56,7 @@ class StudyPart {
 public:
     void declare(Parameters& p) {
         options_.list_options(p.options);
-        vocabulary_.declare(p, "by which tags of annotations are matched with the names of parts");
+        vocabulary_.declare(p, "used to match tags of annotations with the names of parts");
     }
     void check() const {
         static_cast<void>(ObjectParts(options_));

@@ -16,7 +16,7 @@ namespace {
 
 struct StudyMakeMoulds final : StudyMake {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: PLY meshes with labelled faces, and the known answers (truth.csv)");
+        describe_folder(p, "folder to write: PLY meshes with labelled faces, and their true moulds (truth.csv)");
         population.list_options(p.options);
         cast.list_options(p.options);
         p.report.values(integer("objects"), texts("parts"));

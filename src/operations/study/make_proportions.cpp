@@ -28,7 +28,7 @@ constexpr const char* statuette_measures = R"({
 
 struct StudyMakeProportions final : StudyMakeStatuettes {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: meshes, annotations, measure definitions, known answers (truth.csv)");
+        describe_folder(p, "folder to write: meshes, annotations, measure definitions and true sizes (truth.csv)");
         options.list_options(p.options);
         p.report.values(text("folder"), integer("objects"), text("fixed"));
     }

@@ -15,7 +15,7 @@ namespace {
 
 struct StudyMakeTechnique final : StudyMakeStatuettes {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: meshes, annotations and the known answers (truth.csv)");
+        describe_folder(p, "folder to write: meshes, annotations and their true techniques (truth.csv)");
         options.list_options(p.options);
         p.report.values(text("folder"));
         for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));

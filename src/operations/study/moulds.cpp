@@ -21,12 +21,12 @@ struct StudyMoulds final : StudyOperation {
         files.declare(p, true);
         part.declare(p);
         p.options("similarity", similarity,
-                  "similarity of two heads by which they are grouped: number of matches, of consistent matches, distance after "
-                  "registration, or all combined",
+                  "similarity by which heads are grouped: number of matches, number of consistent matches, distance after "
+                  "registration, or a combination",
                   Choices(mould_similarities()));
-        p.options("leave-out", leave_out, "labels of faces that are left out of the analysis, such as beards").words();
+        p.options("leave-out", leave_out, "faces with these labels are left out of the analysis, for example beards").words();
         p.options("choices", choices,
-                  "also write a table of the groups that every similarity, method and rule for epsilon gives");
+                  "also write a table of the groups that result from every similarity, method and rule for epsilon");
         compare.list_options(p.options);
         group.list_options(p.options);
         stability.list_options(p.options);
@@ -104,8 +104,8 @@ struct StudyMoulds final : StudyOperation {
             const Eigen::MatrixXd distances = mould_distances(study.matrices, "consistent");
             const auto n = static_cast<double>(distances.rows());
             report.line(
-                fmt::format("the groups are not clearly separated: there is one mould, or one for each head; the mean distance "
-                            "by consistent matches is {} (near 1: one mould for each head; small: one mould)",
+                fmt::format("the groups are not clearly separated: all heads come from one mould, or each from its own mould; "
+                            "the mean distance by consistent matches is {} (near 1: one mould per head; small: one mould)",
                             number(distances.sum() / (n * (n - 1)), 3)));
             report.answer_no();
         }

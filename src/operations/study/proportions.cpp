@@ -111,7 +111,7 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
 struct StudyProportions final : StudyOperation {
     void declare(Parameters& p) override {
         files.declare(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
-        vocabulary.declare(p, "by which tags of annotations are matched with the names in --measures");
+        vocabulary.declare(p, "used to match tags of annotations with the names in --measures");
         p.input_option("measures", Kind::text, measures, "definitions of the measures to take on every object (.measures.json)");
         p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template for which proportions are proposed");
         p.input_option("template-annotations", Kind::annotations, annotations, "annotations of the template (.ant.json)");
@@ -139,7 +139,7 @@ struct StudyProportions final : StudyOperation {
 
     void check() const override {
         StudyOperation::check();
-        if (from_table() && measures) fail_usage("--measures with a table", "a table holds the measures already");
+        if (from_table() && measures) fail_usage("--measures with a table", "a table already contains the measures");
         if (!from_table() && !measures) fail_usage("--measures is missing", "name the measures to be taken (.measures.json)");
         if (!graph && (mesh || annotations || annotations_out || graph_in))
             fail_usage("a template without --graph", "name the graph file to write");
@@ -179,7 +179,7 @@ struct StudyProportions final : StudyOperation {
         report.table(verdicts);
         report.line(
             fmt::format("q: the larger of 'p others' and 'p size', corrected for the number of ratios; fixed: q of at most {}. "
-                        "failed: the tests that speak against it\n",
+                        "failed: the tests that the ratio failed\n",
                         number(options.false_discoveries, 6)));
         const auto count = std::count_if(study.ratios.begin(), study.ratios.end(),
                                          [](const RatioRow& ratio) { return ratio.fixedness == Fixedness::fixed; });

@@ -21,9 +21,9 @@ struct StudySegments final : Operation {
         p.output_option("curve", Kind::picture, curve,
                         "plot to write: the criterion over the number of clusters (.svg, .pdf, .png)");
         p.input_option("compare", Kind::annotations, compare,
-                       "annotations of the known parts (.ant.json), with which the result is compared; by default the labels of "
+                       "annotations of the true parts (.ant.json), with which the result is compared; by default the labels of "
                        "the mesh file, if any");
-        up.declare(p, "upward direction; by default that of --compare, or 0,0,1");
+        up.declare(p, "upward direction; by default the upward direction of --compare, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of --compare");
         options.list_options(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));

@@ -149,8 +149,8 @@ struct StudyOfTechnique final : StudyOperation {
                 "this classifier does not distinguish the classes here: two objects of each label that have its descriptors are "
                 "needed");
         report.line(fmt::format(
-            "this classifier does not distinguish the classes here: F1 of {} {} ({} to {}), of calling all of them {} {}; no "
-            "answers are given",
+            "this classifier does not distinguish the classes here: F1 of {} is {} ({} to {}), and classifying all objects as {} "
+            "gives {}; no answers are given",
             printable(answering_words(study)), fixed(chosen->validation.mean_f1, 3), fixed(chosen->f1_interval.low, 3),
             fixed(chosen->f1_interval.high, 3), printable(study.positive), fixed(chosen->trivial_f1, 3)));
         if (better.empty()) return report.line("no other classifier does better than that either: give more labelled objects");
@@ -208,7 +208,8 @@ struct StudyOfTechnique final : StudyOperation {
                                     without > 0 ? fmt::format(", {} without an answer", without) : "",
                                     wrong.empty() ? "" : "; wrong: " + listed_names(wrong)));
         if (!dissimilar.empty())
-            report.line("too dissimilar to the labelled objects for an answer (see answers.md): " + listed_names(dissimilar));
+            report.line("no answer, because they are too dissimilar to the labelled objects (see answers.md): " +
+                        listed_names(dissimilar));
     }
 
     DirectionOption up;

@@ -95,8 +95,9 @@ struct TemplateClassify final : Operation {
             classes.push_back(classes_with_templates.back()->learnt);
             class_files.push_back(files.file(i));
             if (classes_with_templates.front()->landmarks.has_value() != classes_with_templates.back()->landmarks.has_value())
-                fail_input(files.file(i), "is not of the kind of the first class: one is of meshes, the other of landmarks",
-                           "query them one after the other");
+                fail_input(files.file(i),
+                           "differs in kind from the first class: one is a class of meshes, the other a class of landmarks",
+                           "use a separate call for each");
         }
         // Classes with the same name are distinguished by their files.
         for (std::size_t i = 0; i < classes.size(); ++i)

@@ -25,8 +25,8 @@ struct TemplateLearn final : Operation {
             .with_annotations_beside()
             .optional();
         p.input_option("out-of-class", Kind::mesh, out_of_class,
-                       "mesh of an object outside the class, such as a member of another class; these objects limit how "
-                       "dissimilar from the members a recognised object may be")
+                       "mesh of an object that is not a member, such as a member of another class; repeatable; these objects "
+                       "determine the dissimilarity up to which objects are recognised as members")
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; created if missing").flag();
@@ -45,7 +45,8 @@ struct TemplateLearn final : Operation {
     void check() const override {
         if (!is_landmark_class() && !members) fail_usage("the class is empty: there is no member", "give TEMPLATE MEMBER ...");
         if (is_landmark_class() && out_of_class)
-            fail_usage("--out-of-class with a class of landmarks", "leave it out: it is for classes of meshes");
+            fail_usage("--out-of-class with a class of landmarks",
+                       "leave out --out-of-class, which applies to classes of meshes only");
         std::vector<std::string> names;
         if (is_landmark_class()) names.push_back(template_input.file());
         for (std::size_t i = 0; i < members.size(); ++i) names.push_back(members.file(i));

@@ -19,7 +19,7 @@ struct TemplatePack final : Operation {
         part("mesh", Kind::mesh, "mesh").needed = true;
         part("annotations", Kind::annotations, "annotations of the mesh (.ant.json)");
         part("graph", Kind::graph, "relationships among the annotations (.graph.json)");
-        part("cage", Kind::cage, "closed cage around the mesh; several from coarse to fine").words();
+        part("cage", Kind::cage, "closed cage around the mesh; repeatable, from coarse to fine").words();
         part("coordinates", Kind::coordinates, "coordinates of the mesh in a cage (.npy), once per cage").words();
         part("vocabulary", Kind::vocabulary, "vocabulary that the annotations use (.vocabulary.json, .ttl, .rdf)");
         part("rules", Kind::rules, "rules of the class (.rules.json)");
@@ -27,7 +27,7 @@ struct TemplatePack final : Operation {
         part("landmarks", Kind::landmarks, "landmarks of the template (.ant.json)");
         p.options("class", object_class, "class of the object; by default the class in the annotations");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm); by default the unit of the annotations");
-        up.declare(p, "upward direction; by default that of the annotations");
+        up.declare(p, "upward direction; by default the upward direction of the annotations");
         p.options("copy", copy, "copy the files into the folder of the template");
         options.list_options(p.options);
         declare_template(p.report, true);

@@ -24,10 +24,11 @@ struct TemplatePropagate final : Operation {
                  "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; created if missing")
             .flag();
         p.options("given", given, "same effect as --correspondence given");
-        p.options("correspondence", options.correspondence,
-                  "source of the vertex correspondence: members with the template's triangles as they are, others by fitting the "
-                  "template (auto); all as they are (given); all by fitting the template (fitted)",
-                  Choices{"auto", "given", "fitted"});
+        p.options(
+            "correspondence", options.correspondence,
+            "vertex correspondence between template and members: given (members must have the template's triangles), fitted (the "
+            "template is fitted to each member), or auto (given for members with the template's triangles, fitted for others)",
+            Choices{"auto", "given", "fitted"});
         options.fit.list_options(p.options);
         p.report.table("members", text("name", "member"), text("placedBy", "placed by"), number("distance", "distance %"),
                        number("distanceBack"), number("unmatched", "unmatched %"), number("unexplained", "unexplained %"),

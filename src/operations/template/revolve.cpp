@@ -13,16 +13,19 @@ namespace {
 
 struct TemplateRevolve final : Operation {
     void declare(Parameters& p) override {
-        p.input("sherds", Kind::mesh, files, "closed mesh of a sherd, in the pose that the sherd had in the vessel").many();
+        p.input("sherds", Kind::mesh, files,
+                "closed mesh of a sherd; all sherds must be in the poses that they had in the vessel")
+            .many();
         p.output("output", Kind::folder, output, "folder to write: the template of the vessel").flag();
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
         options.list_options(p.options);
         reading.list_options(p.options);
         p.report.schema = "vessel";
-        p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"), number("lean", "own axis leans, degrees"),
-                       number("aside", "aside"), number("weight", "share of the axis %"), number("disagreement"),
-                       number("lowest", "from height"), number("highest", "to"), number("residual", "off the template"),
-                       number("onTemplate", "on it %"), text("reason", ""), text("remedy", ""));
+        p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"),
+                       number("lean", "tilt of its own axis, degrees"), number("aside", "aside"),
+                       number("weight", "share of the axis %"), number("disagreement"), number("lowest", "from height"),
+                       number("highest", "to"), number("residual", "off the template"), number("onTemplate", "on it %"),
+                       text("reason", ""), text("remedy", ""));
         p.report.values(text("format"), integer("version"), numbers("through"), numbers("direction"), number("directionError"),
                         number("placeError", "", "length"), number("height", "", "length"),
                         number("largestDiameter", "", "length"), boolean("base"), boolean("rim"), integer("vertices"));

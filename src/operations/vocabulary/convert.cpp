@@ -23,7 +23,7 @@ struct VocabularyConvert final : Operation {
             if (!file.empty() && !is_skos(file) && extension(file) != ".json")
                 fail_usage(fmt::format("the extension of {} is not that of a format of vocabularies", file),
                            "use .vocabulary.json, .ttl (Turtle) or .rdf (RDF/XML)");
-        if (!scheme.empty() && !is_skos(input.file())) fail_usage("--scheme goes with SKOS files", "leave it out");
+        if (!scheme.empty() && !is_skos(input.file())) fail_usage("--scheme applies to SKOS files only", "leave it out");
     }
 
     void run(Context& context, Report& report) override {

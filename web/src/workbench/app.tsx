@@ -4,9 +4,11 @@ import type { Language } from "../data";
 import { ColouringChoice } from "../colouring";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
-import { sixViews } from "../view";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
 import { Arriving, ChooseFiles } from "./drop";
+import { Gizmo } from "./gizmo";
+import { Icon, type IconName } from "./icons";
+import { Light } from "../light";
 import * as model from "./model";
 import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
@@ -15,6 +17,9 @@ import { canEnter, enter } from "./xr";
 
 const tabs = ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"] as const;
 export const tab = signal<(typeof tabs)[number]>("annotating");
+/** Whether the panel is folded away, and its width in pixels. */
+const folded = signal(false);
+const panelWidth = signal(268);
 const panels = {
   annotating: Annotating,
   relating: Relations,
@@ -26,19 +31,38 @@ const panels = {
   history: History,
 };
 
+/** A button with an icon; its name is shown where the pointer rests on it, and read aloud. */
+function IconButton(props: { icon: IconName; name: string; hint?: string; disabled?: boolean; pressed?: boolean; onClick: () => void }) {
+  return (
+    <button
+      type="button"
+      class="icon-button"
+      aria-label={props.name}
+      title={props.hint ?? props.name}
+      disabled={props.disabled}
+      aria-pressed={props.pressed}
+      onClick={props.onClick}
+    >
+      <Icon name={props.icon} />
+    </button>
+  );
+}
+
+const openFile = (name: string) => void model.change("open", "open", { name });
+
 function Header() {
   const [name, setName] = useState("");
   const { place, history, openable } = model;
   return (
     <header>
       <h1>Ostraka</h1>
-      <label>
+      <label class="open">
         {text("open")}{" "}
         <select
           value=""
           onChange={(event) => {
             const file = event.currentTarget.value;
-            if (file) void model.change("open", "open", { name: file });
+            if (file) openFile(file);
             event.currentTarget.value = "";
           }}
         >
@@ -51,12 +75,22 @@ function Header() {
         </select>
       </label>
       <ChooseFiles />
-      <button type="button" disabled={place.value === 0} onClick={() => void model.undo()}>
-        {text("undo")}
-      </button>
-      <button type="button" disabled={place.value === history.value.length} onClick={() => void model.redo()}>
-        {text("redo")}
-      </button>
+      <span class="group">
+        <IconButton
+          icon="undo"
+          name={text("undo")}
+          hint={`${text("undo")} (Ctrl+Z)`}
+          disabled={place.value === 0}
+          onClick={() => void model.undo()}
+        />
+        <IconButton
+          icon="redo"
+          name={text("redo")}
+          hint={`${text("redo")} (Ctrl+Y)`}
+          disabled={place.value === history.value.length}
+          onClick={() => void model.redo()}
+        />
+      </span>
       <form
         class="save"
         onSubmit={(event) => {
@@ -67,73 +101,81 @@ function Header() {
           });
         }}
       >
-        <label>
-          {text("saveAs")} <input class="narrow" value={name} required onInput={(event) => setName(event.currentTarget.value)} />
-        </label>
-        <button type="submit" disabled={!model.object.value}>
-          {text("save")}
+        <input
+          class="narrow"
+          aria-label={text("saveAs")}
+          placeholder={text("saveAs")}
+          value={name}
+          required
+          onInput={(event) => setName(event.currentTarget.value)}
+        />
+        <button type="submit" class="icon-button" aria-label={text("save")} title={text("save")} disabled={!model.object.value}>
+          <Icon name="save" />
         </button>
       </form>
-      <button type="button" onClick={() => (palette.value = true)} title="Ctrl+K">
-        {text("palette")}
-      </button>
-      {canListen() && (
-        <button type="button" aria-pressed={listening.value} onClick={() => listen(!listening.value)}>
-          {text("voice")}
-        </button>
-      )}
-      {canEnter.value && (
-        <button type="button" disabled={!model.object.value} onClick={() => void enter()}>
-          {text("enterVr")}
-        </button>
-      )}
-      <button type="button" onClick={() => (tour.value = 0)}>
-        {text("tour")}
-      </button>
-      <label>
-        {page.word("language")}{" "}
-        <select value={page.language.value} onChange={(event) => page.setLanguage(event.currentTarget.value as Language)}>
-          <option value="en">English</option>
-          <option value="de">Deutsch</option>
-          <option value="it">Italiano</option>
-        </select>
-      </label>
-      <label>
-        {page.word("theme")}{" "}
-        <select value={page.theme.value} onChange={(event) => page.setTheme(event.currentTarget.value)}>
-          {(["system", "light", "dark"] as const).map((one) => (
-            <option key={one} value={one}>
-              {page.word(one)}
-            </option>
-          ))}
-        </select>
-      </label>
+      <span class="group">
+        <IconButton icon="palette" name={text("palette")} hint={`${text("palette")} (Ctrl+K)`} onClick={() => (palette.value = true)} />
+        {canListen() && <IconButton icon="voice" name={text("voice")} pressed={listening.value} onClick={() => listen(!listening.value)} />}
+        {canEnter.value && <IconButton icon="enterVr" name={text("enterVr")} disabled={!model.object.value} onClick={() => void enter()} />}
+        <IconButton icon="tour" name={text("tour")} onClick={() => (tour.value = 0)} />
+      </span>
+      <select
+        aria-label={page.word("language")}
+        value={page.language.value}
+        onChange={(event) => page.setLanguage(event.currentTarget.value as Language)}
+      >
+        <option value="en">English</option>
+        <option value="de">Deutsch</option>
+        <option value="it">Italiano</option>
+      </select>
+      <select aria-label={page.word("theme")} value={page.theme.value} onChange={(event) => page.setTheme(event.currentTarget.value)}>
+        {(["system", "light", "dark"] as const).map((one) => (
+          <option key={one} value={one}>
+            {page.word(one)}
+          </option>
+        ))}
+      </select>
+      <IconButton
+        icon={folded.value ? "unfold" : "fold"}
+        name={text(folded.value ? "showPanel" : "hidePanel")}
+        onClick={() => (folded.value = !folded.value)}
+      />
     </header>
   );
 }
 
 function Tools() {
-  const of = drawn[page.object.value];
   return (
     <div class="tools" role="toolbar" aria-label={text("tools")} aria-orientation="vertical">
       {groups.map(([name, list]) => (
-        <div class="group" key={name}>
-          {name !== "look" && <span class="quiet">{text(name)}</span>}
+        <div class="group" key={name} role="group" aria-label={text(name)}>
           {list.map((one) => (
             <button
               key={one}
               type="button"
               data-tool={one}
               aria-pressed={tool.value === one}
-              title={text(`${one}Help` as Key)}
+              title={`${text(one as Key)}: ${text(`${one}Help` as Key)}`}
               onClick={() => choose(one)}
             >
-              {text(one as Key)}
+              <Icon name={one} />
+              <span>{text(one as Key)}</span>
             </button>
           ))}
         </div>
       ))}
-      {tool.value === "brush" && of && (
+    </div>
+  );
+}
+
+/** What the next click does with the chosen tool, and the settings of the tool. */
+function ToolHint() {
+  const of = drawn[page.object.value];
+  if (!of) return null;
+  return (
+    <div class="hint">
+      <span>{text(`${tool.value}Help` as Key)}</span>
+      {tool.value === "brush" && (
         <label>
           {text("radius")}{" "}
           <input
@@ -160,47 +202,62 @@ function Tools() {
   );
 }
 
+/** The open objects: which one is worked on, which others are drawn with it. */
 function Layers() {
   const { objects, active } = model;
+  void page.turn.value; // the counts are those of the shown content
   if (objects.value.length === 0) return null;
   return (
     <fieldset class="layers">
       <legend>{text("objects")}</legend>
-      {objects.value.map((one, i) => (
-        <span key={one.name} class="layer">
-          <label>
-            <input
-              type="radio"
-              name="active"
-              checked={i === active.value}
-              onChange={() => void model.change("activate", "activate", { object: i })}
-            />{" "}
-            {one.name}
-          </label>
-          {i !== active.value && (
-            <label>
-              <input
-                type="checkbox"
-                checked={model.layers.value.has(one.name)}
-                onChange={(event) => {
-                  const next = new Set(model.layers.value);
-                  if (event.currentTarget.checked) next.add(one.name);
-                  else next.delete(one.name);
-                  model.layers.value = next;
-                }}
-              />{" "}
-              {text("showWith")}
-            </label>
-          )}
-          <button
-            type="button"
-            aria-label={`${text("close")}: ${one.name}`}
-            onClick={() => void model.change("close", "close", { object: i })}
-          >
-            ×
-          </button>
-        </span>
-      ))}
+      <ul>
+        {objects.value.map((one, i) => {
+          const about = page.page.objects[model.shown.value.findIndex((other) => other.object === i)];
+          return (
+            <li key={one.name} class={i === active.value ? "layer active" : "layer"}>
+              <label>
+                <input
+                  type="radio"
+                  name="active"
+                  checked={i === active.value}
+                  onChange={() => void model.change("activate", "activate", { object: i })}
+                />{" "}
+                <strong>{one.name}</strong>
+                {about && (
+                  <small>
+                    {page.numberText(about.faces)} {page.word("faces")}
+                    {one.parts.annotations && `, ${about.annotations.length} ${text("annotating").toLocaleLowerCase()}`}
+                    {one.parts.cage && `, ${text("cage").toLocaleLowerCase()}`}
+                  </small>
+                )}
+              </label>
+              {i !== active.value && (
+                <label class="with">
+                  <input
+                    type="checkbox"
+                    checked={model.layers.value.has(one.name)}
+                    onChange={(event) => {
+                      const next = new Set(model.layers.value);
+                      if (event.currentTarget.checked) next.add(one.name);
+                      else next.delete(one.name);
+                      model.layers.value = next;
+                    }}
+                  />{" "}
+                  {text("showWith")}
+                </label>
+              )}
+              <button
+                type="button"
+                class="icon-button"
+                aria-label={`${text("close")}: ${one.name}`}
+                onClick={() => void model.change("close", "close", { object: i })}
+              >
+                <Icon name="close" />
+              </button>
+            </li>
+          );
+        })}
+      </ul>
       {model.shown.value.length > 1 && (
         <label>
           <input
@@ -236,16 +293,7 @@ effect(() => {
 function ViewBar() {
   return (
     <div class="toolbar" role="toolbar" aria-label={page.word("view")}>
-      <span class="group">
-        <button type="button" onClick={() => view?.home()}>
-          {page.word("fit")}
-        </button>
-        {sixViews.map(([name, azimuth, elevation]) => (
-          <button key={name} type="button" onClick={() => view?.look(azimuth, elevation)}>
-            {page.word(name)}
-          </button>
-        ))}
-      </span>
+      <IconButton icon="fit" name={page.word("fit")} hint={`${page.word("fit")} (0)`} onClick={() => view?.home()} />
       <label class="slider">
         {page.word("clip")}{" "}
         <input
@@ -268,8 +316,12 @@ function ViewBar() {
         </select>
       </label>
       <label>
-        {text("drawnAs")}{" "}
-        <select value={model.drawnAs.value} onChange={(event) => (model.drawnAs.value = event.currentTarget.value as "surface")}>
+        <select
+          aria-label={text("drawnAs")}
+          title={text("drawnAs")}
+          value={model.drawnAs.value}
+          onChange={(event) => (model.drawnAs.value = event.currentTarget.value as "surface")}
+        >
           <option value="surface">{text("surface")}</option>
           <option value="edges">{text("wire")}</option>
           <option value="points">{text("cloud")}</option>
@@ -324,37 +376,93 @@ function Pointed() {
   return null;
 }
 
-function Footer() {
+/** Counts of the object, work in progress, errors and their remedies, a lost connection: at one place in the picture. */
+function Notices() {
   const about = page.page.objects[page.object.value];
   const now = model.progress.value;
   return (
-    <footer>
-      <span role="status">
+    <div class="notices">
+      {!model.connected.value && (
+        <p role="alert" class="notice problem">
+          {text("notConnected")}
+        </p>
+      )}
+      {model.problem.value && (
+        <div role="alert" class="notice problem">
+          <div>
+            <strong>{model.problem.value.problem}</strong>
+            {model.problem.value.remedy && <p>{model.problem.value.remedy}</p>}
+          </div>
+          <IconButton icon="close" name={text("close")} onClick={() => (model.problem.value = undefined)} />
+        </div>
+      )}
+      {model.busy.value && (
+        <div class="notice busy">
+          <span>
+            {model.busy.value} … {now && `${now.phase} ${Math.round(100 * now.share)} %`}
+          </span>
+          <progress aria-label={model.busy.value} max={1} value={now?.share} />
+          <button type="button" onClick={() => model.link.cancel()}>
+            {text("cancel")}
+          </button>
+        </div>
+      )}
+      <ToolHint />
+      <p role="status" class="counts">
         {about
           ? `${about.name}: ${page.numberText(about.vertices)} ${page.word("vertices")}, ${page.numberText((3 * about.faces) / 2)} ${text("edges")}, ${page.numberText(about.faces)} ${page.word("faces")}` +
             (about.cage ? `; ${text("cageOf", about.cage.vertices)}` : "")
           : text("nothingOpen")}
         {page.message.value && ` – ${page.message.value}`}
-      </span>
-      {!model.connected.value && <strong class="verdict broken">{text("notConnected")}</strong>}
-      {model.busy.value && (
-        <span class="busy">
-          {model.busy.value} … {now && `${now.phase} ${Math.round(100 * now.share)} %`} <progress max={1} value={now?.share} />
-          <button type="button" onClick={() => model.link.cancel()}>
-            {text("cancel")}
-          </button>
-        </span>
-      )}
-      {model.problem.value && (
-        <span role="alert" class="problem">
-          {model.problem.value.problem}
-          {model.problem.value.remedy && `: ${model.problem.value.remedy}`}{" "}
-          <button type="button" aria-label={text("close")} onClick={() => (model.problem.value = undefined)}>
-            ×
-          </button>
-        </span>
-      )}
-    </footer>
+      </p>
+    </div>
+  );
+}
+
+/** What is shown before an object is open: the files that can be opened. */
+function Start() {
+  return (
+    <section class="start" aria-labelledby="start-title">
+      <h2 id="start-title">{text("startTitle")}</h2>
+      <p>{text(model.openable.value.length > 0 ? "startHelp" : "startEmpty")}</p>
+      <p>
+        <ChooseFiles />
+      </p>
+      <ul>
+        {model.openable.value.map((one) => (
+          <li key={one}>
+            <button type="button" onClick={() => openFile(one)}>
+              <Icon name="object" /> {one}
+            </button>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+/** The edge of the panel: dragged, or moved by arrow keys, it makes the panel wider or narrower. */
+function Divider() {
+  const wide = (pixels: number) => (panelWidth.value = Math.round(Math.min(0.6 * window.innerWidth, Math.max(240, pixels))));
+  return (
+    <div
+      class="divider"
+      role="separator"
+      aria-orientation="vertical"
+      aria-label={text("panelWidth")}
+      aria-valuenow={panelWidth.value}
+      aria-valuemin={240}
+      aria-valuemax={Math.round(0.6 * window.innerWidth)}
+      tabIndex={0}
+      onKeyDown={(event) => {
+        if (event.key === "ArrowLeft") wide(panelWidth.value + 20);
+        if (event.key === "ArrowRight") wide(panelWidth.value - 20);
+      }}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={(event) => {
+        if (event.currentTarget.hasPointerCapture(event.pointerId)) wide(window.innerWidth - event.clientX);
+      }}
+    />
   );
 }
 
@@ -436,48 +544,64 @@ function Tour() {
 export function App() {
   const Panel = panels[tab.value];
   const turn = page.turn.value; // recompute for another content
+  const isEmpty = page.page.objects.length === 0;
   return (
     <>
       <Header />
-      <main class="workbench">
+      <main
+        class={folded.value ? "workbench folded" : "workbench"}
+        ref={(element) => element?.style.setProperty("--panel-width", `${panelWidth.value}px`)}
+      >
         <Tools />
-        <div class="left">
-          <ViewBar key={turn} />
-          <div class="canvas">
-            {view && <Picture key={turn} />}
-            {view && <Drawing key={-turn} />}
-            <Chooser />
-            <Arriving />
-          </div>
-          <Layers />
-          {heard.value && <p class="quiet">{text("heard", heard.value)}</p>}
+        <div class="canvas">
+          {view && !isEmpty && <Picture key={turn} />}
+          {view && !isEmpty && <Drawing key={-turn} />}
+          {isEmpty ? <Start /> : <ViewBar key={turn} />}
+          {!isEmpty && (
+            <div class="corner">
+              <Gizmo />
+              <Light />
+            </div>
+          )}
+          <Chooser />
+          <Arriving />
+          {heard.value && <p class="quiet heard">{text("heard", heard.value)}</p>}
+          <Notices key={`notices ${turn}`} />
         </div>
-        <aside tabIndex={0} aria-label={text("panels")}>
-          <div class="tabs" role="tablist">
-            {tabs.map((one) => (
-              <button
-                key={one}
-                type="button"
-                role="tab"
-                id={`tab-${one}`}
-                aria-selected={tab.value === one}
-                aria-controls="panel"
-                onClick={() => (tab.value = one)}
-              >
-                {text(one)}
-              </button>
-            ))}
-          </div>
-          <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
-            {page.page.objects.length > 0 || tab.value === "history" || tab.value === "everything" ? (
-              <Panel key={`${tab.value} ${turn}`} />
-            ) : (
-              <p class="quiet">{text("nothingOpen")}</p>
-            )}
-          </div>
-        </aside>
+        {!folded.value && (
+          <>
+            <Divider />
+            <aside tabIndex={0} aria-label={text("panels")}>
+              <div class="tabs" role="tablist">
+                {tabs.map((one) => (
+                  <button
+                    key={one}
+                    type="button"
+                    role="tab"
+                    id={`tab-${one}`}
+                    aria-label={text(one)}
+                    title={text(one)}
+                    aria-selected={tab.value === one}
+                    aria-controls="panel"
+                    onClick={() => (tab.value = one)}
+                  >
+                    <Icon name={one} />
+                  </button>
+                ))}
+              </div>
+              <Layers />
+              <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
+                <h2 class="panel-title">{text(tab.value)}</h2>
+                {!isEmpty || tab.value === "history" || tab.value === "everything" ? (
+                  <Panel key={`${tab.value} ${turn}`} />
+                ) : (
+                  <p class="quiet">{text("nothingOpen")}</p>
+                )}
+              </div>
+            </aside>
+          </>
+        )}
       </main>
-      <Footer key={turn} />
       <Pointed key={turn} />
       <Palette />
       <Tour />

@@ -37,6 +37,7 @@ model.link.onEvent = (event) => {
   // Another page changed the same session.
   if (event.event === "changed") void model.attempt(text("loading"), model.refresh);
 };
+page.allMeasures.value = true;
 model.link.connect();
 commands.attachKeys();
 drop.attachDrop();

@@ -40,6 +40,9 @@ function Button(props: { name: Key; title?: string; disabled?: boolean; onClick:
   );
 }
 
+/** Colours of new annotations, in turn: those of Okabe and Ito (2008), which people with colour blindness tell apart, and mixtures. */
+const palette = ["#d55e00", "#0072b2", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#8c564b", "#b2a800", "#7b5ea7", "#4d9b2f"];
+
 /** Runs "annotation select" with the current selection. */
 export function annotate(action: "make" | "replace" | "add to" | "remove from", tag: string, colour: string, id?: number) {
   const given: Record<string, unknown> = { mesh: part("mesh"), expression: JSON.stringify(selection.expression.value), action };
@@ -74,7 +77,9 @@ function edit(title: string, more: Record<string, unknown>) {
 
 export function Annotating() {
   const [tag, setTag] = useState("");
-  const [colour, setColour] = useState("#d62828");
+  const [chosenColour, setColour] = useState("");
+  // Each new annotation has the next colour of the palette.
+  const colour = chosenColour || palette[(page.page.objects[page.object.value]?.annotations.length ?? 0) % palette.length];
   const [name, setName] = useState("");
   const [value, setValue] = useState("");
   const one = chosenAnnotation();
@@ -135,6 +140,7 @@ export function Annotating() {
             if (await annotate("make", tag, colour)) {
               selection.clear();
               setTag("");
+              setColour("");
             }
           }}
         >

@@ -50,11 +50,10 @@ function facesMark(of: DrawnObject, list: Uint32Array): THREE.Object3D {
   const index = new Uint32Array(3 * list.length);
   list.forEach((f, i) => index.set(of.shape.triangles.subarray(3 * f, 3 * f + 3), 3 * i));
   geometry.setIndex(new THREE.BufferAttribute(index, 1));
-  const material = flatMaterial(red);
+  const material = flatMaterial(red, 0, false, 0.5);
   material.polygonOffset = true;
   material.polygonOffsetFactor = -1;
   material.polygonOffsetUnits = -2;
-  material.wireframe = list.length < 4000;
   const mesh = new THREE.Mesh(geometry, material);
   mesh.frustumCulled = false;
   return mesh;

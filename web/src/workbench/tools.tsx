@@ -14,6 +14,7 @@ import { text, type Key } from "./words";
 
 export type Tool =
   | "look"
+  | "base"
   | "rectangle"
   | "lasso"
   | "path"
@@ -32,7 +33,7 @@ export const tool = signal<Tool>("look");
 export const radius = signal(0);
 
 export const groups: [Key, Tool[]][] = [
-  ["look", ["look"]],
+  ["look", ["look", "base"]],
   ["select", ["rectangle", "lasso", "closed", "brush", "path", "points"]],
   ["measure", ["ruler", "tape", "bounding"]],
   ["deform", ["handles", "move", "rotate", "scale", "stretch"]],
@@ -52,10 +53,50 @@ interface Place {
   y: number;
 }
 
+/** Direction of the surface around a place: the mean of the normals of faces nearby that face the same way as the picked one. */
+function directionAround(of: DrawnObject, face: number, place: THREE.Vector3): THREE.Vector3 {
+  const { triangles } = of.shape;
+  const corner = (f: number, k: number) => of.vertex(triangles[3 * f + k]);
+  const areaNormal = (f: number) => {
+    const a = corner(f, 0);
+    return corner(f, 1).sub(a).cross(corner(f, 2).sub(a));
+  };
+  const first = areaNormal(face).normalize();
+  const radius = 0.06 * Math.hypot(...of.about.size);
+  const sum = new THREE.Vector3();
+  for (let f = 0; 3 * f < triangles.length; ++f) {
+    if (corner(f, 0).distanceTo(place) > radius) continue;
+    const one = areaNormal(f);
+    if (one.dot(first) > 0.5 * one.length()) sum.add(one);
+  }
+  return (sum.lengthSq() > 0 ? sum : first).normalize();
+}
+
+/** Stands the object on the surface at a position of the picture: with annotations by their upward direction, otherwise by a moved copy. */
+async function standOn(at: Place) {
+  const hit = view?.pick(at.x, at.y);
+  const of = hit && drawn[hit.object];
+  if (!hit || !of) return;
+  const up = directionAround(of, hit.face, hit.point).negate();
+  const list = (numbers: number[]) => numbers.map((x) => Number(x.toFixed(9))).join(",");
+  choose("look");
+  if (has("annotations")) {
+    const given = { mesh: part("mesh"), annotations: part("annotations"), "set-up": list(up.toArray()) };
+    await run({ operation: "annotation edit", title: text("base"), with: given, keep: ["output"] });
+  } else {
+    const turn = new THREE.Quaternion().setFromUnitVectors(up, new THREE.Vector3(0, 0, 1));
+    const given = { input: part("mesh"), quaternion: list([turn.w, turn.x, turn.y, turn.z]), about: "box" };
+    await run({ operation: "mesh move", title: text("base"), with: given });
+  }
+  view?.home();
+}
+
 /** Path of the pointer since it was pressed, and the surface points picked so far. */
 const trail = signal<Place[]>([]);
 const picks = signal<Pick[]>([]);
 const over = signal<DrawnObject | undefined>(undefined);
+/** The pointer over the picture while the brush is chosen. */
+const brushAt = signal<Place | undefined>(undefined);
 
 const drags: Tool[] = ["rectangle", "lasso", "brush", "move", "rotate", "scale", "stretch", "handles", "bounding"];
 const deforms = (t: Tool) => ["handles", "move", "rotate", "scale", "stretch"].includes(t);
@@ -206,8 +247,9 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     }
   };
   const onMove = (event: PointerEvent) => {
-    if (!down) return;
     const place = at(event);
+    brushAt.value = tool.value === "brush" ? place : undefined;
+    if (!down) return;
     moved = moved || Math.hypot(place.x - down.x, place.y - down.y) > 3;
     if (trail.value.length === 0) return;
     const last = trail.value[trail.value.length - 1];
@@ -215,6 +257,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     trail.value = [...trail.value, place];
     if (deforms(tool.value) && tool.value !== "handles") deform.drag(place);
   };
+  const onLeave = () => (brushAt.value = undefined);
   const onUp = (event: PointerEvent) => {
     if (!down) return;
     const [start, end, t] = [down, at(event), tool.value];
@@ -227,6 +270,8 @@ export function attach(canvas: HTMLCanvasElement): () => void {
       void deform.release(end);
     } else if (drags.includes(t)) {
       void drawnBy(t, way.length > 1 ? [...way, end] : [start]);
+    } else if (t === "base") {
+      if (!moved) void standOn(start);
     } else if (!moved) {
       const one = pickAt(start);
       if (!one) return;
@@ -253,6 +298,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
   canvas.addEventListener("pointerdown", onDown);
   canvas.addEventListener("pointermove", onMove);
   canvas.addEventListener("pointerup", onUp);
+  canvas.addEventListener("pointerleave", onLeave);
   canvas.addEventListener("keydown", onKey);
   canvas.addEventListener("dblclick", onDouble);
   choose(tool.value);
@@ -261,6 +307,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     canvas.removeEventListener("pointerdown", onDown);
     canvas.removeEventListener("pointermove", onMove);
     canvas.removeEventListener("pointerup", onUp);
+    canvas.removeEventListener("pointerleave", onLeave);
     canvas.removeEventListener("keydown", onKey);
     canvas.removeEventListener("dblclick", onDouble);
   };
@@ -281,6 +328,8 @@ export function Drawing() {
   const t = tool.value;
   const [a, b] = [way[0], way[way.length - 1]];
   const of = over.value;
+  const brush = brushAt.value;
+  const brushed = drawn[page.object.value];
   const points = of ? picks.value.map((one) => view!.place(of, one.point)).filter((one) => one !== undefined) : [];
   return (
     <svg class="drawing-now" aria-hidden="true">
@@ -289,6 +338,9 @@ export function Drawing() {
       )}
       {(t === "lasso" || t === "brush") && way.length > 1 && (
         <path class={t} d={`M${way.map((one) => `${one.x} ${one.y}`).join("L")}${t === "lasso" ? "Z" : ""}`} />
+      )}
+      {brush && brushed && (
+        <circle class="brush-size" cx={brush.x} cy={brush.y} r={(radius.value || brushRadius(brushed)) * view!.pixelsPerUnit(brushed)} />
       )}
       {t === "bounding" && way.length > 1 && <path d={`M${a.x} ${a.y}L${b.x} ${b.y}`} />}
       {points.length > 1 && <path class="picks" d={`M${points.map((one) => `${one.x} ${one.y}`).join("L")}`} />}
