@@ -4,6 +4,7 @@
 #include "workbench/request.h"
 #include "workbench/scene.h"
 
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/execution/parallel.h"

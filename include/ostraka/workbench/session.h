@@ -127,7 +127,7 @@ private:
     void check_file(const std::string& file) const;
     /// Throws Error (input) if a file or folder to be written leads out of the session's folder.
     void check_folders() const;
-    /// Removes uploads that no step reads, and files of steps that were not recorded because the process was killed.
+    /// Removes files of steps that were not recorded because the process was killed, and uploads that no step reads.
     void sweep() const;
     void lock();  ///< locks the folder; throws Error (input) if another process uses it
 

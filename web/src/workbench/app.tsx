@@ -424,10 +424,10 @@ function Start() {
   return (
     <section class="start" aria-labelledby="start-title">
       <h2 id="start-title">{text("startTitle")}</h2>
-      <p>
-        {text("startDrop")} <ChooseFiles />
-      </p>
       <p>{text(model.openable.value.length > 0 ? "startHelp" : "startEmpty")}</p>
+      <p>
+        <ChooseFiles />
+      </p>
       <ul>
         {model.openable.value.map((one) => (
           <li key={one}>
