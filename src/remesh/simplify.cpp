@@ -8,6 +8,7 @@
 #include "remesh/collapse_rules.h"
 #include "remesh/indexed_heap.h"
 #include "remesh/metric.h"
+#include "remesh/seam_drift.h"
 
 #include <fmt/core.h>
 
@@ -35,6 +36,7 @@ public:
           rules_(mesh, marks_, options.outlines == SimplifyOptions::Outlines::protect),
           metric_(options.method == SimplifyOptions::Method::qem ? make_quadric_metric(mesh, frame_, marks_, options)
                                                                  : make_lindstrom_turk_metric(frame_)),
+          drift_(mesh, frame_, marks_.seams, 0.9 * options.seam_drift),  // the rest: places between the points of a stretch
           heap_(mesh.number_of_edges()),
           merged_(mesh.number_of_vertices()),
           remaining_(mesh.number_of_vertices()) {}
@@ -66,7 +68,7 @@ public:
 private:
     /// Collapses in the order of cost until the number is reached or no edge may be collapsed.
     void sweep(std::size_t target, Progress& progress) {
-        refused_topology_ = refused_shape_ = 0;
+        refused_topology_ = refused_shape_ = refused_drift_ = 0;
         CancelCheck check;
         for (const Edge e : mesh_.edges()) {
             check();
@@ -127,9 +129,15 @@ private:
             for (const Vector& x : {Vector(a + (b - a) / 2), a, b}) candidates.add({x, 0});
         }
         const CollapsePlace* chosen = nullptr;
-        for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
-            if (keeps_shape(h, candidates.positions[i].position, plan->pinned)) chosen = &candidates.positions[i];
-        if (chosen == nullptr) return ++refused_shape_, false;
+        bool drifts = false;
+        for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i) {
+            const CollapsePlace& place = candidates.positions[i];
+            if (!keeps_shape(h, place.position, plan->pinned)) continue;
+            if (drift_.keeps(mesh_, h, place.position, plan->pinned)) chosen = &place;
+            else drifts = true;
+        }
+        if (chosen == nullptr) return ++(drifts ? refused_drift_ : refused_shape_), false;
+        drift_.apply();
         const Point position = plan->pinned ? mesh_.point(v) : frame_.world(chosen->position);
         if (visitor_ != nullptr) visitor_->place_vertex(mesh_, h, position);
         mesh_.point(v) = position;
@@ -193,11 +201,14 @@ private:
 
     [[nodiscard]] std::string explain(std::size_t target) const {
         const std::size_t bound =
-            mesh_.number_of_edges() - std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_);
+            mesh_.number_of_edges() - std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_ + refused_drift_);
         return fmt::format(
             "stopped at {} vertices instead of {}: of the remaining {} edges {} would change the topology, {} would flip or "
-            "flatten a face{}",
+            "flatten a face{}{}",
             remaining_, target, mesh_.number_of_edges(), refused_topology_, refused_shape_,
+            refused_drift_ > 0 ? fmt::format(", {} would move a seam of the texture by more than {:g} of the diagonal",
+                                             refused_drift_, options_.seam_drift)
+                               : std::string(),
             bound > 0 ? fmt::format(", {} belong to protected parts, to seams of the texture or to the border", bound)
                       : std::string());
     }
@@ -209,11 +220,12 @@ private:
     Marks marks_;
     CollapseRules rules_;
     std::unique_ptr<CollapseMetric> metric_;
+    SeamDrift drift_;
     IndexedHeap heap_;
     DisjointSets merged_;
     std::size_t remaining_;
     std::size_t collapses_ = 0;
-    std::size_t refused_topology_ = 0, refused_shape_ = 0;
+    std::size_t refused_topology_ = 0, refused_shape_ = 0, refused_drift_ = 0;
     Stage stage_{};
 };
 
@@ -300,6 +312,8 @@ void SimplifyOptions::list_options(OptionList& list) {
          Range{0, 1e6});
     list("border-weight", border_weight, "qem: weight of the distance to the border, relative to the distance to the surface",
          Range{0, 1e6});
+    list("seam-drift", seam_drift, "maximum distance of seams of the texture from where they were", Range{0, 1},
+         "share of the box diagonal");
     list("keep-border", keep_border, "keep the border of an open mesh exactly, so that neighbouring tiles still fit");
 }
 

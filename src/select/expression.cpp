@@ -164,6 +164,19 @@ std::vector<bool> ExpressionEvaluator::faces_in_lasso(const JsonValue& value, Pl
     return lasso(mesh_, picks(value["points"], frame, at + "/points"), seed, metric_of(value), where_ + ", at " + at, place);
 }
 
+std::vector<bool> ExpressionEvaluator::painted_faces(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
+    if (whole_ == nullptr) return painted(value, frame, at).faces();
+    const PaintedFigure& figure = whole_->painted(value, frame, at);
+    std::vector<bool> selected(mesh_.number_of_faces());
+    for (const Face face : mesh_.faces()) {
+        const Face origin(cut_->face_origin[face]);
+        const auto [a, b, c] = corners(whole_->mesh_, origin);
+        selected[face] = figure.inside(origin, nearest_barycentric(whole_->mesh_.point(a), whole_->mesh_.point(b),
+                                                                   whole_->mesh_.point(c), centroid(mesh_, face)));
+    }
+    return selected;
+}
+
 std::vector<bool> ExpressionEvaluator::labelled_faces(const JsonValue& labels, const std::string& at) const {
     if (face_labels_.empty())
         fail(at, "the mesh has no face labels", "give a mesh with labels, e.g. a PLY file with a face property \"label\"");
@@ -195,6 +208,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
                               (kind == "lasso" && whole_->keeps_to_edges(*value))))
         return faces_of_origin(whole_->faces(expression, around, at));
     if (is_reckoned(kind)) return field_selected_faces(kind, *value, frame, at + '/' + kind);
+    if (kind == "painted") return painted_faces(*value, frame, at + "/painted");
     if (whole_ != nullptr && kind == "lasso") return lassoed(*value, frame, at + "/lasso");
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {

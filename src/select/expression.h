@@ -9,6 +9,7 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/surface_colour.h"
 #include "ostraka/select/scalars.h"
+#include "select/painted.h"
 #include "select/screen.h"
 
 #include <functional>
@@ -146,6 +147,14 @@ private:
     /// Scalar map that an expression names.
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;  ///< wall thickness, computed at the first use
+    /// The painted figure that an expression describes, at the resolution of the image. Cached by the JSON pointer.
+    const PaintedFigure& painted(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// The faces of a painted figure; on a cut mesh those on the inner side of its outline.
+    std::vector<bool> painted_faces(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// The point of the surface that a pick names: a vertex by its index, the point nearest to a place, or what is seen at a pixel.
+    SurfaceHit place_on_surface(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
+    /// Throws Error (input) unless the mesh has colours.
+    void need_colours(const std::string& at) const;
     /// For each vertex, the difference of its colour from the colour of an expression (CIEDE2000).
     ScalarMap colour_map(const JsonValue& colour, PlaceFrame frame, const std::string& at) const;
     /// The values of vertices or faces that the mesh file has under this name.
@@ -181,6 +190,8 @@ private:
     mutable std::map<std::string, ScreenCamera> cameras_;                  ///< from a name to the camera
     mutable std::map<std::string, ScalarMap> maps_;                        ///< from a JSON pointer to the computed scalar map
     mutable std::vector<Lab> lab_;                                         ///< colours of the vertices, read at the first use
+    mutable std::shared_ptr<const TexelColours> texels_;                   ///< colours of the image, read at the first use
+    mutable std::map<std::string, PaintedFigure> figures_;                 ///< from a JSON pointer to the figure
     mutable std::map<std::string, std::vector<Index>> segments_;           ///< from a JSON pointer to the segment of each face
     mutable std::map<std::string, std::optional<SelectionLevel>> levels_;  ///< from a JSON pointer to the result of `level_of`
 };

@@ -196,6 +196,9 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         const ScalarRange range = interval(*value, map, here);
         add_level(mesh_, map.values, range.above, true, borders.curves);
         add_level(mesh_, map.values, range.below, false, borders.curves);
+    } else if (kind == "painted") {
+        std::vector<SurfaceCurve> pieces = painted(*value, frame, here).outline();
+        std::move(pieces.begin(), pieces.end(), std::back_inserter(borders.curves));
     } else if (kind == "brush") {
         const double radius = length((*value)["radius"].GetDouble(), frame);
         add_level(mesh_, distances_within(mesh_, brush_centres(*value, frame, here), radius), radius, false, borders.curves);
@@ -228,7 +231,8 @@ bool ExpressionEvaluator::ends_at_levels(const JsonValue& expression, PlaceFrame
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     const std::string here = at + '/' + kind;
-    if (kind == "box" || kind == "sphere" || kind == "halfspace" || kind == "rectangle" || kind == "polygon" || kind == "brush")
+    if (kind == "box" || kind == "sphere" || kind == "halfspace" || kind == "rectangle" || kind == "polygon" || kind == "brush" ||
+        kind == "painted")
         return true;
     if (kind == "threshold") return !on_faces(*value, frame, here);
     if (kind == "lasso") return metric_of(*value) == PathMetric::euclidean;

@@ -126,8 +126,7 @@ ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, 
 }
 
 ScalarMap ExpressionEvaluator::colour_map(const JsonValue& colour, PlaceFrame frame, const std::string& at) const {
-    if (surroundings_.attributes == nullptr || !has_colours(*surroundings_.attributes))
-        fail(at, "the mesh has neither an image nor colours", "give the file with its image or colours, or select by shape");
+    need_colours(at);
     if (lab_.empty()) in_place(at, [&] { lab_ = vertex_lab(mesh_, *surroundings_.attributes, where_); });
     Lab reference;
     if (colour.IsString()) {
@@ -140,6 +139,69 @@ ScalarMap ExpressionEvaluator::colour_map(const JsonValue& colour, PlaceFrame fr
     map.values.reserve(lab_.size());
     for (const Lab& lab : lab_) map.values.push_back(colour_difference(lab, reference));
     return map;
+}
+
+void ExpressionEvaluator::need_colours(const std::string& at) const {
+    if (surroundings_.attributes == nullptr || !has_colours(*surroundings_.attributes))
+        fail(at, "the mesh has neither an image nor colours", "give the file with its image or colours, or select by shape");
+}
+
+SurfaceHit ExpressionEvaluator::place_on_surface(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
+    if (pick.IsObject()) return seen(pick, frame, at);
+    if (pick.IsArray()) return search(at).closest(point(pick, frame, at));
+    const Vertex picked(vertex(pick, frame, at));
+    if (mesh_.is_isolated(picked)) fail(at, "vertex " + to_string(static_cast<Index>(picked)) + " has no face", "pick another one");
+    SurfaceHit hit;
+    hit.face = mesh_.face(mesh_.is_border(mesh_.halfedge(picked)) ? mesh_.opposite(mesh_.halfedge(picked)) : mesh_.halfedge(picked));
+    const auto corner = corners(mesh_, Face(hit.face));
+    for (std::size_t k = 0; k < 3; ++k) hit.barycentric[k] = corner[k] == picked ? 1 : 0;
+    hit.point = mesh_.point(picked);
+    return hit;
+}
+
+const PaintedFigure& ExpressionEvaluator::painted(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
+    const auto known = figures_.find(at);
+    if (known != figures_.end()) return known->second;
+    need_colours(at);
+    if (mesh_.number_of_faces() == 0) fail(at, "the mesh has no faces", "give another mesh");
+    PaintedFigureQuery query;
+    const auto add_colour = [&](const JsonValue& text) {
+        const Rgb rgb = parse_colour(text_of(text));
+        query.like.push_back(
+            lab_from_linear({linear_from_srgb(rgb.red), linear_from_srgb(rgb.green), linear_from_srgb(rgb.blue)}));
+    };
+    if (const JsonValue* like = find_member(value, "like")) {
+        if (like->IsString()) add_colour(*like);
+        else
+            for (const auto& one : like->GetArray()) add_colour(one);
+    }
+    if (const JsonValue* places = find_member(value, "at"))
+        for (rapidjson::SizeType i = 0; i < places->Size(); ++i)
+            query.places.push_back(place_on_surface((*places)[i], frame, at + "/at/" + to_string(i)));
+    const auto interval_of = [&](const char* name, std::optional<PaintedFigureQuery::Interval>& interval) {
+        const JsonValue* found = find_member(value, name);
+        if (found == nullptr) return;
+        interval = {(*found)[0].GetDouble(), (*found)[1].GetDouble()};
+        if (std::string(name) != "hue" && (*interval)[0] > (*interval)[1])
+            fail(at + '/' + name, "the first bound exceeds the second", "exchange the two");
+    };
+    interval_of("lightness", query.lightness);
+    interval_of("chroma", query.chroma);
+    interval_of("hue", query.hue);
+    if (query.like.empty() && query.places.empty() && !query.lightness && !query.chroma && !query.hue)
+        fail(at, "a painted figure of no colour", "give a colour (like), a place in it (at), or bounds of lightness, chroma or hue");
+    query.sharpest = flag_in(value, "edge");
+    if (query.sharpest && query.places.empty())
+        fail(at, "a figure by its edge, but no place in it", "give a place in it (at)");
+    query.tolerance = number_or(value, "tolerance", query.sharpest ? 60 : query.tolerance);
+    query.smallest = length(number_or(value, "smallest", 0), frame);
+    query.blur = static_cast<int>(number_or(value, "blur", query.blur));
+    if (figures_.size() >= 8) figures_.clear();  // each holds a number per texel
+    in_place(at, [&] {
+        if (texels_ == nullptr) texels_ = std::make_shared<const TexelColours>(mesh_, *surroundings_.attributes, where_);
+        figures_.emplace(at, PaintedFigure(texels_, query, where_ + ", at " + at));
+    });
+    return figures_.at(at);
 }
 
 ScalarMap ExpressionEvaluator::file_values(const std::string& name, const std::string& at) const {

@@ -24,6 +24,8 @@ public:
     /// Linear red, green and blue at a point of a face, given by its barycentric coordinates: the mean over an area of the given
     /// width, in the unit of the mesh; 0: at the point.
     [[nodiscard]] std::array<float, 3> at(Face face, const std::array<double, 3>& barycentric, double width = 0) const;
+    /// Size of a material's image in pixels; {0, 0} without an image.
+    [[nodiscard]] std::array<int, 2> image_size(Index material) const { return sampler_.size(material); }
 
 private:
     const Mesh& mesh_;

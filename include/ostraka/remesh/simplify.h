@@ -25,6 +25,7 @@ struct SimplifyOptions {
     double border_weight = 1;
     /// True: border vertices and edges are unchanged, so that the mesh still fits neighbouring tiles.
     bool keep_border = false;
+    double seam_drift = 0.001;  ///< max distance of the seams of the texture from where they were, as a share of the diagonal
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

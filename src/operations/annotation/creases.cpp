@@ -1,6 +1,7 @@
-// annotation creases: ridges and valleys of the surface as candidates for joints.
+// annotation creases: ridges and valleys of the surface as candidates for joints, and edges of what is painted.
 #include "operations/operations.h"
 
+#include "ostraka/select/colour_edges.h"
 #include "ostraka/select/creases.h"
 
 #include <fmt/core.h>
@@ -13,16 +14,29 @@ struct AnnotationCreases final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json): lines along the crests");
+        p.options("of", of, "ridges and hollows of the shape, or edges of what is painted (colour)", Choices{"shape", "colour"});
         p.options("regions", regions, "write the creases as regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
         options.list_options(p.options);
+        p.options.group("With --of colour");
+        p.options("contrast", edges.contrast, "difference of the colours of both sides (CIELAB) that each line exceeds somewhere",
+                  Range{0.1, 200});
+        p.options("faint", edges.faint, "difference of the colours of both sides at which lines end", Range{0.1, 200});
+        p.options("texels", edges.texels, "standard deviation of the smoothing", Range{0, 20}, "texels");
+        p.report.table("colour edges", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
+                       number("length", "length", "length"), number("contrast", "contrast"));
         p.report.table("creases", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
                        number("length", "length", "length"), number("width", "width", "length"),
                        number("mean curvature", "mean curvature", "1/length"), number("strength", "strength"));
     }
 
+    void check() const override {
+        if (of == "colour" && regions) fail_usage("edges of colour have no regions", "leave out --regions, or select with --painted");
+    }
+
     void run(Context&, Report& report) override {
         report.set_unit(unit);
+        if (of == "colour") return find_in_image(report);
         const Mesh& surface = mesh->mesh;
         const std::vector<Crease> creases = in_file(mesh.file(), [&] { return find_creases(surface, options); });
         AnnotationSet set = annotate_creases(creases, regions, unit);
@@ -46,10 +60,29 @@ struct AnnotationCreases final : Operation {
         output.write(std::move(set), surface, mesh.file());
     }
 
+    void find_in_image(Report& report) {
+        edges.shortest = options.shortest;
+        const Mesh& surface = mesh->mesh;
+        const std::vector<ColourEdge> found = find_colour_edges(surface, mesh->extras, edges, mesh.file());
+        AnnotationSet set = annotate_colour_edges(surface, found, unit);
+        report.empty_table("colour edges");
+        for (std::size_t i = 0; i < found.size(); ++i)
+            report.row("colour edges")("id", set.annotations[i].id)("tag", set.annotations[i].tag)("closed", found[i].closed)(
+                "length", found[i].length)("contrast", found[i].contrast, number(found[i].contrast, 3));
+        if (found.empty()) {
+            report.note(fmt::format("no edge of colour stands out, so {} is not written: try a lower --contrast, --faint or "
+                                    "--shortest",
+                                    output.file()));
+            return report.answer_no();
+        }
+        output.write(std::move(set), surface, mesh.file());
+    }
+
     MeshInput mesh;
     AnnotationsOutput output;
     bool regions = false;
-    std::string unit;
+    std::string unit, of = "shape";
+    ColourEdgeOptions edges;
     CreaseOptions options;
 };
 

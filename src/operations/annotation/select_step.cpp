@@ -46,6 +46,11 @@ void SelectStep::list_options(OptionList& list) {
          "difference (CIEDE2000) from the colour at --seed or from --like",
          Words{threshold_names(), "values:NAME for the property NAME of the mesh file, a file of values (.npy or text)",
                check_threshold});
+    list("painted", painted,
+         "selects a painted figure at the resolution of the image: by its colour (--like, or that at --seed), within bounds "
+         "(--lightness, --chroma, --hue), or by its edge (the outline around --seed with the sharpest contrast); with --seed "
+         "only the connected figure there",
+         Choices{"colour", "bounds", "edge"});
     list("segment", segment,
          "number of thickness levels: segments the mesh by thickness and selects the segment that contains --seed",
          Range{2, 100});
@@ -62,14 +67,26 @@ void SelectStep::list_options(OptionList& list) {
     list("closed", closed, "with --path: close the path from the last pick to the first");
     list("metric", metric, "with --path or --lasso: length that is minimised between picks",
          Choices{"euclidean", "segment", "combined"});
-    list("seed", seed, "with --lasso, --segment or --threshold distance: a pick within the part");
+    list("seed", seed, "with --lasso, --segment, --painted or --threshold distance: a pick within the part");
     list("radius", radius, "with --brush: geodesic radius, in the unit of --frame");
     list("stroke", stroke, "with --brush: paint along the path through the picks");
     list("above", above,
          "with --threshold: minimum value; lengths are in the unit of --frame, curvatures in the inverse of this unit, values of "
          "a file in their own unit");
     list("below", below, "with --threshold: maximum value, in the unit of --above");
-    list("like", like, "with --threshold colour: the colour, as #rrggbb");
+    list("like", like, "with --threshold colour or --painted: the colour, as #rrggbb");
+    list("tolerance", tolerance,
+         "with --painted: largest difference (CIEDE2000) from the colour; default 12, with 'edge' the largest tried, 60",
+         Range{0, 200});
+    list("lightness", lightness, "with --painted: lowest and highest CIELAB lightness, 0 to 100", Range{-1000, 1000});
+    list("chroma", chroma, "with --painted: lowest and highest CIELAB chroma, 0 is grey", Range{-1000, 1000});
+    list("hue", hue, "with --painted: first and last CIELAB hue angle, counter-clockwise: 0 red, 90 yellow, 180 green, 270 blue",
+         Range{-360, 720}, "degrees");
+    list("smallest", smallest,
+         "with --painted: patches and holes smaller than the square of this length are left out, in the unit of --frame; default: "
+         "six texels",
+         Range{0, 1e60});
+    list("blur", blur, "with --painted: rounds of smoothing over neighbouring texels; default 2", Range{0, 100});
     list("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
     list("scale", scale, "with --threshold of a curvature: radius over which the curvature is averaged; 0: automatic",
          Range{0, 1}, "share of the diagonal");
@@ -228,6 +245,32 @@ private:
         return value;
     }
 
+    [[nodiscard]] JsonValue painted() const {
+        const bool by_edge = step_.painted == "edge", by_colour = step_.painted == "colour";
+        const bool bounded = !step_.lightness.empty() || !step_.chroma.empty() || !step_.hue.empty();
+        if (by_edge && step_.seed.empty()) fail_usage("a painted figure by its edge needs a place in it", "add --seed PICK");
+        if (by_colour && step_.seed.empty() && step_.like.empty())
+            fail_usage("a painted figure by its colour needs a colour or a place", "add --like '#rrggbb', or --seed PICK");
+        if (step_.painted == "bounds" && !bounded)
+            fail_usage("a painted figure within bounds has none", "add --lightness LOW,HIGH, --chroma LOW,HIGH or --hue FROM,TO");
+        JsonValue value(rapidjson::kObjectType);
+        if (!step_.like.empty()) add_members(value, a_, "like", step_.like);
+        if (!step_.seed.empty()) add_members(value, a_, "at", picks({step_.seed}, "seed"));
+        if (by_edge) add_members(value, a_, "edge", true);
+        if (step_.tolerance) add_members(value, a_, "tolerance", finite(*step_.tolerance));
+        const auto add_bounds = [&](const char* name, const Numbers& bounds) {
+            if (bounds.empty()) return;
+            check_count(bounds, name, 2);
+            add_members(value, a_, name, list(bounds));
+        };
+        add_bounds("lightness", step_.lightness);
+        add_bounds("chroma", step_.chroma);
+        add_bounds("hue", step_.hue);
+        if (step_.smallest) add_members(value, a_, "smallest", finite(*step_.smallest));
+        if (step_.blur) add_members(value, a_, "blur", *step_.blur);
+        return value;
+    }
+
     /// The selection expression of the given tool.
     [[nodiscard]] JsonValue tool() const {
         std::vector<std::string> given;
@@ -279,6 +322,7 @@ private:
             return value;
         });
         when(!step_.threshold.empty(), "threshold", [&] { return threshold(); });
+        when(!step_.painted.empty(), "painted", [&] { return painted(); });
         when(step_.segment.has_value(), "segments", [&] {
             need_seed("a segment");
             return object("clusters", *step_.segment, "smoothing", step_.smoothing, "seeds", picks({step_.seed}, "seed"));

@@ -11,14 +11,16 @@ struct SelectStep {
     std::string expression;  ///< a selection in the JSON form of recipes
     bool all = false;
     std::vector<double> rectangle, polygon, box, sphere, halfspace, nearest;
-    std::string threshold, component;
+    std::string threshold, component, painted;
     std::optional<int> segment;
     std::vector<std::string> path, lasso, brush, vertices;
     std::vector<int> faces, labels;
     // modifiers
     bool through = false, closed = false, stroke = false, invert = false, quantiles = false;
     std::string seed, like, metric = "euclidean", frame = "mesh";
-    std::optional<double> radius, above, below;
+    std::optional<double> radius, above, below, tolerance, smallest;
+    std::vector<double> lightness, chroma, hue;
+    std::optional<int> blur;
     double scale = 0, smoothing = 0.26;
     int grow = 0, shrink = 0;
     // camera
