@@ -19,6 +19,21 @@ struct AxisLine {
     Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
 };
 
+/// What is known about a part before its posterior is sampled.
+struct RotationSearch {
+    Axis axis;                         ///< axis with its figures, or the reason why there is none
+    bool determined = false;           ///< true: most of the surface is on a profile revolved about `line`
+    bool sphere = false;               ///< true: the surface resembles a part of a sphere
+    AxisLine line;                     ///< best line in the frame of the part
+    std::vector<RoundSample> samples;  ///< samples of the surface in the frame of the part
+    Vector3d centroid = Vector3d::Zero();
+    double scale = 1;  ///< diagonal of the part
+};
+/// The axis in a given direction that the normals of the samples meet best.
+AxisLine axis_along(const std::vector<RoundSample>& samples, const Vector3d& direction);
+/// The search of `rotation_axis`.
+RotationSearch search_rotation(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options);
+
 /// Surface samples, one per face or 8000 spread by area; their normals come from vertex normals averaged `rounds` times over
 /// edges of the part.
 std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>& faces, int rounds, const Vector3d& centre,

@@ -14,6 +14,24 @@ namespace ostraka {
 
 using namespace detail;
 
+namespace detail {
+
+AxisLine axis_along(const std::vector<RoundSample>& samples, const Vector3d& direction) {
+    const auto [u, w] = across(direction);
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    for (const RoundSample& s : samples) {
+        const Vector3d side = s.n.cross(direction);
+        const Eigen::Vector2d row(side.dot(u), side.dot(w));
+        A += s.weight * row * row.transpose();
+        b += s.weight * side.dot(s.p) * row;
+    }
+    const Eigen::Vector2d x = (A + 1e-9 * Eigen::Matrix2d::Identity()).inverse() * b;
+    return {x[0] * u + x[1] * w, direction};
+}
+
+}  // namespace detail
+
 namespace {
 
 using Sample = RoundSample;
@@ -104,21 +122,6 @@ Line refined(const std::vector<Sample>& samples, Line axis, int rounds) {
     return axis;
 }
 
-/// The axis in a given direction that the normals meet best.
-Line axis_along(const std::vector<Sample>& samples, const Vector3d& direction) {
-    const auto [u, w] = across(direction);
-    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d b = Eigen::Vector2d::Zero();
-    for (const Sample& s : samples) {
-        const Vector3d side = s.n.cross(direction);
-        const Eigen::Vector2d row(side.dot(u), side.dot(w));
-        A += s.weight * row * row.transpose();
-        b += s.weight * side.dot(s.p) * row;
-    }
-    const Eigen::Vector2d x = (A + 1e-9 * Eigen::Matrix2d::Identity()).inverse() * b;
-    return {x[0] * u + x[1] * w, direction};
-}
-
 /// The best of the axes refined from several initialisations: the axis of the normals, and those of their principal directions
 /// (the one of smallest variance suits a short arc of a cylinder). `rival`: another axis, at an angle of more than 15 degrees,
 /// has less than 1.5 times its mean squared distance from the profile.
@@ -175,22 +178,29 @@ double sphere_error(const std::vector<Sample>& samples, const Profile& profile) 
 
 }  // namespace
 
-Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+namespace detail {
+
+RotationSearch search_rotation(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
     const AreaMoments moments = part_moments(mesh, faces, options);
     const double scale = part_diagonal(mesh, faces);
     const Vector3d centroid = eigen(moments.centroid);
-    const std::vector<Sample> samples = take_samples(mesh, faces, options.smoothing, centroid, scale);
-    Axis axis;
+    RotationSearch search;
+    search.centroid = centroid;
+    search.scale = scale;
+    search.samples = take_samples(mesh, faces, options.smoothing, centroid, scale);
+    const std::vector<Sample>& samples = search.samples;
+    Axis& axis = search.axis;
     if (samples.size() < 12) {
         axis.reason = "it has too few faces to determine an axis";
-        return axis;
+        return search;
     }
     // Every line across a flat part is an axis.
     if (moments.variances[2] < 1e-4 * moments.variances[1]) {
         axis.reason = "it is flat: every line perpendicular to it is an axis";
-        return axis;
+        return search;
     }
     const auto [line, rival] = best_axis(samples, first_guess(samples, moments, options));
+    search.line = line;
     const Profile profile(samples, line);
     const Refinement system(samples, line, profile);
     double round = 0, facing = 0, squares = 0, largest = 0;
@@ -211,7 +221,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     }
     if (facing < 0.02 || !(system.weight > 0)) {
         axis.reason = "no part of it faces away from an axis";
-        return axis;
+        return search;
     }
     const double information = system.tilt_information();
     const double error = profile.sigma / std::sqrt(std::max(1e-300, information * std::max(1.0, system.count)));
@@ -221,6 +231,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const double diameter_error =
         2 * profile.sigma * std::sqrt((system.radius_uncertainty(mean_direction.head<2>()) + 1) / std::max(1.0, system.count));
     axis.quality = facing > 0 ? round / facing : 0;
+    search.determined = axis.quality >= options.min_quality;
     axis.figures = {{"largest diameter", 2 * largest * scale, "length"},
                     {"circle preserved", covered_percent(angles), "%"},
                     {"rms distance", round > 0 ? std::sqrt(squares / round) * scale : 0, "length"},
@@ -229,23 +240,24 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     if (sphere_error(samples, profile) < 2 * profile.sigma ||
         information < 2e-4 * system.shift_information() * system.radius * system.radius) {
         axis.reason = "it resembles a part of a sphere: many axes fit";
-        return axis;
+        search.sphere = true;
+        return search;
     }
     if (rival) {
         axis.reason = "several axes fit: too little of its circumference is preserved to distinguish them";
-        return axis;
+        return search;
     }
     if (axis.quality < options.min_quality) {
         axis.reason = "it is not rotationally symmetric about any line";
-        return axis;
+        return search;
     }
     if (error > 0.09) {
         axis.reason = "the direction is not determined to within five degrees";
-        return axis;
+        return search;
     }
     if (2 * diameter_error > largest) {
         axis.reason = "too little of its circumference is preserved: the diameter is not determined to within a half";
-        return axis;
+        return search;
     }
     axis.found = true;
     set_line(axis, centroid + scale * line.point, line.direction, centroid);
@@ -257,7 +269,13 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
             minimum = std::min(minimum, h), maximum = std::max(maximum, h);
         }
     axis.lines = {{point_of(origin + minimum * a), point_of(origin + maximum * a)}};
-    return axis;
+    return search;
+}
+
+}  // namespace detail
+
+Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    return search_rotation(mesh, faces, options).axis;
 }
 
 }  // namespace ostraka

@@ -1,11 +1,13 @@
 // axis
 #include "ostraka/axis/axis.h"
+#include "ostraka/axis/revolution_axis.h"
 
 #include "operations/file_attribute.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace ostraka {
@@ -23,9 +25,10 @@ struct FindAxis final : Operation {
             .words();
         attribute.declare(p, "axis");
         options.list_options(p.options);
+        intervals.list_options(p.options);
 
-        p.report.values(boolean("found", "axis"), text("reason"), numbers("point", "through"), numbers("direction", "direction"),
-                        any("polylines"), number("quality", "quality"), any("figures"));
+        p.report.values(boolean("found", "axis"), text("verdict"), text("reason"), numbers("point", "through"),
+                        numbers("direction", "direction"), any("polylines"), number("quality", "quality"), any("figures"));
     }
 
     void check() const override {
@@ -42,8 +45,9 @@ struct FindAxis final : Operation {
 
     void run(Context& context, Report& report) override {
         std::string unit;
-        const Axis axis = find(mesh->mesh, unit);
-        report_result(report, axis, unit);
+        const RevolutionAxis result = find(mesh->mesh, unit);
+        const Axis& axis = result.axis;
+        report_result(report, result, unit);
         if (!output) return;
         if (extension(output.file()) == ".obj") return output.write(to_obj(axis));
         Json document = json_document("axis");
@@ -63,12 +67,12 @@ struct FindAxis final : Operation {
         attribute.write(std::move(set), holder, output, {"axis", "", checksum}, mesh, report);
     }
 
-    [[nodiscard]] Axis find(const Mesh& surface, std::string& unit) const {
+    [[nodiscard]] RevolutionAxis find(const Mesh& surface, std::string& unit) const {
         std::vector<Index> faces;
         if (!annotations) {
             faces.resize(surface.number_of_faces());
             std::iota(faces.begin(), faces.end(), Index{0});
-            return in_file(mesh.file(), [&] { return find_axis(surface, faces, options); });
+            return in_file(mesh.file(), [&] { return axis_of(surface, faces); });
         }
         const AnnotationSet& set = annotations.on(surface);
         unit = set.unit;
@@ -82,13 +86,38 @@ struct FindAxis final : Operation {
         }
         if (!rim.empty() && !faces.empty())
             fail_usage("regions and curves have no axis together", "name regions only, or lines and points only");
-        if (!rim.empty()) return circle_axis(rim);
+        if (!rim.empty()) return {circle_axis(rim), {}, false};
         std::sort(faces.begin(), faces.end());
         faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-        return in_file(annotations.file(), [&] { return find_axis(surface, faces, options); });
+        return in_file(annotations.file(), [&] { return axis_of(surface, faces); });
     }
 
-    static void report_result(Report& report, const Axis& axis, const std::string& unit) {
+    [[nodiscard]] RevolutionAxis axis_of(const Mesh& surface, const std::vector<Index>& faces) const {
+        if (options.method == AxisMethod::rotation) return revolution_axis(surface, faces, options, intervals);
+        return {find_axis(surface, faces, options), {}, false};
+    }
+
+    /// "between 190 and 310 mm", or "at least 190 mm".
+    static std::string interval_text(const DiameterEstimate& diameter, const std::string& unit, int places) {
+        const std::string length = unit.empty() ? "" : " " + unit;
+        if (!std::isfinite(diameter.high)) return fmt::format("at least {}{}", number(diameter.low, places), length);
+        return fmt::format("between {} and {}{}", number(diameter.low, places), number(diameter.high, places), length);
+    }
+
+    static std::string verdict_text(const RevolutionAxis& result, const std::string& unit) {
+        if (result.undetermined) {
+            const DiameterEstimate& diameter = result.diameters.front();
+            return fmt::format("cannot be told: {} ({}, 95 % interval)", interval_text(diameter, unit, 3), diameter.name);
+        }
+        if (!result.axis.found) return "has no axis: " + result.axis.reason;
+        if (result.diameters.empty()) return {};
+        const DiameterEstimate& diameter = result.diameters.front();
+        return fmt::format("{} {}{}, 95 % interval {}", diameter.name, number(diameter.value, 4), unit.empty() ? "" : " " + unit,
+                           interval_text(diameter, unit, 4));
+    }
+
+    static void report_result(Report& report, const RevolutionAxis& result, const std::string& unit) {
+        const Axis& axis = result.axis;
         auto& allocator = report.allocator();
         const auto coordinates = [](const auto& p) { return std::vector<double>{p.x(), p.y(), p.z()}; };
         report("found", axis.found, axis.found ? "found" : "none");
@@ -101,17 +130,25 @@ struct FindAxis final : Operation {
             report("reason", axis.reason);
             report.answer_no();
         }
+        report("verdict", std::string(axis.found ? "found" : result.undetermined ? "cannot be told" : "none"));
         report("quality", axis.quality, number(axis.quality, 4));
         JsonValue figures(rapidjson::kArrayType);
         for (const auto& figure : axis.figures) {
             const std::string shown_unit = figure.unit == "length" ? unit : figure.unit;
             JsonValue entry = json_object(allocator, "name", figure.name, "value", figure.value);
             if (!shown_unit.empty()) add_members(entry, allocator, "unit", shown_unit);
+            std::string shown = number(figure.value) + (shown_unit.empty() ? "" : " " + shown_unit);
+            for (const DiameterEstimate& diameter : result.diameters) {
+                if (diameter.name != figure.name) continue;
+                add_members(entry, allocator, "low", diameter.low);
+                if (std::isfinite(diameter.high)) add_members(entry, allocator, "high", diameter.high);
+                shown += fmt::format(" ({})", interval_text(diameter, {}, 5));
+            }
             figures.PushBack(entry, allocator);
-            report.people(figure.name, number(figure.value) + (shown_unit.empty() ? "" : " " + shown_unit));
+            report.people(figure.name, shown);
         }
         report("figures", std::move(figures));
-        if (!axis.found) report.line("has no axis: " + axis.reason);
+        if (const std::string line = verdict_text(result, unit); !line.empty()) report.line(line);
         report.notes(axis.notes);
     }
 
@@ -121,6 +158,7 @@ struct FindAxis final : Operation {
     FileAttribute attribute;
     std::vector<std::string> names;
     AxisOptions options;
+    RevolutionAxisOptions intervals;
 };
 
 }  // namespace

@@ -101,7 +101,7 @@ constexpr OperationEntry entries[]{
     {"study technique", "classify bodies as wheel-made or hand-made from their lower slices", make_study_technique},
     {"study segments", "segment an object along its height by clustering its slices", make_study_segments},
     {"import", "read scans as they come, meshes with their images and point clouds; repair them as far as needed, and keep the raw files and index maps beside them; exit code 3 if an object is still open or intersects itself, or if a scan was refused", make_import, 2},
-    {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis", make_axis, 2},
+    {"axis", "compute the axis of an object or of an annotated part; exit code 3 if there is no axis, or the diameter cannot be told", make_axis, 2},
     {"slice", "slice an object with planes, describe and draw the slices; exit code 3 if no plane intersects the object", make_slice, 2},
     {"deform", "deform a mesh while constraints on its parts are satisfied (exit code 3: the result is not acceptable)", make_deform, 2},
     {"fit", "complete an object from fragments with a template of its class, and report whether the fragments are compatible with each other and the template (exit code 3: incompatible or undecided)", make_fit, 3},

@@ -3,6 +3,7 @@
 
 #include "ostraka/algebra/dense.h"
 #include "ostraka/axis/axis_evidence.h"
+#include "ostraka/axis/revolution_axis.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
@@ -335,6 +336,10 @@ private:
         const AxisGuess common = line(common_);
         if (indices.size() == 1) {
             SherdOnProfile& sherd = result_.sherds[indices[0]];
+            std::vector<bool> alone(sherds_.size(), false);
+            alone[indices[0]] = true;
+            const JoinedSherds single = joined(sherds_, alone);
+            sherd.axis = revolution_axis(single.mesh, single.faces(), options_.axis).axis;
             if (!sherd.axis.found) {
                 leave_out(sherd, "has no axis: " + sherd.axis.reason, "add sherds that cover more of the circumference");
                 fail_all_left_out(result_);

@@ -1,0 +1,50 @@
+// Posterior distribution of the axis of a wall: the most likely axis and weighted samples around it.
+#pragma once
+
+#include "axis/revolution_model.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace ostraka::detail {
+
+struct PosteriorOptions {
+    double out_of_round = 0.005;  ///< typical deviation from roundness, as a share of the radius; 0: perfectly round
+    int draws = 400;              ///< number of samples of each of three rounds
+    std::uint64_t seed = 1;       ///< random seed
+};
+
+/// Samples of the posterior of a model, with importance weights that sum to 1.
+struct RevolutionPosterior {
+    std::optional<RevolutionModel> model;  ///< empty: too few vertices on walls
+    AxisStep best = AxisStep::Zero();      ///< most likely axis
+    double amplitude = 0;                  ///< most likely deviation from roundness
+    std::vector<AxisStep> samples;
+    std::vector<double> weights;
+    /// For each sample, a draw of the mean deviation of the arc from the circle of the vessel, as a share of the radius.
+    std::vector<double> deviations;
+    double effective = 0;  ///< effective number of samples
+    /// Weighted quantile of a value of each sample.
+    [[nodiscard]] double quantile(const std::vector<double>& values, double fraction) const;
+};
+
+/// Finds the best axis from several initial lines and samples the posterior about it. Jeffreys' prior of the axis.
+RevolutionPosterior revolution_posterior(const WallVertices& vertices, const std::vector<SpaceLine>& starts,
+                                         const PosteriorOptions& options);
+
+/// A ring of the wall: cells near one height of the profile.
+struct WallRing {
+    std::vector<std::size_t> cells;  ///< cells near the ring
+    double correction = 0;           ///< radius of the ring minus mean radius of the cells, about the best axis
+    double error = 0;                ///< standard error of the mean radius of the cells from their noise
+    bool rim = false;                ///< true: top of a lip, the end of a wall
+    double share = 0;                ///< share of the circumference over which the ring is preserved
+};
+/// The ring at the top of a lip, if there is one; otherwise the widest ring of the walls.
+WallRing diameter_ring(const RevolutionPosterior& posterior);
+/// The widest ring of the walls.
+WallRing widest_ring(const RevolutionPosterior& posterior);
+/// Diameter of the circle of the vessel at a ring, for each sample of the posterior; a negative curvature gives an infinite one.
+std::vector<double> ring_diameters(const RevolutionPosterior& posterior, const WallRing& ring);
+
+}  // namespace ostraka::detail
