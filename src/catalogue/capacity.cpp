@@ -1,23 +1,17 @@
 #include "catalogue/capacity.h"
 
-#if __has_include("ostraka/slicing/capacity.h")
 #include "ostraka/slicing/capacity.h"
-#endif
 
 namespace ostraka::detail {
 
-VesselCapacity capacity_of([[maybe_unused]] const Mesh& mesh) {
+VesselCapacity capacity_of(const Mesh& mesh) {
     VesselCapacity result;
-#if __has_include("ostraka/slicing/capacity.h")
     const Capacity capacity = find_capacity(mesh, Vector(0, 0, 1), {{FillRequest::Kind::share, 1.0, {}}});
     result.reason = capacity.reason;
     if (!capacity.known()) return result;
     result.volume = capacity.full.volume;
-    const Filling& full = capacity.levels.empty() ? capacity.full : capacity.levels.front();
+    const LiquidVolume& full = capacity.levels.empty() ? capacity.full : capacity.levels.front();
     result.deviation = full.uncertainty();
-#else
-    result.reason = "it was not computed";
-#endif
     return result;
 }
 

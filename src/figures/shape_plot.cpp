@@ -13,7 +13,7 @@ namespace {
 
 using namespace figures;
 
-constexpr double shape_side = 190, plot_width = 620, plot_height = 480, title_height = 30, label_height = 26, small = 10.5;
+constexpr double shape_side = 190, plot_width = 620, plot_height = 480, heading_height = 30, label_height = 26, small = 10.5;
 
 /// ShapeBounds of points.
 struct ShapeBounds {
@@ -103,10 +103,10 @@ void draw_scatter(Sheet& sheet, const ShapePlot& plot, const Box& box) {
 }
 
 std::string draw(const ShapePlot& plot, Sheet::Format format) {
-    const double left = margin + shape_side + label_height, top = title_height + margin, right = left + plot_width,
+    const double left = margin + shape_side + label_height, top = heading_height + margin, right = left + plot_width,
                  bottom = top + plot_height, foot = bottom + label_height;
     Sheet sheet(right + margin, foot + shape_side + margin, format);
-    sheet.text(plot.title, (left + right) / 2, title_height, 0.5, text_size + 2);
+    sheet.text(plot.title, (left + right) / 2, heading_height, 0.5, text_size + 2);
     draw_scatter(sheet, plot, {left, top, right, bottom});
     double scale = std::numeric_limits<double>::infinity();
     for (const DrawnShape* shape : {&plot.left, &plot.right, &plot.bottom, &plot.top}) {

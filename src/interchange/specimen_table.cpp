@@ -91,13 +91,13 @@ LandmarkSpecimens one_row_per_specimen(const std::vector<CsvRow>& rows, const st
     return result;
 }
 
-constexpr std::size_t absent = static_cast<std::size_t>(-1);
+constexpr std::size_t no_column = static_cast<std::size_t>(-1);
 
 std::size_t column_named(const CsvRow& header, std::initializer_list<const char*> names) {
     for (const char* name : names)
         for (std::size_t c = 0; c < header.cells.size(); ++c)
             if (lower_case(cell_of(header, c)) == name) return c;
-    return absent;
+    return no_column;
 }
 
 LandmarkSpecimens one_row_per_landmark(const std::vector<CsvRow>& rows, const std::string& where) {
@@ -106,12 +106,12 @@ LandmarkSpecimens one_row_per_landmark(const std::vector<CsvRow>& rows, const st
                       name_column = column_named(header, {"landmark", "name", "label", "point", "tag"}),
                       z = column_named(header, {"z"});
     std::vector<std::size_t> axes{column_named(header, {"x"}), column_named(header, {"y"})};
-    if (z != absent) axes.push_back(z);
+    if (z != no_column) axes.push_back(z);
     LandmarkSpecimens result;
     result.dimension = static_cast<int>(axes.size());
     std::map<std::string, std::size_t> index;
     for (std::size_t r = 1; r < rows.size(); ++r) {
-        const std::string name = specimen_column == absent ? std::string() : cell_of(rows[r], specimen_column);
+        const std::string name = specimen_column == no_column ? std::string() : cell_of(rows[r], specimen_column);
         const auto [entry, is_new] = index.try_emplace(name, result.specimens.size());
         if (is_new) result.specimens.emplace_back().name = name;
         LandmarkSpecimen& specimen = result.specimens[entry->second];
@@ -119,7 +119,7 @@ LandmarkSpecimens one_row_per_landmark(const std::vector<CsvRow>& rows, const st
         for (const std::size_t axis : axes) cells.push_back(cell_of(rows[r], axis));
         const std::string location = fmt::format("{}, line {}", where, rows[r].line);
         const std::string landmark =
-            name_column == absent ? std::to_string(specimen.positions.size() + 1) : cell_of(rows[r], name_column);
+            name_column == no_column ? std::to_string(specimen.positions.size() + 1) : cell_of(rows[r], name_column);
         specimen.landmarks.push_back(landmark);
         specimen.positions.push_back(point_of_words({cells.begin(), cells.end()}, location));
     }
@@ -135,10 +135,10 @@ LandmarkSpecimens read_specimen_table(const std::string& bytes, const std::strin
     for (std::size_t c = 0; c < rows.front().cells.size(); ++c)
         coordinates += coordinate_column(cell_of(rows.front(), c)) ? 1 : 0;
     if (coordinates >= 4) return one_row_per_specimen(rows, where);
-    const bool planar = column_named(rows.front(), {"z"}) == absent,
-               with_specimens = column_named(rows.front(), {"specimen", "individual", "object", "file", "image"}) != absent;
-    if (column_named(rows.front(), {"x"}) != absent && column_named(rows.front(), {"y"}) != absent &&
-        (planar || with_specimens || column_named(rows.front(), {"defined"}) == absent))
+    const bool planar = column_named(rows.front(), {"z"}) == no_column,
+               with_specimens = column_named(rows.front(), {"specimen", "individual", "object", "file", "image"}) != no_column;
+    if (column_named(rows.front(), {"x"}) != no_column && column_named(rows.front(), {"y"}) != no_column &&
+        (planar || with_specimens || column_named(rows.front(), {"defined"}) == no_column))
         return one_row_per_landmark(rows, where);
     // Tables of one specimen in other forms: without a header, or with the axes of an anatomical space.
     const LandmarkSet set = read_landmark_table(bytes, where, {});

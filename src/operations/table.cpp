@@ -18,14 +18,14 @@ std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make
 std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_edit(), make_relation_list(),
     make_relation_check(), make_relation_export();
 std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
-    make_measure_clay();
+    make_measure_clay(), make_measure_capacity(), make_measure_distance();
 std::unique_ptr<Operation> make_vocabulary_check(), make_vocabulary_show(), make_vocabulary_convert();
 std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_template_show(), make_template_learn(),
     make_template_classify(), make_template_sample(), make_template_propagate(), make_template_revolve();
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
-    make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
-std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
+    make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments(), make_study_shape();
+std::unique_ptr<Operation> make_import(), make_catalogue(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
     make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
 namespace {
