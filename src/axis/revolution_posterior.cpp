@@ -370,20 +370,28 @@ std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t
     }
     const double side = lip_height * wall_cells > wall_height * lip_cells ? 1 : -1;
     std::vector<std::size_t> members;
-    double inner = 1e300, outer = -1e300, top = -1e300, walls = -1e300, lowest_wall = 1e300;
+    double inner = 1e300, outer = -1e300, top = -1e300, walls = -1e300, lowest_wall = 1e300, lowest_lip = 1e300;
     for (std::size_t i = 0; i < radius.size(); ++i) {
         const double h = side * height[i], r = std::abs(radius[i]);
         if (model.cells()[i].sheet == sheet)
-            members.push_back(i), inner = std::min(inner, r), outer = std::max(outer, r), top = std::max(top, h);
+            members.push_back(i), inner = std::min(inner, r), outer = std::max(outer, r), top = std::max(top, h),
+                                  lowest_lip = std::min(lowest_lip, h);
         else if (model.sheets()[model.cells()[i].sheet].wall) walls = std::max(walls, h), lowest_wall = std::min(lowest_wall, h);
     }
     if (members.size() < 8 || outer - inner > 0.25 * outer || top < walls - 0.02 * (walls - lowest_wall)) return {};
-    // Rows of the lip by radius: their mean heights have the top.
-    constexpr int rows = 9;
+    // On a leaning wall the top is beyond the sheet of the lip: cells of its neighbours are used too.
+    const double margin = 0.35 * (outer - inner), from = inner - margin, width = outer - inner + 2 * margin;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < radius.size(); ++i)
+        if (model.sheets()[model.cells()[i].sheet].used && side * height[i] > lowest_lip - margin && std::abs(radius[i]) > from &&
+            std::abs(radius[i]) < from + width)
+            near.push_back(i);
+    // Mean heights of rows by radius have the top.
+    constexpr int rows = 13;
     std::array<double, rows> sum{}, count{};
-    for (const std::size_t i : members) {
+    for (const std::size_t i : near) {
         const auto row =
-            static_cast<std::size_t>(std::min(rows - 1.0, rows * (std::abs(radius[i]) - inner) / std::max(1e-12, outer - inner)));
+            static_cast<std::size_t>(std::clamp(rows * (std::abs(radius[i]) - from) / std::max(1e-12, width), 0.0, rows - 1.0));
         sum[row] += side * height[i], count[row] += 1;
     }
     const double most = *std::max_element(count.begin(), count.end());
@@ -396,9 +404,9 @@ std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t
     ring.rim = true;
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Vector3d b = Vector3d::Zero();
-    const double middle = (inner + outer) / 2, half = std::max(1e-12, (outer - inner) / 2);
+    const double middle = from + width / 2, half = std::max(1e-12, width / 2);
     double mean = 0;
-    for (const std::size_t i : members) {
+    for (const std::size_t i : near) {
         if (side * height[i] < best - depth) continue;
         ring.cells.push_back(i);
         const double x = (std::abs(radius[i]) - middle) / half;

@@ -87,7 +87,7 @@ public:
         for (const char* suffix : {"ZM", "Z", "M"})
             if (name.ends_with(suffix)) {
                 measured_ = std::string_view(suffix) == "M";
-                name.resize(name.size() - std::string_view(suffix).size());
+                name = name.substr(0, name.size() - std::string_view(suffix).size());
                 break;
             }
         if (name == "POINT" || name == "MULTIPOINT") target.kind = SceneTarget::Kind::points;
