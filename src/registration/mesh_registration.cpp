@@ -1,6 +1,7 @@
 #include "ostraka/registration/mesh_registration.h"
 
 #include "registration/grid_pose.h"
+#include "registration/pose_covariance.h"
 #include "registration/trimmed_registration.h"
 
 #include "ostraka/algebra/dense.h"
@@ -224,6 +225,12 @@ public:
             });
     }
 
+    /// The pairs that determine the pose, in the target's frame.
+    const std::vector<detail::PlanePair>& pairs_at(const Motion& pose) {
+        measure(pose);
+        return pairs_.pairs;
+    }
+
     /// The nearest compatible point of the other surface, as a pair in the target's frame.
     [[nodiscard]] std::optional<detail::PlanePair> partner(const AreaSample& sample, bool of_source, const Motion& pose,
                                                            const Motion& back) const {
@@ -277,6 +284,7 @@ constexpr double min_share = 0.96, min_close = 0.75;
 struct UnitPose {
     Motion pose;
     double residual = 0;
+    double corner_share = 1;  ///< share of the samples at corners of faces in the last refinement
 };
 
 class MeshRegistrar {
@@ -302,7 +310,7 @@ public:
         starts.emplace_back();  // may be the intended pose of a symmetric object
         for (const Motion& start : starts) {
             const detail::Registration registration = coarse.run(start, 20, 1e-2);
-            poses.push_back({registration.pose, registration.fit.residual});
+            poses.push_back({registration.pose, registration.fit.residual, 1});
         }
         sort(poses);
         const double best = poses.front().residual;
@@ -355,6 +363,14 @@ public:
         return agreement.share >= min_share && (fixed_tolerance_ > 0 || agreement.close >= min_close);
     }
 
+    [[nodiscard]] RegistrationUncertainty uncertainty(const UnitPose& pose) const {
+        UnitAligner aligner(a_, b_, {}, options_.scale, options_.samples, pose.corner_share);
+        RegistrationUncertainty result = detail::pose_uncertainty(aligner.pairs_at(pose.pose), options_.scale);
+        result.translation *= unit_;
+        result.placement *= unit_;
+        return result;
+    }
+
     /// Converts a pose in the unit frame to one between the files.
     [[nodiscard]] Motion in_files(const Motion& pose) const {
         Motion motion{pose.rotation, Vector3d::Zero(), pose.scale * a_.to_unit.scale * unit_};
@@ -375,7 +391,7 @@ private:
         UnitAligner fine(a_, b_, hand, options_.scale, options_.samples, corner_share);
         for (UnitPose& candidate : poses) {
             const detail::Registration refined = fine.run(candidate.pose, 60, 1e-5);
-            candidate = {refined.pose, refined.fit.residual};
+            candidate = {refined.pose, refined.fit.residual, corner_share};
         }
         sort(poses);
     }
@@ -419,8 +435,10 @@ void choose_pose(const MeshRegistrar& registrar, const std::vector<UnitPose>& po
     const auto by_angle = [](const UnitPose& a, const UnitPose& b) {
         return rotation_angle_between(a.pose, Motion()) < rotation_angle_between(b.pose, Motion()) - 0.1 * degree;
     };
-    const Motion best = std::min_element(equal.begin(), equal.end(), by_angle)->pose;
+    const UnitPose chosen = *std::min_element(equal.begin(), equal.end(), by_angle);
+    const Motion best = chosen.pose;
     result.motion = registrar.in_files(best);
+    result.uncertainty = registrar.uncertainty(chosen);
     result.agreement = registrar.judge(best, {}, &result.tolerance);
     std::vector<Motion> kept{best};
     for (const UnitPose& candidate : equal) {

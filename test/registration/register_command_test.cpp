@@ -1,4 +1,5 @@
 // mesh register, as people run it.
+#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/files/json.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
@@ -57,6 +58,38 @@ TEST_F(RegisterCommand, WritesTheMovedMeshAndTheMatrix) {
         EXPECT_LT((eigen(out.point(v)) - expected).norm(), 1e-9 * box_diagonal(hand));
         EXPECT_LT((eigen(out.point(v)) - eigen(hand.point(v))).norm(), 2e-3 * box_diagonal(hand));
     }
+}
+
+TEST_F(RegisterCommand, MovesAnnotationsAndReportsTheUncertainty) {
+    const Mesh from = read_mesh(file_path("moved.ply")).mesh;
+    AnnotationSet set;
+    set.unit = "m";
+    set.up = std::array<double, 3>{0, 0, 1};
+    ensure_root(set, from);
+    Annotation& part = set.annotations.emplace_back();
+    part.id = 4;
+    part.tag = "part";
+    part.faces = {0, 1, 2};
+    write_annotations(file_path("moved.ant.json"), {from, set}, file_path("moved.ply"), {});
+    const CommandResult result = run_command("mesh register " + file_path("moved.ply") + " " + file_path("hand.ply") + " " +
+                                             file_path("out.ply") + " --annotations " + file_path("moved.ant.json") +
+                                             " --annotations-out " + file_path("out.ant.json") + " --json");
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    const double uncertainty = report["result"]["rotationUncertainty"].GetDouble();
+    EXPECT_GT(uncertainty, 1e-5);
+    EXPECT_LT(uncertainty, 0.2);
+    EXPECT_LT(report["result"]["placementUncertainty"].GetDouble(), 2e-3 * box_diagonal(from) * 1000);
+    EXPECT_EQ(report["result"]["undetermined"].GetInt(), 0);
+    const Mesh out = read_mesh(file_path("out.ply")).mesh;
+    const AnnotationSet moved_set = read_annotations(file_path("out.ant.json"), out);
+    EXPECT_EQ(moved_set.unit, "mm");
+    EXPECT_EQ(moved_set.find(4)->faces, part.faces);
+    EXPECT_GT(std::abs((*moved_set.up)[2] - 1), 0.01);
+    EXPECT_EQ(run_command("mesh register " + file_path("moved.ply") + " " + file_path("hand.ply") + " " + file_path("out.ply") +
+                          " --annotations " + file_path("moved.ant.json"))
+                  .code,
+              2);
 }
 
 TEST_F(RegisterCommand, RefusesMirrorImagesAndOtherObjectsAndWritesNothing) {

@@ -37,14 +37,24 @@ struct SurfaceAgreement {
     double close = 0;    ///< share of the points within a third of the tolerance
 };
 
+/// Uncertainty of a registration: standard deviations, each of the whole quantity (root of the sum over the three axes).
+struct RegistrationUncertainty {
+    double rotation = 0;     ///< of the rotation, in radians
+    double translation = 0;  ///< of the target's centre of area, in the target's unit
+    double scale = 0;        ///< of the scale, as a fraction of the scale; 0 if the scale was given
+    double placement = 0;    ///< of the points of the surface: root mean square displacement, in the target's unit
+    int undetermined = 0;    ///< number of independent motions that the surfaces do not determine; they are not included
+};
+
 /// Result of `register_mesh`.
 struct MeshRegistration {
     RegistrationVerdict verdict = RegistrationVerdict::different;  ///< whether the meshes show the same object
-    Motion motion;               ///< maps the source onto the target; the best motion found, whatever the verdict
-    SurfaceAgreement agreement;  ///< distances between the surfaces under `motion`
-    double tolerance = 0;        ///< max distance of equal surfaces, in the target's unit
-    SurfaceAgreement mirrored;   ///< distances under the best motion of the source's mirror image
-    std::vector<Motion> others;  ///< other motions that fit as well, for a symmetric object; at most 7
+    Motion motion;                        ///< maps the source onto the target; the best motion found, whatever the verdict
+    SurfaceAgreement agreement;           ///< distances between the surfaces under `motion`
+    RegistrationUncertainty uncertainty;  ///< of `motion`
+    double tolerance = 0;                 ///< max distance of equal surfaces, in the target's unit
+    SurfaceAgreement mirrored;            ///< distances under the best motion of the source's mirror image
+    std::vector<Motion> others;           ///< other motions that fit as well, for a symmetric object; at most 7
     /// Motions under which the target's shape does not change, in the target's frame: e.g. of a vessel about its axis.
     SlippableMotions slippable;
 };
@@ -55,6 +65,9 @@ struct MeshRegistration {
 /// mesh has more weight, by the area of its faces, so that the offsets of the flat faces of both meshes from the curved surface
 /// cancel in the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
 /// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is returned.
+/// The uncertainty follows from the equations of the last step (point to plane), with the residuals of one part of the surface
+/// taken as correlated: H^-1 (sum over parts of g g^T) H^-1 with the gradient g of each part (Liang and Zeger 1986), or from
+/// independent residuals if that is larger.
 /// The result is the same for any number of threads; O(n) besides a search of constant size. Throws Error (usage) for options out
 /// of range, (input) for a mesh without area, or for a flat mesh, which only its border would constrain.
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
