@@ -9,6 +9,7 @@
 #include <cairo-svg.h>
 
 #include <cmath>
+#include <cstring>
 
 namespace ostraka::figures {
 
@@ -117,6 +118,25 @@ void Sheet::rectangle(const Box& box, const Rgb& colour) {
 void Sheet::frame(const Box& box, const Rgb& colour, double width) {
     cairo_rectangle(context_.get(), box.left, box.top, box.right - box.left, box.bottom - box.top);
     stroke(colour, width, false);
+}
+
+void Sheet::image(const Picture& picture, const Box& box) {
+    if (picture.width < 1 || picture.height < 1) return;
+    const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> pixels(
+        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, picture.width, picture.height), &cairo_surface_destroy);
+    unsigned char* rows = cairo_image_surface_get_data(pixels.get());
+    if (rows == nullptr) throw Error(ErrorKind::failure, "plot", "there is no memory for a picture");
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(pixels.get()));
+    const auto columns = static_cast<std::size_t>(picture.width);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(picture.height); ++row)
+        std::memcpy(rows + row * stride, picture.argb.data() + row * columns, 4 * columns);
+    cairo_surface_mark_dirty(pixels.get());
+    cairo_save(context_.get());
+    cairo_translate(context_.get(), box.left, box.top);
+    cairo_scale(context_.get(), (box.right - box.left) / picture.width, (box.bottom - box.top) / picture.height);
+    cairo_set_source_surface(context_.get(), pixels.get(), 0, 0);
+    cairo_paint(context_.get());
+    cairo_restore(context_.get());
 }
 
 void Sheet::dot(double x, double y, const Rgb& colour, double radius) {

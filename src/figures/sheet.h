@@ -52,6 +52,8 @@ public:
     void rectangle(const Box& box, const Rgb& colour);
     /// Draws the border of a rectangle.
     void frame(const Box& box, const Rgb& colour, double width);
+    /// Draws a picture, scaled to the box.
+    void image(const Picture& picture, const Box& box);
     /// Draws a filled circle.
     void dot(double x, double y, const Rgb& colour, double radius = 3);
     /// Draws mark number `form`, each with its own shape: dot, square, triangle, rhomb, cross, ring and others. ... ...

@@ -68,6 +68,7 @@ const std::vector<Step>& steps() {
         {"measure describe", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "described.ant.json"})"},
         {"measure map", R"({"mesh": "pot.ply", "output": "thickness.npy", "of": "thickness"})"},
         {"measure clay", R"({"mesh": "pot.ply"})"},
+        {"measure distance", R"({"mesh": "pot.ply", "reference": "other.ply", "output": "distance.npy"})"},
         {"relation extract", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "pot.graph.json"})"},
         {"relation check", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "graph": "pot.graph.json"})"},
         {"cage make", R"({"mesh": "coarse.ply", "output": "cage.ply", "vertices": 60})"},
