@@ -18,7 +18,7 @@ std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make
 std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_edit(), make_relation_list(),
     make_relation_check(), make_relation_export();
 std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
-    make_measure_clay();
+    make_measure_clay(), make_measure_distance();
 std::unique_ptr<Operation> make_vocabulary_check(), make_vocabulary_show(), make_vocabulary_convert();
 std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_template_show(), make_template_learn(),
     make_template_classify(), make_template_sample(), make_template_propagate(), make_template_revolve();
@@ -37,7 +37,7 @@ constexpr OperationEntry entries[]{
     {"mesh refine", "increase the number of vertices, with annotations, labels and colours transferred", make_mesh_refine, 2},
     {"mesh remesh", "replace the mesh by new, nearly equilateral triangles of the same surface, with texture or colours baked from the old mesh", make_mesh_remesh, 2},
     {"mesh bake", "bake the texture, colours, occlusion, curvature or relief of a mesh into an image or the vertices of another mesh of the same object", make_mesh_bake},
-    {"mesh register", "register a mesh to another mesh of the same object by rotation, translation and scale; exit code 3, and nothing written, if the meshes show different objects", make_mesh_register},
+    {"mesh register", "register a mesh to another mesh of the same object by rotation, translation and scale; exit code 3, and nothing written, if the meshes show different objects", make_mesh_register, 2},
     {"mesh move", "translate, rotate, scale or mirror a mesh, or change its unit or axes, together with annotations, relationships and cage", make_mesh_move},
     {"mesh extract", "cut annotated parts out of an object, and keep the annotations on these parts", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment with known pose", make_mesh_break},
@@ -71,8 +71,9 @@ constexpr OperationEntry entries[]{
     {"measure take", "take a measure of a mesh or an annotation with a ruler, a tape or bounding planes", make_measure_take},
     {"measure describe", "compute descriptors of annotations: sizes, box, centroid, volume, curvature, thickness, and statistics of maps", make_measure_describe},
     {"measure refresh", "recompute the measures and descriptors of all annotations, with uncertainties; exit code 3 if some cannot be computed", make_measure_refresh},
-    {"measure map", "compute curvature, thickness or geodesic distance at every vertex or face, and write the values (a map)", make_measure_map},
+    {"measure map", "compute curvature, thickness, geodesic distance, volumes in balls of several radii, ambient occlusion or sky view at every vertex (thickness also at faces), and write the values (a map)", make_measure_map},
     {"measure clay", "compute bounds of the volume of clay of an object: with an interior that was not scanned solid, and hollow", make_measure_clay},
+    {"measure distance", "measure the signed distance between two registered scans of an object: statistics, tolerances, significance against the noise of both, a map, a picture", make_measure_distance},
     {"vocabulary check", "check a vocabulary for defects; exit code 3 if there are any", make_vocabulary_check},
     {"vocabulary show", "show the concepts of a vocabulary as a tree, with the attributes that each concept permits", make_vocabulary_show},
     {"vocabulary convert", "convert a vocabulary between Ostraka's format and SKOS", make_vocabulary_convert},

@@ -34,11 +34,15 @@ double scattered_angle(std::uint64_t seed) {
 
 }  // namespace
 
-Occlusion::Occlusion(const Mesh& mesh, int rays, double distance)
+Occlusion::Occlusion(const Mesh& mesh, int rays, double distance, Weighting weighting)
     : device_(nullptr, &rtcReleaseDevice), scene_(nullptr, &rtcReleaseScene) {
-    // Hammersley's points on the disc: projected onto the hemisphere their density is proportional to the cosine (Malley).
-    for (int i = 0; i < rays; ++i)
-        directions_.push_back({std::sqrt((i + 0.5) / rays), 2 * pi * reversed_fraction(static_cast<std::uint32_t>(i))});
+    // Hammersley's points on the disc: projected onto the hemisphere their density is proportional to the cosine (Malley); points
+    // whose heights are evenly spread have an even density (Archimedes).
+    for (int i = 0; i < rays; ++i) {
+        const double share = (i + 0.5) / rays;
+        const double radius = std::sqrt(weighting == Weighting::cosine ? share : 1 - share * share);
+        directions_.push_back({radius, 2 * pi * reversed_fraction(static_cast<std::uint32_t>(i))});
+    }
     const CGAL::Bbox_3 box = bounding_box(mesh);
     middle_ = {box.xmin() / 2 + box.xmax() / 2, box.ymin() / 2 + box.ymax() / 2, box.zmin() / 2 + box.zmax() / 2};
     const double diagonal = box_diagonal(mesh);
@@ -65,11 +69,11 @@ Occlusion::Occlusion(const Mesh& mesh, int rays, double distance)
     rtcCommitScene(scene_.get());
 }
 
-float Occlusion::open_share(const Point& point, const Vector& normal, std::uint64_t seed) const {
-    const Vector axis = unit_vector(normal);
+float Occlusion::open_share(const Point& point, const Vector& normal, const Vector& up, std::uint64_t seed) const {
+    const Vector axis = unit_vector(up);
     const Vector other = std::abs(axis.x()) < 0.6 ? Vector(1, 0, 0) : Vector(0, 1, 0);
     const Vector first = unit_vector(CGAL::cross_product(other, axis)), second = CGAL::cross_product(axis, first);
-    const Vector start = (point - middle_) / unit_length_ + start_above * axis;
+    const Vector start = (point - middle_) / unit_length_ + start_above * unit_vector(normal);
     const double turn = scattered_angle(seed);
     int open = 0;
     for (const auto& [radius, angle] : directions_) {
