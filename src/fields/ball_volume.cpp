@@ -17,9 +17,9 @@ namespace ostraka {
 namespace {
 
 /// A cluster is summed as a whole where its radius is below this share of its distance.
-constexpr double max_cluster_ratio = 0.15;
+constexpr double max_cluster_ratio = 0.1;
 /// Faces farther away than this multiple of their radius are summed as points.
-constexpr double far_face_ratio = 5;
+constexpr double far_face_ratio = 8;
 constexpr std::uint32_t cluster_leaf_size = 4;
 
 /// Faces summed as one: a face, or a node of the tree.
