@@ -305,8 +305,6 @@ std::vector<std::string> MeshDiagnosis::defects() const {
     add(misoriented_edges, "inconsistently oriented edge", "inconsistently oriented edges");
     add(nonorientable_components, "component that cannot be oriented", "components that cannot be oriented");
     add(inside_out_components, "component inside out", "components inside out");
-    add(turned_cavities, "component inside another that is oriented outwards",
-        "components inside others that are oriented outwards");
     add(self_intersections, "pair of intersecting triangles", "pairs of intersecting triangles");
     if (self_intersections_checked && !self_intersections_complete)
         descriptions.emplace_back("the search for intersecting triangles was given up, there may be more");
