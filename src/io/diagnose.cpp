@@ -260,7 +260,17 @@ void measure(const TriangleSoup& soup, const std::vector<Index>& component, cons
 
 /// Roles of the closed components: bodies and cavities, in the right orientation or not.
 void find_roles(const TriangleSoup& soup, MeshDiagnosis& diagnosis) {
-    diagnosis.solid = solid_bodies(soup);
+    if (diagnosis.components.size() == 1) {
+        // One component needs no comparison with others.
+        const auto& part = diagnosis.components.front();
+        SolidBodies& solid = diagnosis.solid;
+        const bool closed = part.closed() && part.misoriented_edges == 0 && part.orientable;
+        // The sign of a volume below its rounding error is meaningless.
+        const bool inward = closed && part.volume < -1e-13 * part.area * diagnosis.diagonal;
+        solid.closed = closed ? 1 : 0, solid.inside_out = inward ? 1 : 0;
+        solid.signed_volume = closed ? part.volume : 0, solid.volume = std::abs(solid.signed_volume);
+        solid.roles = {inward ? SolidBodies::Role::inside_out : closed ? SolidBodies::Role::body : SolidBodies::Role::open};
+    } else diagnosis.solid = solid_bodies(soup);
     for (Index c = 0; c < diagnosis.components.size(); ++c) {
         auto& part = diagnosis.components[c];
         part.inside_out = diagnosis.solid.roles[c] == SolidBodies::Role::inside_out;
@@ -305,8 +315,6 @@ std::vector<std::string> MeshDiagnosis::defects() const {
     add(misoriented_edges, "inconsistently oriented edge", "inconsistently oriented edges");
     add(nonorientable_components, "component that cannot be oriented", "components that cannot be oriented");
     add(inside_out_components, "component inside out", "components inside out");
-    add(turned_cavities, "component inside another that is oriented outwards",
-        "components inside others that are oriented outwards");
     add(self_intersections, "pair of intersecting triangles", "pairs of intersecting triangles");
     if (self_intersections_checked && !self_intersections_complete)
         descriptions.emplace_back("the search for intersecting triangles was given up, there may be more");

@@ -170,6 +170,12 @@ void Flood::trace_loops(Waterline& line) const {
         line.loops.push_back(loop);
         outlines.push_back(std::move(outline));
     }
+    join_sides(line, std::move(outlines), ends);
+}
+
+/// Sorts and nests the loops, and joins sides and regions that touch. `ends`: pieces of open contours with a point of each.
+void Flood::join_sides(Waterline& line, std::vector<Outline> outlines,
+                       const std::vector<std::pair<Index, Eigen::Vector2d>>& ends) const {
     std::vector<std::size_t> order(line.loops.size());
     std::iota(order.begin(), order.end(), 0U);
     std::stable_sort(order.begin(), order.end(),

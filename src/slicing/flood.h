@@ -7,6 +7,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace ostraka::detail {
@@ -90,6 +91,8 @@ public:
 
 private:
     void trace_loops(Waterline& line) const;
+    void join_sides(Waterline& line, std::vector<std::vector<Eigen::Vector2d>> outlines,
+                    const std::vector<std::pair<Index, Eigen::Vector2d>>& ends) const;
     void nest_loops(Waterline& line, const std::vector<std::vector<Eigen::Vector2d>>& outlines) const;
     [[nodiscard]] static Index region_at(const Waterline& line, const std::vector<std::vector<Eigen::Vector2d>>& outlines,
                                          const Eigen::Vector2d& place);

@@ -90,7 +90,8 @@ struct MeshDiagnosis {
     /// Signed sum over the triangles; equal to the volume of the solid only if the mesh is closed and oriented outwards, with
     /// cavities oriented inwards, and no bodies overlap.
     double volume = 0;
-    SolidBodies solid;  ///< the closed components as one solid, with the volume of the solid
+    /// The closed components as one solid, with the volume of the solid; without centroid if there is one component only.
+    SolidBodies solid;
     double shortest_edge = 0, mean_edge = 0, longest_edge = 0;  ///< lengths of edges
     CGAL::Bbox_3 box;
     double diagonal = 0;  ///< diagonal of the bounding box of the vertices with triangles
