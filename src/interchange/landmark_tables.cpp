@@ -1,5 +1,6 @@
 // Landmarks in line-based formats: CSV, tps, fcsv.
 #include "interchange/landmark_formats.h"
+#include "interchange/specimen_formats.h"
 #include "interchange/text.h"
 
 #include "ostraka/core/error.h"
@@ -126,75 +127,6 @@ std::string write_landmark_table(const LandmarkSet& set) {
 
 namespace {
 
-struct TpsSpecimen {
-    std::vector<std::optional<std::array<double, 3>>> points;
-    std::vector<std::size_t> lines;  ///< line numbers of the points
-    std::string id, comment;
-    double scale = 1;
-};
-
-/// nullopt for a missing landmark
-std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& location) {
-    std::array<double, 3> point{};
-    std::size_t count = 0, missing = 0;
-    const auto refuse = [&] {
-        fail_input(location, "does not contain three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
-    };
-    for (const std::string_view word : split_words(line, " \t,")) {
-        const auto value = number_of(word);
-        const bool no_value = lower_case(word) == "na" || lower_case(word) == "nan";
-        if ((!value && !no_value) || count == 3) refuse();
-        missing += no_value ? 1 : 0;
-        point[count++] = value.value_or(0);
-    }
-    if (count != 3) refuse();
-    return missing > 0 ? std::nullopt : std::optional(point);
-}
-
-/// LM3=count, one landmark per line, then keywords; a file may contain many specimens.
-std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::string& where) {
-    std::vector<TpsSpecimen> specimens;
-    std::size_t expected = 0, number = 0;
-    for (std::size_t i = 0; i < bytes.size();) {
-        const std::string_view line = trimmed(line_at(bytes, i));
-        ++number;
-        if (line.empty()) continue;
-        const std::string location = at_line(where, number);
-        if (expected > 0) {
-            specimens.back().points.push_back(tps_point(line, location));
-            specimens.back().lines.push_back(number);
-            --expected;
-            continue;
-        }
-        const std::size_t equals = line.find('=');
-        if (equals == std::string_view::npos)
-            fail_input(location, "is not KEYWORD=value", "the count after LM3= may be too small");
-        const std::string key = lower_case(trimmed(line.substr(0, equals)));
-        const std::string_view value = trimmed(line.substr(equals + 1));
-        if (key == "lm") fail_input(location, "contains two-dimensional landmarks", "give a file with LM3=");
-        if (key == "lm3") {
-            const auto count = parse_int(value);
-            if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
-                fail_input(location, "the number of landmarks is invalid or exceeds the file", "correct LM3=");
-            specimens.emplace_back();
-            expected = static_cast<std::size_t>(*count);
-        } else if (specimens.empty()) {
-            fail_input(location, "precedes the first LM3=", "begin each specimen with LM3=count");
-        } else if (key == "id") {
-            specimens.back().id = value;
-        } else if (key == "comment") {
-            specimens.back().comment = value;
-        } else if (key == "scale") {
-            const auto scale = number_of(value);
-            if (!scale || !(*scale > 0)) fail_input(location, "the scale is not a positive number", "correct SCALE=");
-            specimens.back().scale = *scale;
-        }
-    }
-    if (expected > 0) fail_input(where, counted(expected, "landmark") + " fewer than LM3= states", "the file may be cut off");
-    if (specimens.empty()) fail_input(where, "contains no LM3=", "give a tps file of three-dimensional landmarks");
-    return specimens;
-}
-
 /// The only specimen, or the one requested by its ID or number.
 const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, const std::string& requested,
                                    const std::string& where) {
@@ -209,25 +141,14 @@ const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, co
                "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
 }
 
-/// Our own files store the names in the comment, since the format has no field for them; empty for any other comment.
-std::vector<std::string> tps_names(const TpsSpecimen& specimen, const std::string& where) {
-    std::vector<std::string> names;
-    try {
-        const Json comment = parse_json(specimen.comment.empty() ? "null" : specimen.comment, where);
-        if (const auto list = list_in(comment, "names"); list.Size() == specimen.points.size())
-            for (const auto& name : list) names.push_back(name.IsString() ? text_of(name) : std::string());
-    } catch (const Error&) {
-        names.clear();
-    }
-    return names;
-}
-
 }  // namespace
 
 // tps (Rohlf).
 LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     const std::vector<TpsSpecimen> specimens = tps_specimens(bytes, where);
     const TpsSpecimen& specimen = chosen_specimen(specimens, options.specimen, where);
+    if (specimen.dimension != 3)
+        fail_input(where, "contains two-dimensional landmarks", "give a file with LM3=; 'study landmarks' reads both");
     const std::vector<std::string> names = tps_names(specimen, where);
     LandmarkSet set;
     std::size_t missing = 0;
@@ -243,6 +164,17 @@ LandmarkSet read_tps(const std::string& bytes, const std::string& where, const L
         set.landmarks.push_back(std::move(landmark));
     }
     if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
+    for (std::size_t c = 0; c < specimen.curves.size(); ++c) {
+        LandmarkCurve curve{fmt::format("curve {}", c + 1), false, {}, {}};
+        for (const auto& point : specimen.curves[c]) {
+            if (!point) continue;
+            std::array<double, 3> position = *point;
+            for (double& x : position) x *= specimen.scale;
+            check_position(position, where);
+            curve.points.push_back(position);
+        }
+        if (curve.points.size() > 1) set.curves.push_back(std::move(curve));
+    }
     if (names.empty() && !set.landmarks.empty()) set.notes.emplace_back("tps stores no landmark names; they are numbered");
     return set;
 }
