@@ -39,10 +39,28 @@ struct BestRotation {
     Eigen::Matrix3d rotation;
     double trace = 0;
 };
-BestRotation best_rotation(const Landmarks& from, const Landmarks& to, bool reflection) {
+BestRotation best_planar_rotation(const Landmarks& from, const Landmarks& to, bool reflection) {
+    const Eigen::Matrix2d a = from.leftCols<2>().transpose() * to.leftCols<2>();
+    // Of all rotations R(t): trace(R A) = c cos t + s sin t; of all reflections likewise with y negated.
+    const double c = a(0, 0) + a(1, 1), s = a(0, 1) - a(1, 0), mirrored_c = a(0, 0) - a(1, 1), mirrored_s = a(0, 1) + a(1, 0);
+    BestRotation best;
+    best.rotation.setIdentity();
+    const double z = from.col(2).dot(to.col(2)), turn = std::hypot(c, s), mirrored_turn = std::hypot(mirrored_c, mirrored_s);
+    best.trace = turn + z;
+    if (reflection && mirrored_turn > turn) {
+        best.trace = mirrored_turn + z;
+        const double cosine = mirrored_c / mirrored_turn, sine = mirrored_s / mirrored_turn;
+        best.rotation.topLeftCorner<2, 2>() << cosine, sine, sine, -cosine;
+    } else if (turn > 0) {
+        best.rotation.topLeftCorner<2, 2>() << c / turn, -s / turn, s / turn, c / turn;
+    }
+    return best;
+}
+BestRotation best_rotation(const Landmarks& from, const Landmarks& to, const ProcrustesOptions& options) {
+    if (options.planar) return best_planar_rotation(from, to, options.reflection);
     const Svd3 svd(from.transpose() * to);
     Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-    if (!reflection && (svd.matrixU().determinant() < 0) != (svd.matrixV().determinant() < 0)) signs[2] = -1;
+    if (!options.reflection && (svd.matrixU().determinant() < 0) != (svd.matrixV().determinant() < 0)) signs[2] = -1;
     return {svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), svd.singularValues().dot(signs)};
 }
 
@@ -64,7 +82,7 @@ SimilarityMap procrustes(const Landmarks& from, const Landmarks& to, const Procr
     // Normalised to size 1, so that products neither overflow nor underflow.
     const double from_size = centroid_size(from), to_size = centroid_size(to);
     const Landmarks x = (from.rowwise() - a) / from_size, y = (to.rowwise() - b) / to_size;
-    const BestRotation best = best_rotation(x, y, options.reflection);
+    const BestRotation best = best_rotation(x, y, options);
     SimilarityMap map;
     map.rotation = best.rotation;
     map.scale = options.scaling ? best.trace * to_size / from_size : 1;
@@ -100,7 +118,7 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
         check_cancelled();
         ++result.iterations;
         parallel_for(n, [&](std::size_t i) {
-            rotations[i] = best_rotation(centred[i], result.mean, options.reflection).rotation;
+            rotations[i] = best_rotation(centred[i], result.mean, options).rotation;
             result.aligned[i] = centred[i] * rotations[i].transpose();
         });
         Landmarks mean = Landmarks::Zero(result.mean.rows(), 3);
@@ -129,6 +147,12 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
         result.maps.push_back(map);
     }
     return result;
+}
+
+bool are_planar(const std::vector<Landmarks>& configurations) {
+    return !configurations.empty() && std::all_of(configurations.begin(), configurations.end(), [](const Landmarks& x) {
+        return x.rows() > 0 && (x.col(2).array() == 0).all();
+    });
 }
 
 Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {

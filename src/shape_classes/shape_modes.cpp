@@ -65,6 +65,7 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
     if (members.empty()) fail_input("class", "has no member", "give at least one member");
     ProcrustesOptions options_used;
     options_used.scaling = !options.sizes;
+    options_used.planar = are_planar(members) && are_planar({frame});
     const GeneralisedProcrustes aligned = generalised_procrustes(members, options_used);
     ShapeModes result;
     result.sizes = options.sizes;
@@ -74,7 +75,9 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
     const double unit = options.sizes ? 1 : result.mean_size;
     MatrixXd rows = unit * shape_rows(aligned.aligned);
     RowVectorXd mean = rows.colwise().mean();
-    const Eigen::Matrix3d rotation = procrustes(shape_from(mean), frame).rotation;
+    ProcrustesOptions turn_only;
+    turn_only.planar = options_used.planar;
+    const Eigen::Matrix3d rotation = procrustes(shape_from(mean), frame, turn_only).rotation;
     const auto rotated = [&](const RowVectorXd& row) { return row_of(shape_from(row) * rotation.transpose()); };
     for (Eigen::Index i = 0; i < n; ++i) rows.row(i) = rotated(rows.row(i));
     mean = rotated(mean);
@@ -131,7 +134,9 @@ ShapeCoordinates coordinates_in(const ShapeModes& modes, const Landmarks& shape)
         scale = modes.mean_size / result.centroid_size;
         sized *= scale;
     }
-    result.map = procrustes(sized, modes.mean);
+    ProcrustesOptions options;
+    options.planar = are_planar({shape, modes.mean});
+    result.map = procrustes(sized, modes.mean, options);
     const RowVectorXd deviation = row_of(result.map.apply(sized)) - row_of(modes.mean);
     result.map.scale *= scale;
     RowVectorXd unexplained = deviation;

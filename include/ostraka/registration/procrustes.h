@@ -25,8 +25,11 @@ struct SimilarityMap {
 };
 
 struct ProcrustesOptions {
-    bool scaling = false;                 ///< true: scale all configurations to the same size
-    bool reflection = false;              ///< true: treat mirror images as the same shape
+    bool scaling = false;     ///< true: scale all configurations to the same size
+    bool reflection = false;  ///< true: treat mirror images as the same shape
+    /// True: rotations are about the z axis only, for two-dimensional landmarks (z is 0), which a half turn in space would
+    /// mirror.
+    bool planar = false;
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
@@ -53,6 +56,9 @@ struct GeneralisedProcrustes {
 /// `scaling` sizes are kept (partial, size-and-shape); with `scaling` all configurations get centroid size 1 (shape). Throws
 /// Error (input) if there is no configuration, and as `procrustes`. Time: O(iterations n k).
 GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& configurations, const ProcrustesOptions& options = {});
+
+/// Whether all landmarks have the z coordinate 0, as two-dimensional landmarks do.
+bool are_planar(const std::vector<Landmarks>& configurations);
 
 /// Configurations as rows of a matrix for principal component analysis: each row has x, y, z of the first landmark, then of the
 /// second ...
