@@ -6,6 +6,7 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/files/csv.h"
 #include "ostraka/files/safe_path.h"
+#include "ostraka/interchange/specimens.h"
 
 #include <fmt/core.h>
 
@@ -60,9 +61,25 @@ bool is_object_file(const Path& file) {
                                    std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end());
 }
 
-Collection from_folder(const Path& folder) {
+/// The name without the ending of a landmark file; empty for other files, and for tables that hold no landmarks.
+std::string landmark_stem(const Path& folder, const std::string& name) {
+    if (!is_specimen_file(name)) return {};
+    const std::string ending = extension(name);
+    if (ending == ".csv" || ending == ".txt") {
+        try {
+            static_cast<void>(read_specimens(folder / name));
+        } catch (const Error&) {
+            return {};
+        }
+    }
+    const std::string stem = Path(name).stem().string();
+    return ending == ".json" ? Path(stem).stem().string() : stem;
+}
+
+Collection from_folder(const Path& folder, bool landmark_files) {
     std::map<std::string, std::vector<Path>> meshes;
     std::map<std::string, Path> markups;
+    std::vector<std::pair<std::string, Path>> further_landmarks;
     std::set<std::string> annotations;
     Collection collection;
     std::vector<std::string> unreadable;
@@ -75,10 +92,18 @@ Collection from_folder(const Path& folder) {
             continue;
         }
         if (name.ends_with(markup_ending)) markups[name.substr(0, name.size() - std::string(markup_ending).size())] = file;
+        else if (const std::string stem = landmark_files ? landmark_stem(folder, name) : std::string(); !stem.empty())
+            further_landmarks.emplace_back(stem, file);
         else if (name.ends_with(".ant.json")) annotations.insert(name);
         else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end())
             meshes[file.stem().string()].push_back(file);
     }
+    std::sort(further_landmarks.begin(), further_landmarks.end());
+    for (const auto& [stem, file] : further_landmarks)
+        if (!markups.emplace(stem, file).second)
+            collection.notes.push_back(fmt::format("'{}' is not read: '{}' has the landmarks of this object",
+                                                   printable(file.filename().string(), 60),
+                                                   printable(markups.at(stem).filename().string(), 60)));
     for (const std::string& name : unreadable)
         if (is_object_file(folder / name))
             collection.left_out.emplace_back(printable(name, 60), "is not a readable file (check whether it is a broken link)");
@@ -169,13 +194,32 @@ void check_new_collection(const Path& folder) {
         "name a new or empty folder, so that synthetic objects are not mixed with others");
 }
 
-Collection read_collection(const Path& folder_or_file, const Share& share) {
+namespace {
+
+/// A landmark file as the only object of a collection.
+Collection from_landmark_file(const Path& file) {
+    CollectionObject object;
+    object.landmarks = file;
+    object.name = file.stem().string();
+    if (file.string().ends_with(markup_ending)) object.name = Path(object.name).stem().string();
+    if (!is_name(object.name)) object.name = "specimens";
+    Collection collection;
+    collection.objects.push_back(std::move(object));
+    return collection;
+}
+
+Collection read_any(const Path& folder_or_file, const Share& share, bool landmark_files) {
     const std::string where = folder_or_file.string();
     const bool folder = is_folder(folder_or_file);
     if (!folder && !file_exists(folder_or_file)) fail_input(where, "the folder or file does not exist", "check the name");
-    if (!folder && extension(folder_or_file) != ".json")
-        fail_input(where, "is not a collection", "name a folder of meshes, or a file *.study.json");
-    Collection collection = folder ? from_folder(folder_or_file) : from_file(folder_or_file);
+    const bool landmarks = !folder && landmark_files && is_specimen_file(folder_or_file);
+    if (!folder && !landmarks && extension(folder_or_file) != ".json")
+        fail_input(where, "is not a collection",
+                   landmark_files ? "name a folder, a landmark file, or a file *.study.json"
+                                  : "name a folder of meshes, or a file *.study.json");
+    Collection collection = folder      ? from_folder(folder_or_file, landmark_files)
+                            : landmarks ? from_landmark_file(folder_or_file)
+                                        : from_file(folder_or_file);
     if (collection.objects.empty() && !collection.left_out.empty())
         fail_input(
             where, "none of its files is a valid object",
@@ -195,6 +239,14 @@ Collection read_collection(const Path& folder_or_file, const Share& share) {
     });
     note_copies(collection);
     return collection;
+}
+
+}  // namespace
+
+Collection read_collection(const Path& folder_or_file, const Share& share) { return read_any(folder_or_file, share, false); }
+
+Collection read_landmark_collection(const Path& folder_or_file, const Share& share) {
+    return read_any(folder_or_file, share, true);
 }
 
 std::map<std::string, std::string> read_labels(const Path& file, const std::string& column) {

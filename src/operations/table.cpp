@@ -24,7 +24,7 @@ std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_tem
     make_template_classify(), make_template_sample(), make_template_propagate(), make_template_revolve();
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
-    make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
+    make_study_landmarks(), make_study_shape(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
 std::unique_ptr<Operation> make_import(), make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
     make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
@@ -79,7 +79,7 @@ constexpr OperationEntry entries[]{
     {"template pack", "write one file that lists the files of a template, after a check of all files together; exit code 3, and nothing written, if the files are inconsistent", make_template_pack},
     {"template check", "check all files of a template together; exit code 3 if there are defects", make_template_check},
     {"template show", "show the contents of a template and its defects", make_template_show},
-    {"template learn", "learn a class from its members: ranges of measures, mean shape, modes of variation, archetype, thresholds", make_template_learn, 2},
+    {"template learn", "learn a class from its members: ranges of measures, mean shape, modes of variation, archetype, thresholds", make_template_learn, 3},
     {"template classify", "report the class of each object, and the proportions, relations or distances that contradict a class (exit code 3: an object belongs to no class, or is undecided)", make_template_classify, 2},
     {"template sample", "sample new members of a class that satisfy the constraints of the class (exit code 3: fewer members than requested)", make_template_sample},
     {"template propagate", "fit a template to members of its class and transfer its annotations to the members (exit code 3: annotations are lost, or the template does not fit a member)", make_template_propagate, 2},
@@ -92,7 +92,8 @@ constexpr OperationEntry entries[]{
     {"study make proportions", "make synthetic annotated statuettes, some proportions of which are fixed, and a file of measure definitions", make_study_make_proportions},
     {"study make moulds", "make synthetic heads of figurines cast from a few moulds; each cast is worn, deformed and scanned separately", make_study_make_moulds, 2},
     {"study make technique", "make synthetic statuettes, wheel-made and hand-made, with their annotations", make_study_make_technique},
-    {"study landmarks", "compute a generalised Procrustes analysis of the landmarks of a collection: mean shape, sizes, principal components", make_study_landmarks},
+    {"study landmarks", "compute a generalised Procrustes analysis of the landmarks of a collection: mean shape, sizes, principal components, doubtful specimens", make_study_landmarks, 2},
+    {"study shape", "test what the shape of landmarks depends on: Procrustes analysis of variance, allometry, symmetry, error of measurement", make_study_shape},
     {"study proportions", "find ratios of measures that are fixed in a collection (or a table of measures, .csv); exit code 3 if no ratio is fixed", make_study_proportions},
     {"study moulds", "group heads by the mould from which they were cast", make_study_moulds},
     {"study technique", "classify bodies as wheel-made or hand-made from their lower slices", make_study_technique},

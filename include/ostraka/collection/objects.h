@@ -18,7 +18,7 @@ struct CollectionObject {
     std::string name;   ///< unique within the collection; valid as a file name
     Path mesh;          ///< mesh file; empty if the object has only landmarks
     Path annotations;   ///< annotation file; empty if the object has no annotations
-    Path landmarks;     ///< 3D Slicer markups (.mrk.json); empty if the object has no landmarks
+    Path landmarks;     ///< landmark file (.mrk.json, or another format); empty if the object has no landmarks
     std::string unit;   ///< unit of the coordinates; empty if the collection does not give it
     std::string label;  ///< known class label; empty if unknown
     /// SHA-256 over the contents of the object's files; empty if a file cannot be read, and for objects outside the shard.
@@ -46,6 +46,12 @@ void check_new_collection(const Path& folder);
 /// folder nor a study file, if the collection has no objects, or if two objects have the same name. A missing or damaged file is
 /// reported only by the work on that object.
 Collection read_collection(const Path& folder_or_file, const Share& share = {});
+
+/// The same for a study of landmarks: landmark files of every format (interchange/specimens.h) belong to the objects of a folder
+/// or form objects of their own, also tables (.csv, .txt) with landmarks of at least one specimen; if an object has several
+/// landmark files, the first in the order .mrk.json, then by name counts, and a note names the others. A single landmark file is
+/// a collection of one object, whose file may hold many specimens.
+Collection read_landmark_collection(const Path& folder_or_file, const Share& share = {});
 
 /// Reads the map from object names to labels from a CSV file whose first row names the columns: "name" and `column` (empty:
 /// "label"). Throws Error (input) for a missing column, a duplicate name or an empty table.

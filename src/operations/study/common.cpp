@@ -33,10 +33,11 @@ void StudyFiles::check() const {
     if (!truth_ && !own_truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
 }
 
-Collection StudyFiles::read(Context& context, bool all) const {
+Collection StudyFiles::read(Context& context, bool all, bool landmarks) const {
     Collection result;
     context.record([&] {
-        result = read_collection(collection.path(), all ? Share() : parse_shard(shard_));
+        const Share share = all ? Share() : parse_shard(shard_);
+        result = landmarks ? read_landmark_collection(collection.path(), share) : read_collection(collection.path(), share);
         if (truth_) set_labels(result, read_labels(truth_.path(), truth_column_), truth_.file());
         if (own_truth_) {
             const Path table = collection.path() / "truth.csv";

@@ -16,7 +16,8 @@ public:
     void check() const;
     /// Reads the collection (only the objects of the shard, unless `all`) and its labels, reports their notes, records both in
     /// the provenance, and opens the output folder. Throws as `read_collection`, `read_labels` and `set_labels` do.
-    Collection read(Context& context, bool all = false) const;
+    /// `landmarks`: landmark files of every format belong to the objects (`read_landmark_collection`).
+    Collection read(Context& context, bool all = false, bool landmarks = false) const;
 
     /// Store of per-object results that persists between runs; `kind` is a folder in the output folder.
     [[nodiscard]] ResultStore store(const std::string& kind = "objects") const {

@@ -15,12 +15,14 @@ namespace {
 
 struct TemplateLearn final : Operation {
     void declare(Parameters& p) override {
-        p.input("template", Kind::template_package, template_input,
-                "template (.template.json), or, for a class of landmarks only, the first member (.mrk.json, .fcsv, .tps, .pp), "
-                "which determines the set of landmarks and the orientation of the mean");
+        p.input(
+            "template", Kind::template_package, template_input,
+            "template (.template.json), or, for a class of landmarks only, the first landmark file (.mrk.json, .fcsv, .tps, .pp, "
+            ".nts, .dta, .pts, .csv, Morphologika), whose first specimen determines the set of landmarks and the orientation "
+            "of the mean");
         p.input("members", Kind::mesh, members,
-                "mesh file of each member, with annotations in NAME.ant.json beside it; for a class of landmarks, a landmark "
-                "file of each member")
+                "mesh file of each member, with annotations in NAME.ant.json beside it; for a class of landmarks, further "
+                "landmark files, with one or several members each")
             .many()
             .with_annotations_beside()
             .optional();
@@ -33,6 +35,12 @@ struct TemplateLearn final : Operation {
         p.options("name", name, "name of the class; by default the class of the template");
         vocabulary.declare(p, as_template_words);
         p.options("given", given, "same effect as --correspondence given");
+        p.options(
+            "missing", missing,
+            "class of landmarks: members that lack a landmark are refused, or the landmark is estimated by the thin-plate "
+            "spline of the mean of complete members, by regression, or by the mirrored other side ('left', 'right' in names)",
+            Choices{"refuse", "tps", "regression", "mirror"});
+        specimen_options.list_options(p.options);
         options.list_options(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
                         number("diversity"), numbers("varianceShares"));
@@ -104,12 +112,10 @@ struct TemplateLearn final : Operation {
         if (name.empty()) name = "landmarks";
         std::vector<Path> files{template_input.file()};
         for (std::size_t i = 0; i < members.size(); ++i) files.push_back(members.path(i));
-        LandmarkTemplate first_landmarks;
-        std::vector<LearntMember> fitted;
-        context.record([&] {
-            first_landmarks = read_landmark_template(files[0]);
-            for (const Path& file : files) fitted.push_back(read_landmark_member(file, first_landmarks));
-        });
+        LandmarkMembers read;
+        context.record([&] { read = read_landmark_members(files, missing, specimen_options); });
+        const LandmarkTemplate& first_landmarks = read.landmark_template;
+        const std::vector<LearntMember>& fitted = read.members;
         for (const LearntMember& member : fitted) context.notes(member.name, member.fit.notes);
         ShapeClass result = learn_class(first_landmarks.known(), fitted, options);
         if (!open_for(result)) write_file(output.in(result.template_file), read_file(files[0]));
@@ -166,6 +172,8 @@ struct TemplateLearn final : Operation {
     FolderOutput output;
     std::string name;
     bool given = false;
+    MissingInMembers missing = MissingInMembers::refuse;
+    SpecimenOptions specimen_options;
     VocabularyOption vocabulary;
     LearnOptions options;
 };
