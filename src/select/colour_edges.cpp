@@ -100,11 +100,11 @@ Gradients gradients_of(const TexelGrid& grid, const NodeGradients& tangent, cons
 }
 
 /// A crossing of a line with an edge of the grid.
-struct Crossing {
+struct LineCrossing {
     Index low, high;  ///< nodes of the edge
     SurfacePoint place;
     float size;  ///< of the gradient
-    bool operator<(const Crossing& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
+    bool operator<(const LineCrossing& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
 };
 
 /// Traces the lines on which the size of the gradient is largest along its direction.
@@ -114,9 +114,9 @@ public:
         : grid_(grid), tangent_(tangent), gradients_(gradients), least_(least) {}
 
     /// The pieces in the triangles, each as two crossings.
-    [[nodiscard]] std::vector<std::array<Crossing, 2>> pieces() const {
+    [[nodiscard]] std::vector<std::array<LineCrossing, 2>> pieces() const {
         const std::size_t count = grid_.mesh().number_of_faces(), block = 1024;
-        std::vector<std::vector<std::array<Crossing, 2>>> parts((count + block - 1) / block);
+        std::vector<std::vector<std::array<LineCrossing, 2>>> parts((count + block - 1) / block);
         parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
             std::vector<Index> numbers;
             for (std::size_t f = begin; f < end; ++f) {
@@ -125,17 +125,17 @@ public:
                 for (const auto& triangle : grid_.division(face).triangles) add(face, triangle, numbers, parts[begin / block]);
             }
         });
-        std::vector<std::array<Crossing, 2>> all;
+        std::vector<std::array<LineCrossing, 2>> all;
         for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
         return all;
     }
 
 private:
     void add(Face face, const std::array<Index, 3>& triangle, const std::vector<Index>& numbers,
-             std::vector<std::array<Crossing, 2>>& found) const {
+             std::vector<std::array<LineCrossing, 2>>& found) const {
         for (const Index node : triangle)
             if (!(gradients_.size[numbers[node]] > least_ / 2)) return;
-        std::vector<Crossing> crossings;
+        std::vector<LineCrossing> crossings;
         for (std::size_t k = 0; k < 3; ++k) {
             Index a = triangle[k], b = triangle[(k + 1) % 3];
             if (numbers[a] > numbers[b]) std::swap(a, b);
@@ -226,9 +226,9 @@ std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& ex
     const auto least = static_cast<float>(options.faint / width);
     const Gradients gradients = gradients_of(grid, tangent, colours.lab, least);
     const auto pieces = EdgeTracer(grid, tangent, gradients, least).pieces();
-    std::vector<Crossing> crossings;
+    std::vector<LineCrossing> crossings;
     for (const auto& piece : pieces) crossings.insert(crossings.end(), piece.begin(), piece.end());
-    const auto same = [](const Crossing& a, const Crossing& b) { return a.low == b.low && a.high == b.high; };
+    const auto same = [](const LineCrossing& a, const LineCrossing& b) { return a.low == b.low && a.high == b.high; };
     std::sort(crossings.begin(), crossings.end());
     crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
     std::vector<std::array<std::size_t, 2>> segments;
