@@ -118,6 +118,7 @@ struct Fit final : Operation {
                 [&](const Path& file) { return read_fragment(file, reading); }, k, options_text(reading));
             context.notes(files.file(k), fragment_file.notes);
             fragments.push_back(&fragment_file.fragment);
+            fragment_colours.push_back(fragment_file.face_colours);
             if (vocabulary) {
                 renamed.push_back(fragment_file.fragment);
                 vocabulary.words().rename_like(renamed.back().annotations, *object_template->annotations);
@@ -176,7 +177,7 @@ struct Fit final : Operation {
         output.write("fit.assembly.json", content);
         if (!searches.empty()) output.write(searches_file, searches.to_json(document.GetAllocator()));
         if (!result.points.empty()) {
-            write_completed(output, "completed.ply", result.object);
+            write_completed(output, "completed.ply", result.object, fragment_colours);
             for (std::size_t k = 0; k < result.notes.size(); ++k) context.notes(names.fragments[k], result.notes[k]);
             for (const CompletionNote& note : result.object.notes)
                 report.note(fmt::format("{}: {}; its observed surface is represented by the template's triangles",
@@ -277,6 +278,7 @@ struct Fit final : Operation {
     VocabularyOption vocabulary;
     std::deque<Fragment> renamed;  ///< fragments with the tags of the template
     std::vector<const Fragment*> fragments;
+    std::vector<std::vector<Colour>> fragment_colours;  ///< colours of the faces of each fragment; empty: none
     AssemblyNames names;
     std::vector<UsedThreshold> used_thresholds;
 };

@@ -2,13 +2,16 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
+#include "ostraka/execution/parallel.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/measure/surface_colour.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ostraka {
 
@@ -29,6 +32,20 @@ auto with_file_name(const Path& file, Work&& work) {
     }
 }
 
+/// The mean colour of each face, from its image and its own colours; empty without either.
+std::vector<Colour> face_colours_of(const MeshFile& file, const std::string& where) {
+    std::vector<Colour> colours;
+    if (!has_colours(file.extras)) return colours;
+    const SurfaceColour surface(file.mesh, file.extras, where);
+    colours.resize(file.mesh.number_of_faces());
+    parallel_for(colours.size(), 1024, [&](std::size_t f) {
+        const Face face(static_cast<Index>(f));
+        const auto light = surface.at(face, {1.0 / 3, 1.0 / 3, 1.0 / 3}, std::sqrt(face_area(file.mesh, face)));
+        colours[f] = {srgb_from_linear(light[0]), srgb_from_linear(light[1]), srgb_from_linear(light[2]), 255};
+    });
+    return colours;
+}
+
 }  // namespace
 
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options) {
@@ -46,6 +63,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     } else {
         MeshFile mesh = read_mesh(file);
         for (std::string& note : manifold_notes(mesh)) result.notes.push_back(std::move(note));
+        result.face_colours = face_colours_of(mesh, file.string());
         fragment.mesh = std::move(mesh.mesh);
     }
     using FacetSource = FragmentFileOptions::FacetSource;

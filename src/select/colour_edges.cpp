@@ -21,8 +21,7 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr double nearest_to_node = 1.0 / 64;  ///< lines keep this share of the spacing away from nodes
-constexpr double thinning = 0.1;              ///< largest distance of a point that is left out, as a share of the spacing
+constexpr double thinning = 0.1;  ///< largest distance of a point that is left out, as a share of the spacing
 
 /// Where the colour changes most, at each node: size and direction of the gradient.
 struct Gradients {
@@ -85,8 +84,7 @@ Gradients gradients_of(const TexelGrid& grid, const NodeGradients& tangent, cons
     result.direction.assign(grid.size(), Vector3f::Zero());
     result.slope.assign(grid.size(), 0);
     parallel_for(grid.size(), 1024, [&](std::size_t i) {
-        const Matrix3f g =
-            tangent.at(i, [&](std::size_t node) { return Vector3f(lab[node][0], lab[node][1], lab[node][2]); });
+        const Matrix3f g = tangent.at(i, [&](std::size_t node) { return Vector3f(lab[node][0], lab[node][1], lab[node][2]); });
         if (!(g.squaredNorm() > least * least / 4)) return;
         Eigen::SelfAdjointEigenSolver<Matrix3f> solver;
         solver.computeDirect(g.transpose() * g);
@@ -102,11 +100,11 @@ Gradients gradients_of(const TexelGrid& grid, const NodeGradients& tangent, cons
 }
 
 /// A crossing of a line with an edge of the grid.
-struct Crossing {
+struct LineCrossing {
     Index low, high;  ///< nodes of the edge
     SurfacePoint place;
     float size;  ///< of the gradient
-    bool operator<(const Crossing& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
+    bool operator<(const LineCrossing& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
 };
 
 /// Traces the lines on which the size of the gradient is largest along its direction.
@@ -116,9 +114,9 @@ public:
         : grid_(grid), tangent_(tangent), gradients_(gradients), least_(least) {}
 
     /// The pieces in the triangles, each as two crossings.
-    [[nodiscard]] std::vector<std::array<Crossing, 2>> pieces() const {
+    [[nodiscard]] std::vector<std::array<LineCrossing, 2>> pieces() const {
         const std::size_t count = grid_.mesh().number_of_faces(), block = 1024;
-        std::vector<std::vector<std::array<Crossing, 2>>> parts((count + block - 1) / block);
+        std::vector<std::vector<std::array<LineCrossing, 2>>> parts((count + block - 1) / block);
         parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
             std::vector<Index> numbers;
             for (std::size_t f = begin; f < end; ++f) {
@@ -127,17 +125,17 @@ public:
                 for (const auto& triangle : grid_.division(face).triangles) add(face, triangle, numbers, parts[begin / block]);
             }
         });
-        std::vector<std::array<Crossing, 2>> all;
+        std::vector<std::array<LineCrossing, 2>> all;
         for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
         return all;
     }
 
 private:
     void add(Face face, const std::array<Index, 3>& triangle, const std::vector<Index>& numbers,
-             std::vector<std::array<Crossing, 2>>& found) const {
+             std::vector<std::array<LineCrossing, 2>>& found) const {
         for (const Index node : triangle)
             if (!(gradients_.size[numbers[node]] > least_ / 2)) return;
-        std::vector<Crossing> crossings;
+        std::vector<LineCrossing> crossings;
         for (std::size_t k = 0; k < 3; ++k) {
             Index a = triangle[k], b = triangle[(k + 1) % 3];
             if (numbers[a] > numbers[b]) std::swap(a, b);
@@ -148,12 +146,11 @@ private:
             if ((from > 0) == (to > 0)) continue;
             const Vector3f along = tangent_.place(j) - tangent_.place(i);
             if (!((to - from) * along.dot(gradients_.direction[i] + turn * gradients_.direction[j]) < 0)) continue;
-            const double share =
-                std::clamp(static_cast<double>(from) / (static_cast<double>(from) - static_cast<double>(to)), nearest_to_node,
-                           1 - nearest_to_node);
+            const double share = std::clamp(static_cast<double>(from) / (static_cast<double>(from) - static_cast<double>(to)),
+                                            nearest_to_node, 1 - nearest_to_node);
             const auto s = static_cast<float>(share);
-            crossings.push_back({i, j, grid_.between(face, a, b, numbers, share),
-                                 (1 - s) * gradients_.size[i] + s * gradients_.size[j]});
+            crossings.push_back(
+                {i, j, grid_.between(face, a, b, numbers, share), (1 - s) * gradients_.size[i] + s * gradients_.size[j]});
         }
         if (crossings.size() == 2 && crossings[0].size > least_ && crossings[1].size > least_)
             found.push_back({crossings[0], crossings[1]});
@@ -174,8 +171,8 @@ void thin(const std::vector<Point>& places, std::size_t begin, std::size_t end, 
     const double length = std::sqrt(along.squared_length());
     for (std::size_t i = begin + 1; i < end; ++i) {
         const Vector d = places[i] - places[begin];
-        const double away = length > 0 ? std::sqrt(CGAL::cross_product(d, along).squared_length()) / length
-                                       : std::sqrt(d.squared_length());
+        const double away =
+            length > 0 ? std::sqrt(CGAL::cross_product(d, along).squared_length()) / length : std::sqrt(d.squared_length());
         if (away > most) most = away, farthest = i;
     }
     if (farthest == begin) return;
@@ -212,7 +209,8 @@ std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& ex
     if (!(options.faint > 0) || !(options.texels >= 0 && options.texels <= 20) || !(options.shortest >= 0))
         fail_usage("options of colour edges out of range", "give a contrast above 0 and a smoothing of 0 to 20 texels");
     if (options.faint > options.contrast)
-        fail_usage("lines end at a larger contrast (--faint) than they must reach (--contrast)", "let --faint be at most --contrast");
+        fail_usage("lines end at a larger contrast (--faint) than they must reach (--contrast)",
+                   "let --faint be at most --contrast");
     if (!has_colours(extras))
         fail_input(where, "the mesh has neither an image nor colours", "give the file with its image or colours");
     if (mesh.number_of_faces() == 0) return {};
@@ -221,22 +219,24 @@ std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& ex
     require_memory(40.0 * static_cast<double>(grid.size()), "gradients of the image", "reduce the image");
     // A round of smoothing has the variance of a quarter of the squared spacing in each direction.
     const int rounds = static_cast<int>(std::lround(4 * options.texels * options.texels));
-    const double width = std::sqrt(2 * std::acos(-1.0) * (rounds / 4.0 + 1.0 / 3));  // largest gradient of a step of one: 1 / width
+    const double width =
+        std::sqrt(2 * std::acos(-1.0) * (rounds / 4.0 + 1.0 / 3));  // largest gradient of a step of one: 1 / width
     grid.blur(colours.lab, rounds);
     const NodeGradients tangent(grid);
     const auto least = static_cast<float>(options.faint / width);
     const Gradients gradients = gradients_of(grid, tangent, colours.lab, least);
     const auto pieces = EdgeTracer(grid, tangent, gradients, least).pieces();
-    std::vector<Crossing> crossings;
+    std::vector<LineCrossing> crossings;
     for (const auto& piece : pieces) crossings.insert(crossings.end(), piece.begin(), piece.end());
-    const auto same = [](const Crossing& a, const Crossing& b) { return a.low == b.low && a.high == b.high; };
+    const auto same = [](const LineCrossing& a, const LineCrossing& b) { return a.low == b.low && a.high == b.high; };
     std::sort(crossings.begin(), crossings.end());
     crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
     std::vector<std::array<std::size_t, 2>> segments;
     for (const auto& piece : pieces) {
         std::array<std::size_t, 2> ends{};
         for (std::size_t k = 0; k < 2; ++k)
-            ends[k] = static_cast<std::size_t>(std::lower_bound(crossings.begin(), crossings.end(), piece[k]) - crossings.begin());
+            ends[k] =
+                static_cast<std::size_t>(std::lower_bound(crossings.begin(), crossings.end(), piece[k]) - crossings.begin());
         segments.push_back(ends);
     }
     std::vector<ColourEdge> edges;
@@ -263,9 +263,8 @@ std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& ex
         edge.contrast = sum / static_cast<double>(chain.size());
         edges.push_back(std::move(edge));
     }
-    std::stable_sort(edges.begin(), edges.end(), [](const ColourEdge& a, const ColourEdge& b) {
-        return a.length * a.contrast > b.length * b.contrast;
-    });
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const ColourEdge& a, const ColourEdge& b) { return a.length * a.contrast > b.length * b.contrast; });
     return edges;
 }
 

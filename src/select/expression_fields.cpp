@@ -150,9 +150,11 @@ SurfaceHit ExpressionEvaluator::place_on_surface(const JsonValue& pick, PlaceFra
     if (pick.IsObject()) return seen(pick, frame, at);
     if (pick.IsArray()) return search(at).closest(point(pick, frame, at));
     const Vertex picked(vertex(pick, frame, at));
-    if (mesh_.is_isolated(picked)) fail(at, "vertex " + to_string(static_cast<Index>(picked)) + " has no face", "pick another one");
+    if (mesh_.is_isolated(picked))
+        fail(at, "vertex " + to_string(static_cast<Index>(picked)) + " has no face", "pick another one");
     SurfaceHit hit;
-    hit.face = mesh_.face(mesh_.is_border(mesh_.halfedge(picked)) ? mesh_.opposite(mesh_.halfedge(picked)) : mesh_.halfedge(picked));
+    hit.face =
+        mesh_.face(mesh_.is_border(mesh_.halfedge(picked)) ? mesh_.opposite(mesh_.halfedge(picked)) : mesh_.halfedge(picked));
     const auto corner = corners(mesh_, Face(hit.face));
     for (std::size_t k = 0; k < 3; ++k) hit.barycentric[k] = corner[k] == picked ? 1 : 0;
     hit.point = mesh_.point(picked);
@@ -188,11 +190,13 @@ const PaintedFigure& ExpressionEvaluator::painted(const JsonValue& value, PlaceF
     interval_of("lightness", query.lightness);
     interval_of("chroma", query.chroma);
     interval_of("hue", query.hue);
-    if (query.like.empty() && query.places.empty() && !query.lightness && !query.chroma && !query.hue)
-        fail(at, "a painted figure of no colour", "give a colour (like), a place in it (at), or bounds of lightness, chroma or hue");
-    query.sharpest = flag_in(value, "edge");
-    if (query.sharpest && query.places.empty())
-        fail(at, "a figure by its edge, but no place in it", "give a place in it (at)");
+    const bool bounded = query.lightness || query.chroma || query.hue;
+    if (query.like.empty() && query.places.empty() && !bounded)
+        fail(at, "a painted figure of no colour",
+             "give a colour (like), a place in it (at), or bounds of lightness, chroma or hue");
+    query.sharpest = flag_in(value, "edge") ||
+                     (!query.places.empty() && query.like.empty() && !bounded && find_member(value, "tolerance") == nullptr);
+    if (query.sharpest && query.places.empty()) fail(at, "a figure by its edge, but no place in it", "give a place in it (at)");
     query.tolerance = number_or(value, "tolerance", query.sharpest ? 60 : query.tolerance);
     query.smallest = length(number_or(value, "smallest", 0), frame);
     query.blur = static_cast<int>(number_or(value, "blur", query.blur));

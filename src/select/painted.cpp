@@ -11,8 +11,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr float on_border = 1e-6F;          ///< value instead of 0, which would be neither inside nor outside
-constexpr double nearest_to_node = 1.0 / 64;  ///< outlines keep this share of the spacing away from nodes
+constexpr float on_border = 1e-6F;  ///< value instead of 0, which would be neither inside nor outside
 
 Lab lab_of(const LabNode& node) {
     return {static_cast<double>(node[0]), static_cast<double>(node[1]), static_cast<double>(node[2])};
@@ -111,7 +110,8 @@ private:
 
     /// For each node the class of the least tolerance at which a figure around a place includes it: the largest difference on
     /// the best path, by classes of `level_width`. Stops at half of the area.
-    [[nodiscard]] std::vector<std::uint16_t> levels_from_places(const std::vector<LabNode>& lab, std::vector<double>& area) const {
+    [[nodiscard]] std::vector<std::uint16_t> levels_from_places(const std::vector<LabNode>& lab,
+                                                                std::vector<double>& area) const {
         const auto count = static_cast<std::size_t>(std::ceil(query_.tolerance / level_width)) + 1;
         std::vector<std::uint16_t> level(grid_.size(), static_cast<std::uint16_t>(count));
         std::vector<std::vector<Index>> waiting(count);
@@ -205,7 +205,8 @@ private:
         const auto smallest = static_cast<float>(smallest_area());
         for (std::size_t i = 0; i < value_.size(); ++i)
             if ((value_[i] > 0) == of_inside)
-                if (const Index root = sets.find(i); bordered[root] && area[root] < smallest) marked_.push_back(static_cast<Index>(i));
+                if (const Index root = sets.find(i); bordered[root] && area[root] < smallest)
+                    marked_.push_back(static_cast<Index>(i));
         for (const Index i : marked_) value_[i] = -value_[i];
         marked_.clear();
     }

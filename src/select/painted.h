@@ -23,8 +23,8 @@ struct PaintedFigureQuery {
     std::vector<Lab> like;
     /// Places in the figure: only the connected figures there are selected; empty: the figure is selected wherever it is.
     std::vector<SurfaceHit> places;
-    double tolerance = 12;   ///< largest difference from a colour (CIEDE2000)
-    bool sharpest = false;   ///< true: the tolerance with the sharpest outline, up to `tolerance`
+    double tolerance = 16;                      ///< largest difference from a colour (CIEDE2000)
+    bool sharpest = false;                      ///< true: the tolerance with the sharpest outline, up to `tolerance`
     std::optional<Interval> lightness, chroma;  ///< further bounds, in CIELAB
     std::optional<Interval> hue;                ///< angles in degrees, from the first counter-clockwise to the second
     double smallest = 0;  ///< patches and holes smaller than the square of this length are left out; 0: of six texels

@@ -317,7 +317,8 @@ void TexelGrid::blur(std::vector<Value>& values, int rounds) const {
             const auto [begin, end] = neighbours(i);
             Value sum{};
             for (const Index* j = begin; j != end; ++j) sum = plus(sum, values[*j]);
-            next[i] = begin == end ? values[i] : plus(scaled(values[i], 0.5F), scaled(sum, 0.5F / static_cast<float>(end - begin)));
+            next[i] =
+                begin == end ? values[i] : plus(scaled(values[i], 0.5F), scaled(sum, 0.5F / static_cast<float>(end - begin)));
         });
         std::swap(values, next);
     }
@@ -442,7 +443,6 @@ TexelColours::TexelColours(const Mesh& mesh, const MeshExtras& extras, const std
     : TexelColours(mesh, extras, SurfaceColour(mesh, extras, where)) {}
 
 TexelColours::TexelColours(const Mesh& mesh, const MeshExtras& extras, const SurfaceColour& surface)
-    : grid(mesh, spacing_of(mesh, extras, surface)),
-      lab(NodeColours(grid, surface, spacing_of(mesh, extras, surface)).read()) {}
+    : grid(mesh, spacing_of(mesh, extras, surface)), lab(NodeColours(grid, surface, spacing_of(mesh, extras, surface)).read()) {}
 
 }  // namespace ostraka

@@ -18,7 +18,7 @@ namespace ostraka {
 struct FaceDivision {
     struct Node {
         std::array<double, 3> weights;  ///< barycentric coordinates in the face
-        int place;    ///< 0 to 2: that corner; 3 + k: the edge from corner k to the next; 6: inside the face
+        int place;                      ///< 0 to 2: that corner; 3 + k: the edge from corner k to the next; 6: inside the face
         Index index;  ///< along the edge from corner k: number of the node; inside: number among the inner nodes of the face
     };
     Index n = 1;                                  ///< number of divisions of each edge
@@ -83,6 +83,9 @@ private:
     std::vector<Index> neighbour_;
     std::vector<float> area_;
 };
+
+/// Curves between nodes keep this share of the spacing away from them.
+inline constexpr double nearest_to_node = 1.0 / 64;
 
 using LabNode = std::array<float, 3>;  ///< colour of a node in CIELAB
 

@@ -4,6 +4,7 @@
 #include "ostraka/core/options.h"
 #include "ostraka/files/file.h"
 #include "ostraka/fracture/facets.h"
+#include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
 namespace ostraka {
@@ -21,10 +22,12 @@ struct FragmentFileOptions {
 
 /// A fragment that was read, with the source of its data.
 struct FragmentFile {
-    Fragment fragment;               ///< mesh, annotations and facets of the fragment
-    std::string facets_from;         ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
-    Facets found;                    ///< facets found from the shape, if they were computed
-    bool points = false;             ///< true: the file has no faces, and the mesh is reconstructed from its points
+    Fragment fragment;        ///< mesh, annotations and facets of the fragment
+    std::string facets_from;  ///< source of the facets: "annotations", "shape", "shape and annotations" or "nowhere"
+    Facets found;             ///< facets found from the shape, if they were computed
+    bool points = false;      ///< true: the file has no faces, and the mesh is reconstructed from its points
+    /// Colour of each face, the mean over the face of image and own colours; empty: the file has no colours.
+    std::vector<Colour> face_colours;
     std::vector<Path> inputs;        ///< the files that were read
     std::vector<std::string> notes;  ///< messages about the files
 };

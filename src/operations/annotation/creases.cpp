@@ -31,7 +31,8 @@ struct AnnotationCreases final : Operation {
     }
 
     void check() const override {
-        if (of == "colour" && regions) fail_usage("edges of colour have no regions", "leave out --regions, or select with --painted");
+        if (of == "colour" && regions)
+            fail_usage("edges of colour have no regions", "leave out --regions, or select with --painted");
     }
 
     void run(Context&, Report& report) override {
@@ -70,9 +71,10 @@ struct AnnotationCreases final : Operation {
             report.row("colour edges")("id", set.annotations[i].id)("tag", set.annotations[i].tag)("closed", found[i].closed)(
                 "length", found[i].length)("contrast", found[i].contrast, number(found[i].contrast, 3));
         if (found.empty()) {
-            report.note(fmt::format("no edge of colour stands out, so {} is not written: try a lower --contrast, --faint or "
-                                    "--shortest",
-                                    output.file()));
+            report.note(
+                fmt::format("no edge of colour stands out, so {} is not written: try a lower --contrast, --faint or "
+                            "--shortest",
+                            output.file()));
             return report.answer_no();
         }
         output.write(std::move(set), surface, mesh.file());

@@ -76,16 +76,19 @@ void SelectStep::list_options(OptionList& list) {
     list("below", below, "with --threshold: maximum value, in the unit of --above");
     list("like", like, "with --threshold colour or --painted: the colour, as #rrggbb");
     list("tolerance", tolerance,
-         "with --painted: largest difference (CIEDE2000) from the colour; default 12, with 'edge' the largest tried, 60",
+         "with --painted: largest difference (CIEDE2000) from the colour; default 16, or, if only --seed is given, the one with "
+         "the "
+         "sharpest outline; with 'edge' the largest tried, 60",
          Range{0, 200});
     list("lightness", lightness, "with --painted: lowest and highest CIELAB lightness, 0 to 100", Range{-1000, 1000});
     list("chroma", chroma, "with --painted: lowest and highest CIELAB chroma, 0 is grey", Range{-1000, 1000});
     list("hue", hue, "with --painted: first and last CIELAB hue angle, counter-clockwise: 0 red, 90 yellow, 180 green, 270 blue",
          Range{-360, 720}, "degrees");
-    list("smallest", smallest,
-         "with --painted: patches and holes smaller than the square of this length are left out, in the unit of --frame; default: "
-         "six texels",
-         Range{0, 1e60});
+    list(
+        "smallest", smallest,
+        "with --painted: patches and holes smaller than the square of this length are left out, in the unit of --frame; default: "
+        "six texels",
+        Range{0, 1e60});
     list("blur", blur, "with --painted: rounds of smoothing over neighbouring texels; default 2", Range{0, 100});
     list("quantiles", quantiles, "with --threshold: --above and --below are quantiles by area, from 0 to 1");
     list("scale", scale, "with --threshold of a curvature: radius over which the curvature is averaged; 0: automatic",

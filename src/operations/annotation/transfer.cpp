@@ -1,4 +1,5 @@
 // annotation transfer
+#include "operations/mesh/baking.h"
 #include "operations/registered.h"
 
 #include "ostraka/annotation/colouring.h"
@@ -45,6 +46,9 @@ struct AnnotationTransfer final : Operation {
             "annotation file to write: the result transferred back to the source mesh; this second transfer is scored as well");
         p.output_option("ply", Kind::mesh, coloured,
                         "target mesh to write, coloured by its annotations (PLY or another format with colours)");
+        p.output_option("colours", Kind::mesh, baked,
+                        "target mesh to write, with the colours of the source: an image if the source has one and the format "
+                        "keeps it (.obj, .ply, .glb), else colours of vertices");
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
         p.output_option("map", Kind::index_map, map,
                         "with --refine: JSON file to write: for each new face, the index of the old face");
@@ -53,6 +57,7 @@ struct AnnotationTransfer final : Operation {
                   Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));
+        Baking::declare_report(p.report);
         for (const char* direction : {"annotations", "back"})
             p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
                            text("outcome"), text("note"), number("sourceArea", "", "length^2"),
@@ -104,6 +109,7 @@ struct AnnotationTransfer final : Operation {
 
         // All work is done, so what is written now is complete.
         if (coloured) coloured.write(on.mesh, colour_by_annotation(on));
+        if (baked) bake_colours(from.mesh, on.mesh, report);
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
         report.run("checks", there.times.checks);
         report.run("correspondence", there.times.correspondence);
@@ -149,6 +155,19 @@ struct AnnotationTransfer final : Operation {
                         (registered.annotations.unit.empty() ? "in an unknown unit" : "in " + registered.annotations.unit) +
                         " on the target");
         return registered;
+    }
+
+    /// Writes the target with the colours of the source, whose mesh is given in the place of the target.
+    void bake_colours(const Mesh& from, const Mesh& onto, Report& report) const {
+        if (!has_colours(source->extras))
+            fail_input(source.file(), "has no image and no colours", "leave out --colours, or give a source with colours");
+        const MeshFile coloured_source{from, source->extras, {}, {}};
+        MeshExtras extras;
+        const Baking baking;
+        if (!source->extras.appearance.empty() && keeps_texture(baked))
+            baking.to_image(onto, extras, coloured_source, source.file(), baked.file(), nullptr, report);
+        else baking.to_vertices(onto, extras, coloured_source, source.file(), report);
+        baked.write(onto, extras);
     }
 
     /// Transforms annotations of the registered source back to the source, and measures there.
@@ -212,7 +231,7 @@ struct AnnotationTransfer final : Operation {
     MeshInput source, target;
     AnnotationsInput annotations;
     AnnotationsOutput output, back;
-    MeshOutput coloured, refined;
+    MeshOutput coloured, baked, refined;
     IndexMapOutput map;
     TransferOptions options;
     bool registers = false;
