@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <new>
 
@@ -64,8 +65,11 @@ struct Import final : Operation {
                                             : problem_of([&] { return import_scan(i, names[i], context, report, sound); });
             if (problem.empty()) continue;
             problems.push_back(problem);
-            report.row("objects")("file", scan.file(i))("state", "refused")("remarks", problem);
+            rows_.emplace_back([&report, file = scan.file(i), problem] {
+                report.row("objects")("file", file)("state", "refused")("remarks", problem);
+            });
         }
+        for (const auto& add_row : rows_) add_row();
         if (problems.size() == scan.size())
             fail_input(counted(scan.size(), "scan"), "none of them can be imported: " + joined(problems, "; "));
         sound = sound && problems.empty();
@@ -110,11 +114,15 @@ struct Import final : Operation {
                 "materials", repaired.extras.appearance.materials.size())("images", repaired.extras.appearance.images.size())(
                 "raw_files", copies)("defects_of_raw_file", before.defects())("after",
                                                                               to_json(repaired.after, report.allocator()));
-        report.row("objects")("file", file)("mesh", name + ".ply")("state", is_sound ? "sound" : "open")(
-            "vertices", repaired.after.vertices)("triangles", repaired.after.triangles)(
-            "remarks", is_sound ? "closed, oriented and free of intersections" : joined(repaired.after.defects()))(
-            "materials", repaired.extras.appearance.materials.size())("images", repaired.extras.appearance.images.size())(
-            "raw_files", copies)("defects_of_raw_file", before.defects())("after", to_json(repaired.after, report.allocator()));
+        rows_.emplace_back([&report, file, name, is_sound, copies, defects = before.defects(), after = repaired.after,
+                            materials = repaired.extras.appearance.materials.size(),
+                            images = repaired.extras.appearance.images.size()] {
+            report.row("objects")("file", file)("mesh", name + ".ply")("state", is_sound ? "sound" : "open")(
+                "vertices", after.vertices)("triangles", after.triangles)(
+                "remarks", is_sound ? "closed, oriented and free of intersections" : joined(after.defects()))(
+                "materials", materials)("images", images)("raw_files", copies)("defects_of_raw_file", defects)(
+                "after", to_json(after, report.allocator()));
+        });
         return {};
     }
 
@@ -305,7 +313,7 @@ struct Import final : Operation {
         JsonValue counts(rapidjson::kObjectType);
         for (const auto& [quantity, count] : step.counts) {
             add_members(counts, report.allocator(), quantity, count);
-            if (count > 0) report.line(fmt::format("  {}: {} {}", step.name, count, quantity));
+            if (count > 0) report.line(fmt::format("  {}: {}: {}", step.name, quantity, count));
         }
         report.row("steps")("file", file)("step", step.name)("counts", std::move(counts));
     }
@@ -318,6 +326,7 @@ struct Import final : Operation {
     double scraps = 0.001;
     bool keep_holes = false, no_raw = false;
     Path common_folder_;
+    std::vector<std::function<void()>> rows_;    ///< add the rows of the table, below all lines
     std::map<std::string, SharedImage> images_;  ///< images written so far, by their names in lower case
 };
 

@@ -311,12 +311,16 @@ void StudyPlan::set_slot(StudyInstance& instance, const StudySetting& setting, c
         }
     const std::string name = filled(text, instance);
     if (name.empty()) fail_input(study.at(place), fmt::format("'{}' is empty", setting.name), "name a file");
-    instance.inputs.push_back({setting.name,
-                               label,
-                               slot.takes_none && name == "none" ? Path() : input_file(name, place, slot.kind),
-                               no_instance,
-                               {},
-                               false});
+    const OperationEntry* operation = study.steps[instance.step].operation;
+    // `import` reads point clouds, too.
+    const bool may_be_points = slot.kind == Kind::mesh && operation != nullptr && std::string_view(operation->name) == "import";
+    instance.inputs.push_back(
+        {setting.name,
+         label,
+         slot.takes_none && name == "none" ? Path() : input_file(name, place, may_be_points ? Kind::point_cloud : slot.kind),
+         no_instance,
+         {},
+         false});
 }
 
 Path StudyPlan::input_file(const std::string& name, const std::string& place, Kind kind) const {
