@@ -13,8 +13,7 @@ VesselCapacity capacity_of([[maybe_unused]] const Mesh& mesh) {
     result.reason = capacity.reason;
     if (!capacity.known()) return result;
     result.volume = capacity.full.volume;
-    const Filling& full = capacity.levels.empty() ? capacity.full : capacity.levels.front();
-    result.deviation = full.uncertainty();
+    if (!capacity.levels.empty()) result.deviation = capacity.levels.front().uncertainty();
 #else
     result.reason = "it was not computed";
 #endif
