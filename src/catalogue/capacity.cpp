@@ -9,7 +9,8 @@ namespace ostraka::detail {
 VesselCapacity capacity_of([[maybe_unused]] const Mesh& mesh) {
     VesselCapacity result;
 #if __has_include("ostraka/slicing/capacity.h")
-    const Capacity capacity = find_capacity(mesh, Vector(0, 0, 1), {{FillRequest::Kind::share, 1.0, {}}});
+    const std::vector<FillRequest> to_the_rim{FillRequest{FillRequest::Kind::share, 1.0, {}}};  // with its uncertainty
+    const Capacity capacity = find_capacity(mesh, Vector(0, 0, 1), to_the_rim);
     result.reason = capacity.reason;
     if (!capacity.known()) return result;
     result.volume = capacity.full.volume;
