@@ -88,6 +88,7 @@ void add_texts(std::vector<TextLine>& lines, const char* heading, const std::vec
 
 std::vector<TextLine> left_column(const CatalogueEntry& entry) {
     std::vector<TextLine> lines;
+    if (!entry.problem.empty()) return lines;  // nothing is known of it
     lines.push_back({"Measures", "", true});
     add_measures(lines, entry);
     if (!entry.landmarks.empty()) {
