@@ -6,12 +6,12 @@ namespace ostraka::detail {
 
 VesselCapacity capacity_of(const Mesh& mesh) {
     VesselCapacity result;
-    const Capacity capacity = find_capacity(mesh, Vector(0, 0, 1), {{FillRequest::Kind::share, 1.0, {}}});
+    const std::vector<FillRequest> to_the_rim{FillRequest{FillRequest::Kind::share, 1.0, {}}};  // with its uncertainty
+    const Capacity capacity = find_capacity(mesh, Vector(0, 0, 1), to_the_rim);
     result.reason = capacity.reason;
     if (!capacity.known()) return result;
     result.volume = capacity.full.volume;
-    const LiquidVolume& full = capacity.levels.empty() ? capacity.full : capacity.levels.front();
-    result.deviation = full.uncertainty();
+    if (!capacity.levels.empty()) result.deviation = capacity.levels.front().uncertainty();
     return result;
 }
 

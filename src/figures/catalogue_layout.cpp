@@ -88,6 +88,7 @@ void add_texts(std::vector<TextLine>& lines, const char* heading, const std::vec
 
 std::vector<TextLine> left_column(const CatalogueEntry& entry) {
     std::vector<TextLine> lines;
+    if (!entry.problem.empty()) return lines;  // nothing is known of it
     lines.push_back({"Measures", "", true});
     add_measures(lines, entry);
     if (!entry.landmarks.empty()) {
@@ -416,7 +417,7 @@ Cell cell_of(const std::vector<CatalogueEntry>& entries, std::size_t index, cons
             cell.height = std::max(cell.height, points_per_mm * scale * (view.object_high - view.object_low));
         }
     }
-    cell.width = std::max(cell.width, 70.0);
+    cell.width = std::max(cell.width, 90.0);
     return cell;
 }
 
@@ -435,15 +436,15 @@ void draw_cell(Sheet& sheet, const CatalogueEntry& entry, const Cell& cell, cons
         }
     }
     const double middle = cell.x + cell.width / 2;
-    sheet.text(sheet.fitted(fmt::format("{}  {}", cell.entry + 1, printable(entry.name, 80)), cell.width + cell_gap, 7), middle,
-               base + 14, 0.5, 7);
+    sheet.text(sheet.fitted(fmt::format("{}  {}", cell.entry + 1, printable(entry.name, 80)), cell.width + cell_gap / 2, 7),
+               middle, base + 14, 0.5, 7);
     std::string words = to_string(entry.kind);
     if (!entry.problem.empty()) words = "could not be read";
     if (!entry.diameter.name.empty())
         words =
             "\u2300 " + (entry.diameter.known ? millimetres_text(entry.diameter.value) + ", " + share_text(entry.diameter.share)
                                               : std::string("cannot be told"));
-    sheet.text(sheet.fitted(words, cell.width + cell_gap, 7), middle, base + 23, 0.5, 7, {110, 110, 110});
+    sheet.text(sheet.fitted(words, cell.width + cell_gap / 2, 7), middle, base + 23, 0.5, 7, {110, 110, 110});
 }
 
 /// Places cells in rows on pages; the pages with their cells.
@@ -491,9 +492,6 @@ void add_sheets(Layout& layout, const std::vector<CatalogueEntry>& entries, cons
     const PageSize page = page_size(style.paper);
     const double width = page.points_wide() - 2 * page_margin;
     const double height = page.points_high() - 2 * page_margin - header_height - 40;
-    double size = std::numeric_limits<double>::infinity();
-    for (const CatalogueEntry& entry : entries)
-        if (std::isfinite(entry.height)) size = std::min(size, entry.height);
     const double scale = choose_scale(style.scale, 1e9, [&](double s) {
         for (std::size_t i = 0; i < entries.size(); ++i)
             if (const Cell cell = cell_of(entries, i, style, s); cell.width > width || cell.height + cell_caption > height)
@@ -526,12 +524,15 @@ void add_table_pages(Layout& layout, const TextTable& table, const CatalogueStyl
     for (std::size_t c = 0; c < columns; ++c) {
         widths[c] = measuring.width_of(table.columns()[c], size);
         for (const auto& row : table.rows()) widths[c] = std::max(widths[c], measuring.width_of(row[c], size));
-        widths[c] = std::min(widths[c] + padding, 150.0);
+        widths[c] = std::min(widths[c] + padding, 100.0);
     }
-    double total = 0;
-    for (const double width : widths) total += width;
-    const double room = page.points_wide() - 2 * page_margin, shrink = std::min(1.0, room / total);
+    // The last column takes what the others leave, but at least a fifth of the page; its text may be cut off.
+    const double room = page.points_wide() - 2 * page_margin;
+    double others = 0;
+    for (std::size_t c = 0; c + 1 < columns; ++c) others += widths[c];
+    const double shrink = std::min(1.0, 0.8 * room / std::max(1.0, others));
     for (double& width : widths) width *= shrink;
+    if (columns > 0) widths.back() = room - shrink * others;
     const auto per_page = static_cast<std::size_t>((page.points_high() - 2 * page_margin - header_height - 40) / row_height);
     for (std::size_t begin = 0; begin == 0 || begin < table.size(); begin += per_page)
         layout.pages.emplace_back([=, rows = table.rows(), names = table.columns()](Sheet& sheet) {

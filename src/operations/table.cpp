@@ -48,7 +48,7 @@ constexpr OperationEntry entries[]{
     {"annotation check", "check annotations for defects; exit code 3 if there are any", make_annotation_check},
     {"annotation remap", "transfer annotations or labels with the index maps of 'mesh repair'", make_annotation_remap, 2},
     {"annotation select", "select a part of the mesh with one tool and annotate it, or edit an annotation", make_annotation_select, 4},
-    {"annotation creases", "find ridges and hollows of the surface, as at joints of clay parts, or edges in its image; exit code 3 if there is none", make_annotation_creases, 2},
+    {"annotation creases", "find ridges and valleys of the surface, for example along joints of clay parts, or edges in its image; exit code 3 if there are none", make_annotation_creases, 2},
     {"annotation facets", "classify the surface of a fragment as outer, inner and fracture surface; exit code 3 if there is no fracture", make_annotation_facets},
     {"annotation segment", "segment a mesh by thickness; each segment becomes an annotation", make_annotation_segment},
     {"annotation smooth", "replace outlines and lines along edges by fair curves through the faces", make_annotation_smooth, 2},
