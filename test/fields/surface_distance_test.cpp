@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
 
+#include <CGAL/squared_distance_3.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
