@@ -258,8 +258,8 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
 
 TEST_F(EveryOperation, RunsHereOrHasItsOwnTest) {
     // Operations with inputs that take long to make are run by the tests of their modules.
-    std::set<std::string> run{"study landmarks", "study shape", "template revolve", "pair", "assemble", "run", "replay",
-                              "conformance run", "conformance self"};
+    std::set<std::string> run{"study landmarks", "study shape",     "template revolve", "pair", "assemble", "run",
+                              "replay",          "conformance run", "conformance self"};
     for (const Step& step : steps()) run.insert(step.operation);
     for (const OperationEntry& entry : operations()) EXPECT_TRUE(run.count(entry.name) == 1) << entry.name;
 }
