@@ -12,7 +12,7 @@ namespace ostraka::detail {
 
 namespace {
 
-void add_pieces(PlaneSegments& segments, const Contour& contour) {
+void add_contour_pieces(PlaneSegments& segments, const Contour& contour) {
     for (std::size_t i = 0; i < contour.faces.size(); ++i)
         segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
 }
@@ -41,7 +41,7 @@ OpenArc open_arc(const std::vector<Contour>& contours) {
             continue;
         }
         PlaneSegments pieces;
-        add_pieces(pieces, contour);
+        add_contour_pieces(pieces, contour);
         const Circle circle = fit_circle(pieces);
         if (!(circle.radius > 0)) continue;
         double winding = 0;
