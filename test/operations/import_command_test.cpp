@@ -166,16 +166,17 @@ TEST_F(ImportCommand, OperationsWorkOnUnrepairedScans) {
     write_file(scratch / "cap.recipe.json",
                R"({"format":"ostraka-recipe","version":1,"annotations":[{"id":0,"tag":"cap","type":"region","select":)"
                R"({"halfspace":{"point":[0,0,0.5],"normal":[0,0,1]}}}]})");
-    const auto succeeds = [&](const std::string& words) {
+    const auto succeeds = [&](const std::string& words, bool with_note = true) {
         const CommandResult result = run_command(words);
         EXPECT_EQ(result.code, 0) << words << "\n" << result.err;
-        EXPECT_NE(result.err.find("is not an oriented manifold"), std::string::npos) << "a note: " << words << "\n" << result.err;
+        if (with_note)
+            EXPECT_NE(result.err.find("is not an oriented manifold"), std::string::npos) << words << "\n" << result.err;
     };
     const std::string scan = at("scan.ply");
     succeeds("annotation apply " + scan + " " + at("cap.recipe.json") + " " + at("scan.ant.json"));
     succeeds("measure take " + scan + " --annotations " + at("scan.ant.json") +
              " --annotation cap --tool bounding --direction z");
-    succeeds("render " + scan + " " + at("scan.png") + " --annotations " + at("scan.ant.json") + " --size 64x64");
+    succeeds("render " + scan + " " + at("scan.png") + " --annotations " + at("scan.ant.json") + " --size 64x64", false);
     succeeds("slice " + scan + " --count 3");
     succeeds("mesh simplify " + scan + " " + at("small.ply") + " --vertices 100");
     succeeds("annotation transfer " + scan + " " + at("scan.ant.json") + " " + at("small.ply") + " " + at("small.ant.json"));
