@@ -21,7 +21,7 @@ struct SimplifyOptions {
     double outline_weight = 1;
     /// Weight of the distance from border edges, relative to the weight of the distance from faces (method qem only).
     double border_weight = 1;
-    bool keep_border = false;  ///< true: border vertices and edges stay as they are, so that neighbouring tiles still fit
+    bool keep_border = false;   ///< true: border vertices and edges stay as they are, so that neighbouring tiles still fit
     double seam_drift = 0.001;  ///< max distance of the seams of the texture from where they were, as a share of the diagonal
 
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
