@@ -201,7 +201,8 @@ private:
 
     [[nodiscard]] std::string explain(std::size_t target) const {
         const std::size_t bound =
-            mesh_.number_of_edges() - std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_ + refused_drift_);
+            mesh_.number_of_edges() -
+            std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_ + refused_drift_);
         return fmt::format(
             "stopped at {} vertices instead of {}: of the remaining {} edges {} would change the topology, {} would flip or "
             "flatten a face{}{}",

@@ -151,7 +151,8 @@ private:
     const PaintedFigure& painted(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     /// The faces of a painted figure; on a cut mesh those on the inner side of its outline.
     std::vector<bool> painted_faces(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
-    /// The point of the surface that a pick names: a vertex by its index, the point nearest to a place, or what is seen at a pixel.
+    /// The point of the surface that a pick names: a vertex by its index, the point nearest to a place, or what is seen at a
+    /// pixel.
     SurfaceHit place_on_surface(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
     /// Throws Error (input) unless the mesh has colours.
     void need_colours(const std::string& at) const;
