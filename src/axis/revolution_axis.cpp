@@ -176,7 +176,12 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     const RotationSearch search = search_rotation(mesh, faces, axis_options);
     RevolutionAxis result;
     result.axis = search.axis;
-    if (!search.determined) return result;
+    // Intervals are those of sherds: where most of the circle is there, the deviations of the object from a surface of revolution
+    // count more than what an arc leaves open, and the model of an arc does not describe them.
+    constexpr double widest_sherd = 50;
+    const auto preserved = std::find_if(search.axis.figures.begin(), search.axis.figures.end(),
+                                        [](const AxisFigure& figure) { return figure.name == "circle preserved"; });
+    if (!search.determined || (preserved != search.axis.figures.end() && preserved->value > widest_sherd)) return result;
     const WallVertices vertices = wall_vertices(mesh, faces, axis_options.smoothing, search.centroid, search.scale);
     const RevolutionPosterior posterior =
         revolution_posterior(vertices, starting_lines(search), {.out_of_round = options.out_of_round, .seed = axis_options.seed});

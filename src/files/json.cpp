@@ -269,7 +269,7 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     }
     fail_input(
         where,
-        fmt::format("at {}: does not match the format: {} is needed{}", location.empty() ? std::string("the root") : location,
+        fmt::format("at {}: does not match the format, which needs {}{}", location.empty() ? std::string("the root") : location,
                     expected, found == nullptr || keyword == "required" ? "" : ", not " + found_in_words(*found)),
         fmt::format("see doc/schema/{}.schema.json", schema));
 }

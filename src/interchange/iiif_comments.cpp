@@ -299,9 +299,13 @@ SceneMotion scene_motion(const std::vector<SceneTarget>& targets, const Placer& 
         points = std::move(some);
     }
     const double limit = tolerance * placer.diagonal();
-    if (points.empty() || distance_of(points, {}, placer, limit) <= limit) return {};
+    if (points.empty()) return {};
+    // Points in metres lie near the origin of a mesh in millimetres, and may thus be near its surface by chance: another motion
+    // is taken if it fits ten times as well.
+    const double own = distance_of(points, {}, placer, limit);
+    if (own <= 1e-6 * placer.diagonal()) return {};
     SceneMotion best;
-    double smallest = limit;
+    double smallest = own <= limit ? own / 10 : limit;
     static constexpr std::pair<const char*, double> units[]{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}};
     for (const auto& [unit, metres] : units)
         for (int axis = 0; axis < 6; ++axis) {

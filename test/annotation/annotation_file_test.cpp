@@ -244,7 +244,8 @@ TEST(AnnotationFile, ErrorsOfTheFileAndItsSelections) {
     expect_error(R"({"format": "ostraka-graph", "annotations": []})", mesh, "/format", "ostraka-graph");
     expect_error(R"({"version": 3, "annotations": []})", mesh, "/version", "newer");
     expect_error(R"({"format": "ostraka-annotations", "up": [0, 0, 0], "annotations": []})", mesh, "/up", "no length");
-    expect_error(with(R"({"id": 1.5, "tag": "", "type": "point", "points": []})"), mesh, "/annotations/0/id", "integer");
+    expect_error(with(R"({"id": 1.5, "tag": "", "type": "point", "points": []})"), mesh, "/annotations/0/id",
+                 "needs a whole number");
     expect_error(with(R"({"id": 1, "type": "point", "points": []})"), mesh, "/annotations/0", "tag");
     expect_error(with(R"({"id": 1, "tag": "", "type": "volume"})"), mesh, "/annotations/0/type", "region");
     expect_error(with(R"({"id": 1, "tag": "", "type": "point"})"), mesh, "/annotations/0", "points");
@@ -256,7 +257,7 @@ TEST(AnnotationFile, ErrorsOfTheFileAndItsSelections) {
                  "/annotations/0/colour/2", "255");
     expect_error(with(R"({"id": 1, "tag": "", "type": "point", "points": [3, 16]})"), mesh, "/annotations/0/points/1",
                  "16 vertices");
-    expect_error(with(R"({"id": 1, "tag": "", "type": "point", "points": [-1]})"), mesh, "/annotations/0/points/0", "minimum");
+    expect_error(with(R"({"id": 1, "tag": "", "type": "point", "points": [-1]})"), mesh, "/annotations/0/points/0", "at least 0");
     expect_error(with(R"({"id": 1, "tag": "", "type": "line", "polylines": [[0, 1], [0, 1, 2, 15]]})"), mesh,
                  "/annotations/0/polylines/1/3", "no edge from vertex 2 to vertex 15");
     expect_error(with(R"({"id": 1, "tag": "", "type": "line", "polylines": [[0, 0]]})"), mesh, "/annotations/0/polylines/0/1",
@@ -303,7 +304,8 @@ TEST(AnnotationFile, ErrorsOfAttributes) {
     expect_error(measure(R"("tool": "bounding", "points": [0, 1])"), mesh, "/measure", "direction");
     expect_error(measure(R"("tool": "bounding", "points": [0, 1], "direction": [0, 0, 0])"), mesh, "/measure/direction",
                  "no length");
-    expect_error(measure(R"("tool": "bounding", "points": [0, 1], "direction": [0, 0])"), mesh, "/measure/direction", "minItems");
+    expect_error(measure(R"("tool": "bounding", "points": [0, 1], "direction": [0, 0])"), mesh, "/measure/direction",
+                 "at least 3 entries");
     expect_error(measure(ruler + R"([{"face": 0, "barycentric": [1, 0, 0]}])"), mesh, "/measure/locations",
                  "1 locations for 2 points");
     expect_error(measure(ruler + R"([{"face": 99, "barycentric": [1, 0, 0]}, {"face": 0, "barycentric": [1, 0, 0]}])"), mesh,

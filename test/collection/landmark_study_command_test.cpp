@@ -5,6 +5,8 @@
 #include "ostraka/interchange/specimens.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -96,8 +98,8 @@ TEST(LandmarkStudyCommand, FoldersMayMixFormats) {
     std::string table = "landmark,x,y\n", pts = "version: 1\nn_points: 10\n{\n";
     for (std::size_t k = 0; k < 10; ++k) {
         const auto& p = *set.specimens[3].positions[k];
-        table += std::to_string(k + 1) + "," + digits(p[0]) + "," + digits(p[1]) + "\n";
-        pts += digits(p[0]) + " " + digits(p[1]) + "\n";
+        table += std::to_string(k + 1) + "," + fmt::format("{:.17g}", p[0]) + "," + fmt::format("{:.17g}", p[1]) + "\n";
+        pts += fmt::format("{:.17g}", p[0]) + " " + fmt::format("{:.17g}", p[1]) + "\n";
     }
     write_file(scratch / "in" / "fish4.csv", table);
     write_file(scratch / "in" / "fish5.pts", pts + "}\n");

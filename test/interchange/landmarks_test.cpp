@@ -132,7 +132,7 @@ TEST(Landmarks, FilesOfOtherToolsAreRead) {
     EXPECT_EQ(tps(two, "first").landmarks.size(), 1U);
     EXPECT_EQ(tps(two, "2").landmarks.at(0).position, (std::array<double, 3>{-4, 0.5, 6}));
     EXPECT_NE(message([&] { tps(two); }).find("2 specimens"), std::string::npos);
-    EXPECT_NE(message([&] { tps("LM=2\n1 2\n"); }).find("two-dimensional"), std::string::npos);
+    EXPECT_NE(message([&] { tps("LM=1\n1 2\n"); }).find("two-dimensional"), std::string::npos);
     EXPECT_NE(message([&] { tps("LM3=3\n1 2 3\n"); }).find("fewer"), std::string::npos);
     const auto pp = landmarks_from_text(
         "<!DOCTYPE PickedPoints>\n<PickedPoints><DocumentData><User name=\"u\"/></DocumentData>"

@@ -257,7 +257,7 @@ TEST(Segments, OnAScan) {
 
 TEST(Reckoned, ErrorsNameTheProblem) {
     const Mesh mesh = grid(4);
-    expect_error(R"({"brush": {"points": [0], "radius": -1}})", mesh, "/brush/radius", "minimum");
+    expect_error(R"({"brush": {"points": [0], "radius": -1}})", mesh, "/brush/radius", "needs a number");
     expect_error(R"({"brush": {"points": [99], "radius": 1}})", mesh, "/brush/points/0", "99");
     expect_error(R"({"brush": {"points": [12], "radius": 0}})", mesh, "", "selects no face");
     expect_error(R"({"brush": {"points": [12], "radius": 1}})", mesh, "/brush", "poly-lines", "line");

@@ -196,7 +196,7 @@ TEST(Recipe, ErrorsNameTheStep) {
     expect_error(recipe(step("region", R"({"box": {"min": [0, 0, 5], "max": [1, 1, 6]}})")), mesh, at, "no face");
     expect_error(recipe(step("point", R"({"sphere": {"centre": [0, 0, 5], "radius": 1}})")), mesh, at, "no vertex");
     expect_error(recipe(step("region", R"({"sphere": {"centre": [0, 0, 5], "radius": -1}})")), mesh, at + "/sphere/radius",
-                 "minimum");
+                 "needs a number");
     expect_error(recipe(step("region", R"({"halfspace": {"point": [0, 0, 0], "normal": [0, 0, 0]}})")), mesh,
                  at + "/halfspace/normal", "no length");
     expect_error(recipe(step("region", R"({"vertices": [1]})")), mesh, at + "/vertices", "does not select faces");

@@ -249,7 +249,7 @@ TEST(SelectCommand, RefusalsLeaveTheFilesUnchanged) {
     refuse("--tag x --sphere 0,zero,1,1", 2, "option sphere is '0,zero,1,1' (use a number");
     refuse("--tag x --sphere 0,nan,1,1", 2, "not finite");
     refuse("--tag x --sphere 0,0,9,1", 1, "selects no face");
-    refuse("--tag x --sphere 0,0,1,-1", 1, "minimum");
+    refuse("--tag x --sphere 0,0,1,-1", 1, "needs a number");
     refuse("--tag x --rectangle 5000,0,6000,9", 1, "outside the picture");
     refuse("--tag x --rectangle 0,0,10,10 --size big", 2, "size 'big'");
     refuse("--tag x --lasso 0,0,1 1,0,0 0,1,0", 2, "needs a seed");

@@ -325,7 +325,7 @@ private:
             return value;
         });
         when(!step_.threshold.empty(), "threshold", [&] { return threshold(); });
-        when(!step_.painted.empty(), "painted", [&] { return painted(); });
+        when(step_.painted.has_value(), "painted", [&] { return painted(); });
         when(step_.segment.has_value(), "segments", [&] {
             need_seed("a segment");
             return object("clusters", *step_.segment, "smoothing", step_.smoothing, "seeds", picks({step_.seed}, "seed"));

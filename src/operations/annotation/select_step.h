@@ -11,7 +11,7 @@ struct SelectStep {
     std::string expression;  ///< a selection in the JSON form of recipes
     bool all = false;
     std::vector<double> rectangle, polygon, box, sphere, halfspace, nearest;
-    std::string threshold, component, painted;
+    std::string threshold, component;
     std::optional<int> segment;
     std::vector<std::string> path, lasso, brush, vertices;
     std::vector<int> faces, labels;
@@ -28,7 +28,7 @@ struct SelectStep {
     double zoom = 1;
     // resulting annotation
     std::string tag, action = "make";
-    std::optional<std::string> type, outline;
+    std::optional<std::string> type, outline, painted;
     std::vector<int> colour;
     std::optional<int> id;
 
