@@ -1,11 +1,13 @@
 // Known contents of each format, and the messages of refusals.
 #include "io_examples.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/io/ply.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
 #include <cstring>
+#include <random>
 
 using namespace ostraka;
 using namespace ostraka::test;

@@ -169,8 +169,9 @@ TEST_F(ImportCommand, OperationsWorkOnUnrepairedScans) {
     const auto succeeds = [&](const std::string& words, bool with_note = true) {
         const CommandResult result = run_command(words);
         EXPECT_EQ(result.code, 0) << words << "\n" << result.err;
-        if (with_note)
+        if (with_note) {
             EXPECT_NE(result.err.find("is not an oriented manifold"), std::string::npos) << words << "\n" << result.err;
+        }
     };
     const std::string scan = at("scan.ply");
     succeeds("annotation apply " + scan + " " + at("cap.recipe.json") + " " + at("scan.ant.json"));

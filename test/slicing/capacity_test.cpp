@@ -8,6 +8,7 @@
 #include "scratch.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <numbers>
