@@ -540,7 +540,8 @@ void RevolutionModel::weigh(const AxisStep& x, double amplitude) {
             errors[k].push_back(std::abs(residuals_[i]));
         }
         std::vector<double> scale(sheets_.size());
-        for (std::size_t k = 0; k < sheets_.size(); ++k) scale[k] = std::max(min_sigma, errors[k].empty() ? 0 : 1.4826 * upper_median(errors[k]));
+        for (std::size_t k = 0; k < sheets_.size(); ++k)
+            scale[k] = std::max(min_sigma, errors[k].empty() ? 0 : 1.4826 * upper_median(errors[k]));
         std::vector<double> sum(sheets_.size(), 0), weight(sheets_.size(), 0);
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             const std::size_t k = cells_[i].sheet;
