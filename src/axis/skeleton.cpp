@@ -18,6 +18,7 @@
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Random.h>
 #include <CGAL/boost/graph/Euler_operations.h>
+#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
 
 #include <queue>
@@ -208,6 +209,20 @@ Graph skeleton_of(const Mesh& part) {
     return graph;
 }
 
+/// Whether all corners of the faces lie in one plane.
+bool is_flat(const Mesh& mesh, const std::vector<Index>& faces, double scale) {
+    constexpr double flatness = 1e-9;
+    const Vector3d origin = eigen(mesh.point(corners(mesh, Face(faces.front()))[0]));
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) {
+            const Vector3d x = (eigen(mesh.point(v)) - origin) / scale;
+            sum += x * x.transpose();
+        }
+    const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvalues();
+    return squares[0] <= flatness * flatness * squares[2];
+}
+
 }  // namespace
 
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
@@ -218,6 +233,11 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         fail_input("part", fmt::format("has {} faces, too many for a skeleton", piece.size()), "simplify the mesh first");
     const Vector3d centre = eigen(moments.centroid);
     const double scale = part_diagonal(mesh, piece);
+    if (is_flat(mesh, piece, scale)) {
+        Axis flat;
+        flat.reason = "it is flat: nothing is inside";
+        return flat;
+    }
     // The library's flow does not check for cancellation.
     using Job = std::pair<Mesh, Graph>;
     const Graph graph = run_interruptibly_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -139,7 +140,14 @@ std::string rule_in_words(const std::string& keyword, const JsonValue* rule, con
                                                           {"maxLength", "a text of at most {} characters"},
                                                           {"minProperties", "at least {} members"},
                                                           {"maxProperties", "at most {} members"}};
-    if (const auto word = words.find(keyword); word != words.end()) return fmt::format(fmt::runtime(word->second), text);
+    if (const auto word = words.find(keyword); word != words.end()) {
+        std::string rule_text = fmt::format(fmt::runtime(word->second), text);
+        if (text == "1")
+            for (const auto& [plural, singular] :
+                 {std::pair("entries", "entry"), std::pair("characters", "character"), std::pair("members", "member")})
+                if (rule_text.ends_with(plural)) return rule_text.substr(0, rule_text.size() - std::strlen(plural)) + singular;
+        return rule_text;
+    }
     static const std::map<std::string, const char*> plain{{"uniqueItems", "entries that differ from each other"},
                                                           {"additionalItems", "a shorter list"},
                                                           {"pattern", "a text of another form"},

@@ -141,7 +141,9 @@ TEST(StudyTechniqueCommand, OutOfClassObjectsGetNoAnswer) {
                                     " --answer-by roundness --output " + out.string());
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_NE(result.err.find("the upward direction is unknown and z is used"), std::string::npos) << result.err;
-    EXPECT_NE(result.out.find("8 of 8 right\ntoo dissimilar to the labelled objects"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("8 of 8 right\nno answer, because they are too dissimilar to the labelled objects"),
+              std::string::npos)
+        << result.out;
     const Json report = read_json(out / "technique.json");
     validate(report, "technique", "technique.json");
     for (const auto& object : report["objects"].GetArray())

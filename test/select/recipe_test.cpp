@@ -187,8 +187,8 @@ TEST(Recipe, ErrorsNameTheStep) {
     expect_error(R"({"version": 1, "annotations": []})", mesh, "root", "format");
     expect_error(recipe("", R"("colour": 1, )"), mesh, "/colour", "unknown member 'colour'");
     expect_error(recipe(step("region", R"({"cube": 1})")), mesh, at, "unknown member 'cube'");
-    expect_error(recipe(step("region", "{}")), mesh, at, "minProperties");
-    expect_error(recipe(step("region", R"({"frame": "box", "faces": [1], "all": true})")), mesh, at, "maxProperties");
+    expect_error(recipe(step("region", "{}")), mesh, at, "at least 1");
+    expect_error(recipe(step("region", R"({"frame": "box", "faces": [1], "all": true})")), mesh, at, "at most 2");
     expect_error(recipe(step("region", R"({"faces": [1], "all": true})")), mesh, at, "two kinds");
     expect_error(recipe(step("region", R"({"faces": [99]})")), mesh, at + "/faces/0", "99");
     expect_error(recipe(step("region", R"({"box": {"min": [1, 0, 0], "max": [0, 1, 1]}})")), mesh, at + "/box",

@@ -43,13 +43,13 @@ struct AnnotationApply final : Operation {
     }
 
     void check() const override {
-        const bool own = mesh_labels || !source.empty();
+        const bool own = mesh_labels || source.has_value();
         if (own == static_cast<bool>(recipe))
             fail_usage(own ? fmt::format("{} takes a mesh and an output", mesh_labels ? "--from-ply-labels" : "--from")
                            : "a mesh, a recipe or label file, and an output are needed",
                        own ? "leave out the recipe or label file" : "give them, or --from-ply-labels, or --from");
-        if (mesh_labels && !source.empty() && source != "label")
-            fail_usage("--from-ply-labels with --from " + source, "give one of the two");
+        if (mesh_labels && source && *source != "label")
+            fail_usage("--from-ply-labels with --from " + *source, "give one of the two");
         if (edited && !is_document(recipe)) fail_usage("--edit needs a recipe", "give a recipe whose steps edit the annotations");
     }
 
@@ -80,9 +80,9 @@ struct AnnotationApply final : Operation {
     AnnotationSet from_labels(Context& context, const MeshFile& file) const {
         MeshLabels labels;
         context.record([&] {
-            labels =
-                recipe ? labels_in_file(recipe.path(), file)
-                       : labels_from(file, mesh.sources.front().object ? Path() : mesh.sources.front().file, source, mesh.file());
+            labels = recipe ? labels_in_file(recipe.path(), file)
+                            : labels_from(file, mesh.sources.front().object ? Path() : mesh.sources.front().file,
+                                          source.value_or(""), mesh.file());
         });
         if (!labels.source.empty()) context.note("labels: " + labels.source);
         using Names = std::map<std::int32_t, std::string>;
@@ -97,7 +97,7 @@ struct AnnotationApply final : Operation {
     AnnotationsOutput output;
     AnnotationPictures pictures;
     CheckVocabularyOptions words;
-    std::string source;
+    std::optional<std::string> source;
     bool mesh_labels = false;
 };
 
