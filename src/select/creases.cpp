@@ -62,8 +62,15 @@ Response respond(const Mesh& mesh, const CreaseOptions& options) {
     const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.wide)}).mean;
     std::vector<double>& values = response.values;
     values.assign(wide.size(), 0);
+    // Beside a border few faces of the ball are left, so that noise counts more than anywhere else.
+    const auto is_beside_border = [&](Vertex v) {
+        if (mesh.is_isolated(v)) return true;
+        const auto ring = mesh.vertices_around_target(mesh.halfedge(v));
+        return std::any_of(ring.begin(), ring.end(), [&](Vertex w) { return mesh.is_border(w); });
+    };
     for (const Vertex v : mesh.vertices()) {
-        if (!std::isnan(response.curvature[v]) && !std::isnan(wide[v])) values[v] = radius * (response.curvature[v] - wide[v]);
+        if (!std::isnan(response.curvature[v]) && !std::isnan(wide[v]) && !is_beside_border(v))
+            values[v] = radius * (response.curvature[v] - wide[v]);
         else response.curvature[v] = 0;
     }
     if (mesh.number_of_faces() > 0) response.deviation = robust_deviation(mesh, values);

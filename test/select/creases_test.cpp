@@ -67,7 +67,6 @@ TEST(Creases, NoiseHidesAndAddsNoCreases) {
     CreaseOptions options = fine();
     options.kind = CreaseOptions::Kind::ridge;
     const auto creases = find_creases(mesh, options);
-    for (const auto& crease : creases) std::cout << crease.closed << " " << crease.line.size() << " z " << mesh.point(Vertex(crease.line[0])).z() << " H " << crease.mean_curvature << "\n";
     ASSERT_EQ(creases.size(), 1U);
     EXPECT_TRUE(creases[0].closed);
     for (const Index v : creases[0].line) EXPECT_NEAR(mesh.point(Vertex(v)).z(), 30, 1.2);

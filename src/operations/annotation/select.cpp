@@ -84,6 +84,7 @@ struct AnnotationSelect final : Operation {
             replay = {"annotation apply", {}, {context.provenance().inputs.front()}};
             for (const OperationEntry& entry : operations())
                 if (entry.name == replay->command) replay->options = Call(entry).parameters().options.values();
+            std::erase_if(replay->options, [](const auto& option) { return option.second.empty(); });
             replay->inputs.emplace_back(recipe.path().filename().string(), sha256(text));
             for (const Path& named : files_named_by(steps, folder)) replay->add_input(named);
         }
