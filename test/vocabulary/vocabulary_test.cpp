@@ -115,7 +115,7 @@ TEST(Vocabulary, InvalidInputIsRefused) {
     expect_error(changed(R"({"name": "remark"})", R"({"name": "Height "})"), "/concepts/0/attributes/1", "twice");
     expect_error(changed(R"("curly", "wavy", "straight"])", R"("curly", "wavy", "Wavy"])"), "/values/2", "twice");
     expect_error(changed(R"(["curly", "wavy", "straight"])", R"(["curly"], "min": 1)"), "/concepts/3/attributes/0", "keep one");
-    expect_error(changed(R"("id": "nose")", R"("id": "")"), "/concepts/4/id", "minLength");
+    expect_error(changed(R"("id": "nose")", R"("id": "")"), "/concepts/4/id", "at least 1 character");
     expect_error(changed(R"("id": "nose")", R"("id": "nose", "lable": "x")"), "/concepts/4", "unknown member 'lable'");
     expect_error(changed(R"("format": "ostraka-vocabulary")", R"("format": "ostraka-recipe")"), "/format", "ostraka-recipe");
     expect_error(changed(R"({"en": "head")", R"({"english!": "head")"), "/concepts/0/label", "not a language tag");

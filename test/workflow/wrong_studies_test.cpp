@@ -22,7 +22,7 @@ const Wrong wrong_studies[]{
     {"a version to come", "!{\"format\": \"ostraka-study\", \"version\": 2, \"steps\": {}}", "/version", "schema"},
     {"no steps", R"("title": "x")", "the root", "steps"},
     {"a list of objects", R"("objects": [{"mesh": "a.ply"}])", "wrong.study.json", "ostraka study"},
-    {"empty steps", R"("steps": {})", "/steps", "minProperties"},
+    {"empty steps", R"("steps": {})", "/steps", "at least 1 member"},
     {"an unknown member", R"("stepps": {}, "steps": {)" GOOD "}", "/stepps", "misspelt"},
     {"an unknown member of a step", R"("steps": {"a": {"operation": "mesh make", "wiht": {}}})", "/steps/a/wiht", "misspelt"},
     {"two steps of one name", R"("steps": {)" GOOD ", " GOOD "}", "\"a\"", "twice"},
