@@ -112,7 +112,7 @@ TEST(RelationCommand, BadInput) {
     };
     expect(add + " --type adjacency --annotation body --annotation 77", 1, "has no annotation '77'");
     expect(add + " --type adjacency --annotation body --annotation wing", 1, "has no annotation 'wing'");
-    expect(add + " --type adjacency --annotation body", 1, "is said of 1 annotation");
+    expect(add + " --type adjacency --annotation body", 1, "relates 1 annotation");
     expect(add + " --type adjacensy --annotation body --annotation lid", 2, "did you mean 'adjacency'?");
     expect(add + " --type 'same level' --annotation body --annotation lid --tolerance height=-1", 2, "negative");
     expect(add + " --type 'same level' --annotation body --annotation lid --tolerance height", 2, "not a tolerance");
