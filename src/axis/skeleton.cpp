@@ -18,8 +18,8 @@
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Random.h>
 #include <CGAL/boost/graph/Euler_operations.h>
-#include <Eigen/Eigenvalues>
 #include <fmt/core.h>
+#include <Eigen/Eigenvalues>
 
 #include <queue>
 #include <set>
