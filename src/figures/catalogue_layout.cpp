@@ -39,7 +39,7 @@ void scale_with_bar(Sheet& sheet, double x, double y, double scale, double room)
     sheet.text(scale_text(scale), x + bar + 34, y + 5, 0, 9);
 }
 
-/// A line of text: a label and a text, or a heading.
+/// A printed line: a label with its value, or a heading.
 struct TextLine {
     std::string label, text;
     bool heading = false;

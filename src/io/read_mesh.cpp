@@ -52,6 +52,8 @@ struct OtherFormat {
     const char *ending, *name, *converter;
 };
 constexpr const char* by_assimp = "convert it, for example: assimp export {} NAME.glb";
+constexpr const char* by_meshlab = "convert it to PLY or OBJ, for example with MeshLab (File, Export Mesh As)";
+constexpr const char* by_freecad = "convert it to STL, for example with FreeCAD (File, Export)";
 constexpr const char* by_blender = "convert it to GLB, for example with Blender (File, Export, glTF 2.0)";
 constexpr std::array other_formats{
     OtherFormat{".dae", "COLLADA", by_assimp},
@@ -61,18 +63,18 @@ constexpr std::array other_formats{
     OtherFormat{".3ds", "3D Studio", by_assimp},
     OtherFormat{".lwo", "LightWave", by_assimp},
     OtherFormat{".ac", "AC3D", by_assimp},
-    OtherFormat{".wrl", "VRML", "convert it to PLY or OBJ, for example with MeshLab (File, Export Mesh As)"},
-    OtherFormat{".vrml", "VRML", "convert it to PLY or OBJ, for example with MeshLab (File, Export Mesh As)"},
+    OtherFormat{".wrl", "VRML", by_meshlab},
+    OtherFormat{".vrml", "VRML", by_meshlab},
     OtherFormat{".blend", "a scene of Blender", by_blender},
     OtherFormat{".usd", "USD", by_blender},
     OtherFormat{".usda", "USD", by_blender},
     OtherFormat{".usdc", "USD", by_blender},
     OtherFormat{".usdz", "USD", by_blender},
     OtherFormat{".abc", "Alembic", by_blender},
-    OtherFormat{".step", "STEP", "convert it to STL, for example with FreeCAD (File, Export)"},
-    OtherFormat{".stp", "STEP", "convert it to STL, for example with FreeCAD (File, Export)"},
-    OtherFormat{".iges", "IGES", "convert it to STL, for example with FreeCAD (File, Export)"},
-    OtherFormat{".igs", "IGES", "convert it to STL, for example with FreeCAD (File, Export)"},
+    OtherFormat{".step", "STEP", by_freecad},
+    OtherFormat{".stp", "STEP", by_freecad},
+    OtherFormat{".iges", "IGES", by_freecad},
+    OtherFormat{".igs", "IGES", by_freecad},
     OtherFormat{".vtk", "legacy VTK", "convert it to PLY, for example with ParaView (File, Save Data)"},
     OtherFormat{".vtp", "VTK PolyData", "convert it to PLY, for example with ParaView (File, Save Data)"},
     OtherFormat{".drc", "Draco without glTF", "convert it, for example: draco_decoder -i {} -o NAME.ply"},
