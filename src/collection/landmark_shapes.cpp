@@ -73,14 +73,8 @@ void resample_curves(LandmarkSpecimen& specimen, std::size_t count) {
 
 /// Points of annotations as landmarks of one specimen.
 LandmarkSpecimens from_annotations(AnnotatedMeshView object) {
-    const LandmarkSet set = landmarks_of(object, LandmarkFormat::csv);
-    LandmarkSpecimens result;
-    result.unit = set.unit;
-    LandmarkSpecimen& specimen = result.specimens.emplace_back();
-    for (const Landmark& landmark : set.landmarks) {
-        specimen.landmarks.push_back(landmark.name);
-        specimen.positions.emplace_back(landmark.position);
-    }
+    LandmarkSpecimens result = one_specimen(landmarks_of(object, LandmarkFormat::csv));
+    result.notes.clear();  // on annotations that are not points
     return result;
 }
 

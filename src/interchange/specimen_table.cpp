@@ -141,15 +141,7 @@ LandmarkSpecimens read_specimen_table(const std::string& bytes, const std::strin
         (planar || with_specimens || column_named(rows.front(), {"defined"}) == no_column))
         return one_row_per_landmark(rows, where);
     // Tables of one specimen in other forms: without a header, or with the axes of an anatomical space.
-    const LandmarkSet set = read_landmark_table(bytes, where, {});
-    LandmarkSpecimens result;
-    result.notes = set.notes;
-    LandmarkSpecimen& specimen = result.specimens.emplace_back();
-    for (const Landmark& landmark : set.landmarks) {
-        specimen.landmarks.push_back(landmark.name);
-        specimen.positions.emplace_back(landmark.position);
-    }
-    return result;
+    return one_specimen(read_landmark_table(bytes, where, {}));
 }
 
 }  // namespace ostraka::interchange

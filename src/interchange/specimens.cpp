@@ -25,28 +25,6 @@ constexpr std::array<const char*, 10> specimen_endings{".mrk.json", ".fcsv", ".p
 
 bool has_ending(const std::string& name, const char* ending) { return lower_case(name).ends_with(ending); }
 
-/// One specimen from a set of named points.
-LandmarkSpecimens one_specimen(const LandmarkSet& set) {
-    LandmarkSpecimens result;
-    result.unit = set.unit;
-    result.notes = set.notes;
-    LandmarkSpecimen& specimen = result.specimens.emplace_back();
-    for (const Landmark& landmark : set.landmarks) {
-        specimen.landmarks.push_back(landmark.name);
-        specimen.positions.emplace_back(landmark.position);
-    }
-    for (const LandmarkCurve& curve : set.curves) {
-        SpecimenCurve points{curve.name, curve.closed, {}};
-        for (std::size_t i = 0; i < curve.points.size(); ++i) {
-            points.points.push_back(specimen.positions.size());
-            specimen.landmarks.push_back(fmt::format("{} {}", curve.name, i + 1));
-            specimen.positions.emplace_back(curve.points[i]);
-        }
-        specimen.curves.push_back(std::move(points));
-    }
-    return result;
-}
-
 LandmarkSpecimens read_format(const std::string& bytes, const std::string& where) {
     const auto named = [&](const char* ending) { return has_ending(where, ending); };
     if (named(".tps")) return read_tps_specimens(bytes, where);
@@ -90,6 +68,27 @@ void name_specimens(LandmarkSpecimens& set, const std::string& where) {
 }
 
 }  // namespace
+
+LandmarkSpecimens one_specimen(const LandmarkSet& set) {
+    LandmarkSpecimens result;
+    result.unit = set.unit;
+    result.notes = set.notes;
+    LandmarkSpecimen& specimen = result.specimens.emplace_back();
+    for (const Landmark& landmark : set.landmarks) {
+        specimen.landmarks.push_back(landmark.name);
+        specimen.positions.emplace_back(landmark.position);
+    }
+    for (const LandmarkCurve& curve : set.curves) {
+        SpecimenCurve points{curve.name, curve.closed, {}};
+        for (std::size_t i = 0; i < curve.points.size(); ++i) {
+            points.points.push_back(specimen.positions.size());
+            specimen.landmarks.push_back(fmt::format("{} {}", curve.name, i + 1));
+            specimen.positions.emplace_back(curve.points[i]);
+        }
+        specimen.curves.push_back(std::move(points));
+    }
+    return result;
+}
 
 namespace interchange {
 

@@ -10,12 +10,12 @@
 
 namespace ostraka::detail {
 
-namespace {
-
-void add_contour_pieces(PlaneSegments& segments, const Contour& contour) {
+void add_pieces(PlaneSegments& segments, const Contour& contour) {
     for (std::size_t i = 0; i < contour.faces.size(); ++i)
         segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
 }
+
+namespace {
 
 /// Lower bound of the length that joins the ends of open contours: from each end to the nearest start.
 double min_gap_length(const std::vector<Contour>& contours) {
@@ -41,7 +41,7 @@ OpenArc open_arc(const std::vector<Contour>& contours) {
             continue;
         }
         PlaneSegments pieces;
-        add_contour_pieces(pieces, contour);
+        add_pieces(pieces, contour);
         const Circle circle = fit_circle(pieces);
         if (!(circle.radius > 0)) continue;
         double winding = 0;

@@ -12,6 +12,9 @@ namespace ostraka::detail {
 /// overlapping boxes; in parallel.
 bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_whole_mesh);
 
+/// Adds the pieces of the contour: one for each face that it crosses (completeness.cpp).
+void add_pieces(PlaneSegments& segments, const Contour& contour);
+
 /// Sets parent and depth of the closed contours, which come first in `contours`, sorted by decreasing absolute area
 /// (nesting.cpp). Exact for the given points, also where contours touch. Time: O(n log n) for contours of similar size: a
 /// horizontal line through a point is compared only with the edges of one thin strip.

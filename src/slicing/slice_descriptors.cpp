@@ -17,10 +17,7 @@ namespace ostraka {
 
 namespace {
 
-void add_pieces(PlaneSegments& segments, const Contour& contour) {
-    for (std::size_t i = 0; i < contour.faces.size(); ++i)
-        segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
-}
+using detail::add_pieces;
 
 /// Whether an outer contour contains the contour.
 bool is_within(const Slice& slice, const Contour& contour) {

@@ -39,6 +39,9 @@ struct SpecimenOptions {
     void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
+/// The named points of a set as one specimen without a name; points of curves become landmarks `CURVE 1`, `CURVE 2`, ...
+LandmarkSpecimens one_specimen(const LandmarkSet& set);
+
 /// Whether the file name ends as a landmark file does: .mrk.json, .fcsv, .pp, .tps, .nts, .dta, .pts, .csv, .txt, .morphologika.
 bool is_specimen_file(const Path& file);
 
