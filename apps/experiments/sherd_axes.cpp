@@ -5,6 +5,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/rigid_fit.h"
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 
