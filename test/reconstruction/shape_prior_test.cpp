@@ -129,7 +129,7 @@ TEST(ShapePrior, RefusesWhatDoesNotFitTheTemplate) {
     refused(prior, "modes");
     prior = prior_of_bodies(mesh);
     prior.deviations[1] = 0;
-    refused(prior, "vary");
+    refused(prior, "zero variance");
 }
 
 }  // namespace

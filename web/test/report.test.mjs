@@ -466,7 +466,7 @@ try {
     ostraka("report", at("two-parts.ply"), at("apart.html"));
     const { page, told, close } = await open(at("apart.html"));
     const before = await page.evaluate(() => globalThis.ostraka.objects[0].vertex(0).toArray());
-    await page.locator('.toolbar input[type="range"]').first().fill("0.5");
+    await page.locator('.toolbar > .slider input[type="range"]').first().fill("0.5");
     const after = await page.evaluate(() => globalThis.ostraka.objects[0].vertex(0).toArray());
     assert.ok(after[2] < before[2] - 10, "the lower part goes down");
     const places = await probe(page, 12);
