@@ -35,7 +35,7 @@ void find_topology(benchmark::State& state) {
     std::size_t faces = 0, pairs = 0;
     for (const Annotation& annotation : set.annotations) faces += annotation.faces.size();
     for ([[maybe_unused]] const auto lap : state) {
-        const Topology result = topology({mesh, set});
+        const AnnotationTopology result = topology({mesh, set});
         pairs = 0;
         for (const auto& containers : result.order.containers) pairs += containers.size();
     }

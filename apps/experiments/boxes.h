@@ -26,7 +26,7 @@ struct BoxOptions {
     std::string output;
     int pieces = 8;
     std::uint64_t seed = 0;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("boxes", boxes,
              "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in assembled "
              "layout");

@@ -22,8 +22,8 @@ struct ControlPointOptions : AnnotatedOptions {
     ControlPointOptions() { output = "experiments-output/figures-5-11-5-12"; }
     std::string cage, weights;
     double threshold = 0.4;
-    void list_options(OptionList& list) {
-        AnnotatedOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        AnnotatedOptions::declare_options(list);
         list("cage", cage, "cage of the mesh").positional().required();
         list("weights", weights, "file of 'ostraka cage weights'").positional().required();
         list("threshold", threshold, "min influence of a control point", Range{0, 1});
@@ -105,8 +105,8 @@ struct CageReachOptions : AnnotatedOptions {
     std::string graph;
     std::vector<std::string> edits, cages;
     int iterations = 100;
-    void list_options(OptionList& list) {
-        AnnotatedOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        AnnotatedOptions::declare_options(list);
         list("graph", graph, "relationships, some of them constraints").positional().required();
         list("edit", edits, "files of edits, NAME.edit.json").required();
         list("cage", cages, "files of cages, NAME.ply").required();

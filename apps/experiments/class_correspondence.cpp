@@ -20,7 +20,7 @@ struct ClassCorrespondenceOptions {
     std::vector<std::string> faces, targets;
     std::string landmarks, body;
     int made = 30;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("face", faces, "mesh files of faces in correspondence, the neutral one first").required();
         list("landmarks", landmarks, "file of vertex indices of a face, one per line").required();
         list("body", body, "mesh file of a body");

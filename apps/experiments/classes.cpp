@@ -94,9 +94,10 @@ struct Compared {
     double unlike;
 };
 double unlike_where_nothing_else_speaks(const ClassAnswer& answer) {
-    const bool against = std::any_of(answer.against.begin(), answer.against.end(),
+    const bool against = std::any_of(answer.rejecting_checks.begin(), answer.rejecting_checks.end(),
                                      [&](std::size_t k) { return answer.checks[k].quantity.name != unlike_the_members; });
-    return against || !answer.off.empty() || !answer.unlike ? std::numeric_limits<double>::infinity() : *answer.unlike;
+    return against || !answer.fit_problem.empty() || !answer.dissimilarity ? std::numeric_limits<double>::infinity()
+                                                                           : *answer.dissimilarity;
 }
 
 /// Prints the accepted out-of-class objects against the recognised members for an increasing common limit of dissimilarity.
@@ -105,10 +106,10 @@ void print_curve(const std::vector<Compared>& points, const char* title, const s
     std::map<std::size_t, double> nearest;
     for (const Compared& point : points) {
         if (!only.empty() && (only.count(point.object_class) == 0 || only.count(point.compared) == 0)) continue;
-        (point.object_class == point.compared ? members : others).push_back(point.unlike);
+        (point.object_class == point.compared ? members : others).push_back(point.dissimilarity);
         if (point.object_class == point.compared) continue;
-        double& least = nearest.try_emplace(point.object, point.unlike).first->second;
-        least = std::min(least, point.unlike);
+        double& least = nearest.try_emplace(point.object, point.dissimilarity).first->second;
+        least = std::min(least, point.dissimilarity);
     }
     std::sort(members.begin(), members.end());
     fmt::print("\nAccepted against recognised, {}:\n\n", title);
@@ -290,8 +291,8 @@ void LeaveOneOut::ask(std::size_t arm, const Way& way) const {
         rates.add(list, object.class_name);
         for (const ClassAnswer& answer : list) {
             const auto reasons = answer.reasons();
-            answers(object.member.name, answer.name, to_string(answer.verdict), answer.score, answer.unlike.value_or(-1),
-                    answer.fit.residuals ? answer.fit.residuals->off() : 0, answer.against.size(),
+            answers(object.member.name, answer.name, to_string(answer.verdict), answer.score, answer.dissimilarity.value_or(-1),
+                    answer.fit.residuals ? answer.fit.residuals->off() : 0, answer.rejecting_checks.size(),
                     reasons.empty() ? answer.undecided : reasons.front());
             curve.push_back({object.class_name, i, answer.name, unlike_where_nothing_else_speaks(answer)});
         }
@@ -369,14 +370,14 @@ void LeaveOneOut::ask_made(const std::vector<ClassObject>& made, std::size_t arm
         const Classification answer = decide(object.member.name, std::move(list));
         const ClassAnswer& near = answer.answers[static_cast<std::size_t>(answer.nearest)];
         table.row("{} | {} | {} | {} | {} | {:.2f} | {:.0f}", object.member.name, to_string(answer.verdict), members, open,
-                  near.name, near.unlike.value_or(-1), 100 * near.fit.residuals->off());
+                  near.name, near.dissimilarity.value_or(-1), 100 * near.fit.residuals->off());
     }
 }
 
 struct ClassMembershipOptions : FitSettings {
     std::string models, labels;
     std::uint64_t members = 1000;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("models", models, "folder with <class>/<number>.off").positional().required();
         list("output", output, "output folder");
         list("labels", labels, "folder with <class>/<number>/*.seg");
@@ -414,7 +415,7 @@ void class_membership(const ClassMembershipOptions& options) {
 struct ClassSizeOptions {
     std::string output = "experiments-output/class-size";
     std::uint64_t vertices = 4000, seed = 1;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "output folder");
         list("vertices", vertices, "number of vertices of each object; thin handles need about 4000");
         list("seed", seed, "random seed of the variation between members");

@@ -25,7 +25,7 @@ struct TechniqueExperiment {
     int objects = 100, seeds = 2;
     std::uint64_t vertices = 5000;
     bool variants = false;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables and plots").positional().required();
         list("objects", objects, "number of statuettes of a population", Range{10, 100000});
         list("seeds", seeds, "number of populations of each level", Range{1, 1000});
@@ -186,7 +186,7 @@ const Registration registered_technique(
 struct FixedProportionsOptions {
     std::string output = "experiments-output/proportions";
     int seeds = 100;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for table and plot").positional();
         list("seeds", seeds, "number of populations of each kind", Range{1, 100000});
     }
@@ -323,7 +323,9 @@ const Registration registered_proportions("proportions", "planted proportions fo
 
 struct ClusterPictureOptions {
     std::string output;
-    void list_options(OptionList& list) { list("output", output, "folder for the plot and its table").positional().required(); }
+    void declare_options(OptionList& list) {
+        list("output", output, "folder for the plot and its table").positional().required();
+    }
 };
 
 struct Form {

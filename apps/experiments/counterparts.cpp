@@ -30,7 +30,7 @@ struct CounterpartOptions {
     std::vector<std::string> ways{"nearest", "surface", "one-to-one", "sliding"};
     std::uint64_t vertices = 3000, seed = 1;
     double strength = 0.2;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("objects", objects, "names of synthetic objects");
         list("pairs", pairs, "TEMPLATE=MEMBER: mesh files in correspondence");
         list("cases", cases, "cases by name or number, from 1; empty: all");

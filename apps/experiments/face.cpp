@@ -96,8 +96,8 @@ Method by_graph(const Subject& subject, const std::vector<Point>& edited, const 
 
 struct FaceOptions : SemanticOptions {
     std::string mesh, recipe;
-    void list_options(OptionList& list) {
-        SemanticOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        SemanticOptions::declare_options(list);
         list("mesh", mesh, "mesh file of a face; without it a synthetic head");
         list("recipe", recipe, "recipe of its eyes and nose").required();
     }

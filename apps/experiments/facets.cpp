@@ -24,7 +24,7 @@ struct FacetOptions {
     std::string model, pictures;
     std::vector<std::string> meshes, scanned, judged;
     bool each = false;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("objects", objects, "number of training objects of each kind", Range{4, 1000});
         list("seed", seed, "random seed of objects and fractures");
         list("trees", boosting.trees, "number of trees of the model", Range{1, 10000});

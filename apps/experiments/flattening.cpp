@@ -60,8 +60,8 @@ struct Figure46Options : AnnotatedOptions {
     std::string cage, region;
     std::vector<std::string> kinds{"mean-value"};
     int nodes = 20000;
-    void list_options(OptionList& list) {
-        AnnotatedOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        AnnotatedOptions::declare_options(list);
         list("cage", cage, "cage of the mesh").positional().required();
         list("region", region, "tag of the region to be flattened").positional().required();
         list("kind", kinds, "kinds of cage coordinates");
@@ -232,7 +232,7 @@ struct Table41Options {
     double share = 0.025;
     std::uint64_t cage_vertices = 200;
     int iterations = 50, convergence = 0;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("made", made, "name of a synthetic object");
         list("scan", scan, "mesh file instead; refined and simplified to each number of vertices");
         list("sizes", sizes, "numbers of vertices", Range{100, 1e8});

@@ -25,7 +25,7 @@ struct ExperimentOptions {
     std::vector<double> shares{0.1, 0.25, 0.5};
     int seeds = 4;
     std::uint64_t vertices = 12000;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for the table").positional();
         list("seeds", seeds, "number of fragments of each kind", Range{1, 1000});
         list("shares", shares, "sizes of fragments, as shares of the surface");
@@ -38,7 +38,7 @@ struct VerdictOptions {
     std::string output = "experiments-output/fragments";
     std::uint64_t vertices = 12000, seed = 1;
     int pairs = 200;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for the table").positional();
         list("pairs", pairs, "number of pairs, half of them of one object", Range{4, 100000});
         list("vertices", vertices, "number of vertices of the template", Range{4000, 1000000});

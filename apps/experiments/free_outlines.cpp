@@ -27,7 +27,7 @@ struct FreeOutlineOptions {
     std::vector<double> shares{0.005, 0.025, 0.1};
     int discs = 3;
     std::string csv;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("objects", objects, "made:NAME or mesh files");
         list("sizes", sizes, "numbers of vertices, in ascending order", Range{100, 1e8});
         list("shares", shares, "sizes of the regions, as shares of the surface");

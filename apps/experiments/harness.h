@@ -30,13 +30,13 @@ struct Experiment {
 std::vector<Experiment>& experiments();
 
 /// Adds an experiment to the program: a constant of this type stands below the function that runs it. `Options` lists its
-/// fields in `list_options`; texts of lists may be joined by commas.
+/// fields in `declare_options`; texts of lists may be joined by commas.
 struct Registration {
     template <class Options>
     Registration(std::string name, std::string help, void (*run)(const Options&)) {
         const auto options = std::make_shared<Options>();
         OptionList list;
-        options->list_options(list);
+        options->declare_options(list);
         experiments().push_back({std::move(name), std::move(help), std::move(list), [=] { run(*options); }});
     }
 };

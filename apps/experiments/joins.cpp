@@ -24,8 +24,8 @@ struct JoinOptions : BoxOptions {
     std::vector<std::string> rows;
     std::string model, recipe, facets = "known";
     bool adjacent_only = false;
-    void list_options(OptionList& list) {
-        BoxOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        BoxOptions::declare_options(list);
         list("rows", rows, "joins.csv of earlier runs, as additional training data");
         list("model", model, "model file to train and write (data/joins.model.json)");
         list("recipe", recipe, "description of the training, stored in the model");
@@ -331,8 +331,8 @@ struct AssemblyOptions : BoxOptions {
     AssemblyOptions() { output = "experiments-output/assemblies", pieces = 10; }
     int strangers = 10;
     bool found = false;
-    void list_options(OptionList& list) {
-        BoxOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        BoxOptions::declare_options(list);
         list("strangers", strangers, "number of unrelated fragments per box, one from each of the other boxes", Range{0, 100});
         list("found", found, "facets that the library finds, instead of known ones");
     }
@@ -395,7 +395,7 @@ Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& 
         outcome.joins.add(right);
         if (join.confidence >= 0.9) outcome.sure.add(right);
         if (join.confidence >= 0.5) outcome.even.add(right);
-        joins(name, fragments[i].name, fragments[j].name, right, join.confidence, join.pair, join.loops, join.carries,
+        joins(name, fragments[i].name, fragments[j].name, right, join.confidence, join.pair_probability, join.loops, join.carries,
               join.evidence.share);
     }
     outcome.pairs = result.pairs_tried;

@@ -160,7 +160,7 @@ struct MouldExperiment {
     std::vector<std::string> parts, faces;
     int objects = 40, casts = 43, seeds = 3;
     std::uint64_t vertices = 10000;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables and plots").positional();
         list("part", parts, "parts of the experiment; empty: all", Choices{"choices", "wear", "runs", "scans"});
         list("face", faces, "mesh files of faces in correspondence, for the part scans");

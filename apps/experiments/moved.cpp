@@ -18,8 +18,8 @@ struct MovedOptions : AnnotatedOptions {
     MovedOptions() { output = "experiments-output/moved"; }
     std::string fit, pose, fragment;
     std::vector<std::string> shapes;
-    void list_options(OptionList& list) {
-        AnnotatedOptions::list_options(list);
+    void declare_options(OptionList& list) {
+        AnnotatedOptions::declare_options(list);
         list("shapes", shapes, "mesh files with the same vertices").positional();
         list("fit", fit,
              "instead of shapes: folder of 'ostraka fit --no-join' for a fragment of the mesh; its completed.ply is the shape, "

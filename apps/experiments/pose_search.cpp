@@ -27,7 +27,7 @@ struct PoseSearchExperiment {
     std::uint64_t vertices = 25000;
     PoseSearchOptions search;
     std::string csv;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("whole", wholes, "mesh files, or made:NAME: pieces of the same object");
         list("member", members, "TEMPLATE=MEMBER: pieces of another member of the class, in the same frame");
         list("stranger", strangers, "TEMPLATE=OTHER: pieces of unrelated objects");

@@ -18,7 +18,7 @@ struct DefectOptions {
     int combinations = 20;
     std::uint64_t seed = 1;
     std::string csv;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("meshes", meshes, "closed meshes; others are left out").positional().required();
         list("combinations", combinations, "number of combinations of defects per mesh", Range{1, 100000});
         list("seed", seed, "random seed of the defects");

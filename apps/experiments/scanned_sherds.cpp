@@ -30,7 +30,7 @@ struct ScannedOptions {
     std::string output = "experiments-output/breaks";
     std::string data = "../shared/data";
     int motions = 3;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables and meshes").positional();
         list("data", data, "folder with fragments-bottle-pair and fragments-vessel-sherds");
         list("motions", motions, "number of random motions of all sherds", Range{1, 1000});

@@ -44,7 +44,7 @@ struct Subject : AnnotatedMesh {
 /// Options of experiments on an annotated mesh.
 struct AnnotatedOptions {
     std::string mesh, annotations, output = "experiments-output";
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("mesh", mesh, "mesh file").positional().required();
         list("annotations", annotations, "annotations of the mesh (.ant.json)").positional().required();
         list("output", output, "output folder");

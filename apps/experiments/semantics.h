@@ -17,7 +17,7 @@ struct SemanticOptions {
     std::string output, data;
     std::uint64_t vertices = 0;
     int convergence = 0;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables, plots and meshes").positional().required();
         list("vertices", vertices, "number of vertices of synthetic objects; 0: as in the thesis");
         list("convergence", convergence, "number of iterations, plain and accelerated, that are compared; 0: none",

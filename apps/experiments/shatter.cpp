@@ -381,7 +381,7 @@ Sherd simplified(const Sherd& sherd, std::uint64_t vertices) {
     return result;
 }
 
-void PotOptions::list_options(OptionList& list) {
+void PotOptions::declare_options(OptionList& list) {
     list("height", height, "of the vessel", Range{1e-9, 1e9});
     list("radius", radius, "of the body", Range{1e-9, 1e9});
     list("wall", wall, "thickness of the wall", Range{1e-9, 1e9});
@@ -389,7 +389,7 @@ void PotOptions::list_options(OptionList& list) {
     list("shape", shape, "of the profile: another number is another vessel", Range{0, 9007199254740992.0});
 }
 
-void ShatterOptions::list_options(OptionList& list) {
+void ShatterOptions::declare_options(OptionList& list) {
     list("pieces", pieces, "at least so many pieces", Range{1, 1000});
     list("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
     list("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});

@@ -17,7 +17,7 @@ struct PotOptions {
     double wall = 0.6;        ///< thickness
     double edge = 0.35;       ///< edge length of the triangles
     std::uint64_t shape = 1;  ///< random seed of the shape
-    void list_options(OptionList& list);
+    void declare_options(OptionList& list);
 };
 
 /// A wheel-thrown vessel with a floor, about the vertical axis: closed, oriented outwards. Throws Error (usage) for options out
@@ -41,7 +41,7 @@ struct ShatterOptions {
     double patchiness = 0;  ///< variation of erosion over the surface: 0 none, 1 from zero to double
     double noise = 0;       ///< standard deviation of vertices along their normals, as a share of the whole's diagonal
     std::uint64_t seed = 1;
-    void list_options(OptionList& list);
+    void declare_options(OptionList& list);
 };
 
 /// A piece of a closed mesh, in its original position.

@@ -28,7 +28,7 @@ struct SherdAxesOptions {
     std::vector<std::string> profiles{"bowl", "jar", "cup"};
     double height = 50, step = 1, assumed = 0.005, max_interval = 0.1, roughness = 0.4;
     bool open = false, facets = false, smooth = false;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables").positional();
         list("draws", draws, "number of sherds of each kind", Range{1, 100000});
         list("first", first, "number of sherds to skip", Range{0, 1000000});

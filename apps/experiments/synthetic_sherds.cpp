@@ -25,7 +25,7 @@ struct VesselOptions {
     std::string output = "experiments-output/breaks";
     int pots = 4, first = 0;
     bool write = false;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("output", output, "folder for tables and meshes").positional();
         list("pots", pots, "number of synthetic vessels of each kind", Range{1, 1000});
         list("first", first, "number of vessels to skip", Range{0, 100000});

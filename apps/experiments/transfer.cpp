@@ -30,7 +30,7 @@ struct TableOptions {
     std::vector<int> rungs{50000, 5000, 100000, 1000000};
     std::string metric, csv;
     bool no_independent = false, truth_only = false;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("made", made, "names of synthetic objects, or none");
         list("scan", scans, "mesh files of scans; they are subdivided smoothly to the full resolution");
         list("full", full, "number of vertices of the full resolution");
@@ -327,7 +327,7 @@ const Registration registered_table(
 struct LabelOptions {
     std::string models, labels, csv;
     std::uint64_t limit = 0;
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("models", models, "folder with <class>/<number>.off").positional().required();
         list("labels", labels, "folder with <class>/<number>/<number>_0.seg").positional().required();
         list("csv", csv, "file for the raw rows");

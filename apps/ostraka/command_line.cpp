@@ -281,7 +281,7 @@ std::size_t matching_extensions(Call& call, const std::vector<std::string>& orde
         const Slot* slot = call.parameters().slot(order[i]);
         if (slot == nullptr) continue;
         const std::string file = lower_case(files[i]);
-        const auto endings = endings_of(slot->kind);
+        const auto endings = extensions_of(slot->kind);
         count += std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return file.ends_with(ending); }) ? 1 : 0;
     }
     return count;
@@ -338,7 +338,7 @@ void refuse_missing(const Call& call) {
 [[noreturn]] void refuse_extra(const Call& call, const std::string& word) {
     std::string remedy = fmt::format("'ostraka {} --help' shows what it takes", call.entry().name);
     for (const Slot* slot : call.parameters().slots()) {
-        const auto endings = endings_of(slot->kind);
+        const auto endings = extensions_of(slot->kind);
         if (!slot->is_positional && slot->role == Role::input && (slot->sources.empty() || slot->repeated) &&
             std::any_of(endings.begin(), endings.end(), [&](const auto& ending) { return word.ends_with(ending); }))
             remedy = fmt::format("give it as --{} {}", slot->name, printable(word, 60));

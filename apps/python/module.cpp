@@ -61,7 +61,7 @@ py::str shown(const Report& report, const std::string& format) {
 
 /// File name of an output that stays in memory.
 std::string default_name(const Slot& slot) {
-    const auto endings = endings_of(slot.kind);
+    const auto endings = extensions_of(slot.kind);
     return slot.name + (endings.empty() ? slot.kind == Kind::values ? ".npy" : "" : endings.front());
 }
 

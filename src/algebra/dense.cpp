@@ -109,7 +109,7 @@ Cholesky::~Cholesky() = default;
 Cholesky::Cholesky(Cholesky&&) noexcept = default;
 Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
 void Cholesky::compute(const Eigen::MatrixXd& a) { factor_->compute(a); }
-bool Cholesky::found() const { return factor_->info() == Eigen::Success; }
+bool Cholesky::succeeded() const { return factor_->info() == Eigen::Success; }
 double Cholesky::rcond() const { return factor_->rcond(); }
 Eigen::VectorXd Cholesky::solve(const Eigen::VectorXd& b) const { return factor_->solve(b); }
 Eigen::MatrixX3d Cholesky::solve(const Eigen::MatrixX3d& b) const { return factor_->solve(b); }

@@ -384,7 +384,7 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     return set;
 }
 
-void ReadAnnotationsOptions::list_options(OptionList& list) {
+void ReadAnnotationsOptions::declare_options(OptionList& list) {
     list("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
          Anything{});
 }

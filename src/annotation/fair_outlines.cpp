@@ -404,7 +404,7 @@ std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set
     return Fairing(mesh, options).run(std::move(annotations));
 }
 
-void FairOptions::list_options(OptionList& list) {
+void FairOptions::declare_options(OptionList& list) {
     list("distance", distance,
          "maximum distance of a smoothed curve from the original; 0: the mean edge length of the mesh or along the curve",
          Range{0, 1e60}, "unit of the mesh");

@@ -170,7 +170,7 @@ std::string to_obj(const Axis& axis) {
     return text;
 }
 
-void AxisOptions::list_options(OptionList& list) {
+void AxisOptions::declare_options(OptionList& list) {
     list("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
     list("tolerance", tolerance, "rotation: maximum distance at which a point counts as lying on the surface of revolution",
          Range{0, 1}, "share of its largest diameter");

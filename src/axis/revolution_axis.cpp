@@ -215,7 +215,7 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     return result;
 }
 
-void RevolutionAxisOptions::list_options(OptionList& list) {
+void RevolutionAxisOptions::declare_options(OptionList& list) {
     list("out-of-round", out_of_round,
          "rotation: typical deviation of such vessels from roundness; 0 if they are perfectly round", Range{0, 0.2},
          "share of the radius");

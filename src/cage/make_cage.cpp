@@ -134,7 +134,7 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
     return results;
 }
 
-void CageOptions::list_options(OptionList& list) {
+void CageOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices of the cage", Range{4, 1e6});
     list("alpha", alpha,
          "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "

@@ -225,7 +225,7 @@ CatalogueEntry catalogue_entry(const CatalogueSubject& subject, const CatalogueO
     return entry;
 }
 
-void CatalogueOptions::list_options(OptionList& list) {
+void CatalogueOptions::declare_options(OptionList& list) {
     list("unit", unit, "unit of the coordinates of objects that state none, such as mm; without it millimetres are assumed");
     list("max-error", max_error,
          "largest half width of the 95 % interval of a diameter that is drawn, as a share of the diameter; diameters that are "

@@ -563,8 +563,8 @@ SurfaceOfSpecimen specimen_surfaces(const Collection& collection, const Landmark
     };
 }
 
-void LandmarkReading::list_options(OptionList& list) {
-    specimens.list_options(list);
+void LandmarkReading::declare_options(OptionList& list) {
+    specimens.declare_options(list);
     list("curve-points", curve_points,
          "resample each curve of the landmark files to this number of points at equal distances; 0: "
          "as in the file",

@@ -151,7 +151,7 @@ SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
     return synthetic;
 }
 
-void SyntheticMeasuresOptions::list_options(OptionList& list) {
+void SyntheticMeasuresOptions::declare_options(OptionList& list) {
     list("objects", objects, "number of objects", Range{1, 100000});
     list("measures", measures, "number of measures", Range{1, 60});
     list("groups", groups, "number of groups of measures; the measures of a group have fixed ratios to each other", Range{0, 30});

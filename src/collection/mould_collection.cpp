@@ -116,7 +116,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
         size = common_size(sizes);
     }
     std::vector<std::string> key_parts{"mould features", left_out};
-    for (const auto& [name, value] : list_options(prepared.options.features)) key_parts.push_back(name + "=" + value);
+    for (const auto& [name, value] : declare_options(prepared.options.features)) key_parts.push_back(name + "=" + value);
     prepared.results = for_each_object(collection, store, key_parts, [&](const CollectionObject& object) {
         const Mesh mesh = read_head(object, leave_out, parts);
         try {

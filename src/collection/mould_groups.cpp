@@ -166,7 +166,7 @@ EpsilonRule epsilon_rule(const std::string& word, double& value) {
 
 }  // namespace
 
-void GroupOptions::list_options(OptionList& list) {
+void GroupOptions::declare_options(OptionList& list) {
     list("method", method,
          "clustering method: average linkage cut at epsilon (linkage), DBSCAN with radius epsilon (dbscan), or DBSCAN in the "
          "spectral embedding of the thesis, section 3.3.2 (embedding)",

@@ -92,7 +92,7 @@ MouldMatrices compare_heads(const std::vector<std::string>& names, const std::ve
         std::optional<Json> kept;
         if (is_kept) {
             std::vector<std::string> parts{"mould pairs", checksums[i]};
-            for (const auto& [name, value] : list_options(options)) parts.push_back(name + "=" + value);
+            for (const auto& [name, value] : declare_options(options)) parts.push_back(name + "=" + value);
             key = ResultStore::key(parts);
             kept = store.find(names[i], key);
         }
@@ -127,7 +127,7 @@ MouldMatrices compare_heads(const std::vector<std::string>& names, const std::ve
     return m;
 }
 
-std::vector<std::string> mould_similarities() { return {"matches", "consistent", "registration", "combined"}; }
+std::vector<std::string> mould_similarity_names() { return {"matches", "consistent", "registration", "combined"}; }
 
 namespace {
 
@@ -168,12 +168,12 @@ Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string
     fail_usage(fmt::format("there is no similarity '{}'", similarity), "use one of: matches, consistent, registration, combined");
 }
 
-void CompareOptions::list_options(OptionList& list) {
-    features.list_options(list);
-    matches.list_options(list);
+void CompareOptions::declare_options(OptionList& list) {
+    features.declare_options(list);
+    matches.declare_options(list);
     list("loose-ratio", loose_ratio,
          "same as --ratio, but for the matches from which geometrically consistent matches are selected", Range{0, 1});
-    consistent.list_options(list);  // shrinkage holds for the registration as well
+    consistent.declare_options(list);  // shrinkage holds for the registration as well
     list("trim", align.trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
     list("samples", align.samples, "number of points of each surface that are registered onto the other", Range{10, 1e6});
 }

@@ -100,7 +100,7 @@ CutPart largest_segment(const Mesh& mesh) {
 
 }  // namespace
 
-void PartOptions::list_options(OptionList& list) {
+void PartOptions::declare_options(OptionList& list) {
     list("annotation", annotations, "ids or tags (with a vocabulary also narrower concepts) of the regions to analyse").words();
     list("without", without,
          "ids or tags of regions that are left out of the analysis, such as beard; objects without such a region are allowed")
@@ -124,7 +124,7 @@ bool ObjectParts::whole() const {
 std::vector<std::string> ObjectParts::key() const {
     if (whole()) return {};
     std::vector<std::string> key{"part 1", checksum_};
-    for (const auto& [name, value] : list_options(options_)) key.push_back(name + "=" + value);
+    for (const auto& [name, value] : declare_options(options_)) key.push_back(name + "=" + value);
     return key;
 }
 

@@ -133,7 +133,7 @@ Proposals propose_proportions(AnnotatedMeshView template_object, RelationGraph e
     return result;
 }
 
-void ProposalOptions::list_options(OptionList& list) {
+void ProposalOptions::declare_options(OptionList& list) {
     list("stable", stable, "propose constraints for stable ratios as well as for fixed ratios");
     list("weight", weight, "weight of the proposed constraints", Range{0, 1e12});
     list("hard", hard, "make the proposed constraints hard (satisfied exactly)");

@@ -362,7 +362,7 @@ ProportionStudy study_proportions(const MeasureTable& measured, const Proportion
     return study;
 }
 
-void ProportionOptions::list_options(OptionList& list) {
+void ProportionOptions::declare_options(OptionList& list) {
     list("false-discoveries", false_discoveries, "maximum expected share of false discoveries among ratios reported as fixed",
          Range{1e-6, 0.5});
     list("correction", correction,

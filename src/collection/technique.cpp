@@ -263,7 +263,7 @@ TechniqueMeasures technique_from_json(const JsonValue& json) {
     return measures;
 }
 
-void TechniqueOptions::list_options(OptionList& list) {
+void TechniqueOptions::declare_options(OptionList& list) {
     list("slices", slices, "number of slices per object", Range{2, 100000});
     list("from", from, "lower end of the sliced range of each object", Range{0, 1}, "share of the height");
     list("to", to, "upper end of the sliced range of each object (thesis: 0.4)", Range{0, 1}, "share of the height");

@@ -36,7 +36,7 @@ std::vector<ObjectResult> measure_technique(const Collection& collection, const 
     std::vector<std::string> key_parts{"technique slices 3"};
     if (up)
         for (const double c : *up) key_parts.push_back(digits(c));
-    for (const auto& [key, value] : list_options(options)) key_parts.push_back(fmt::format("{}={}", key, value));
+    for (const auto& [key, value] : declare_options(options)) key_parts.push_back(fmt::format("{}={}", key, value));
     for (const std::string& key_part : parts.key()) key_parts.push_back(key_part);
     return for_each_object(collection, store, key_parts, [&](const CollectionObject& object) {
         const ObjectPart part = parts.read(object, up);

@@ -61,7 +61,7 @@ std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, st
 
 /// Certainty of an answer: the agreement measures how stable it is, the classifier's error how often stable answers are wrong.
 std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& classifier) {
-    if (answer.unlike) return "unlike";
+    if (answer.outlier) return "unlike";
     if (!classifier.better) return "not told apart";
     if (answer.agreement < 0.5) return "undecided";
     if (answer.agreement >= 0.95 && classifier.error <= 0.05) return "clear";
@@ -113,7 +113,7 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
             if ((vote[row] == 1) == answer.positive) ++agreeing_votes;
         }
         answer.agreement = answer.asked > 0 ? static_cast<double>(agreeing_votes) / answer.asked : 0;
-        answer.unlike = unlike[table.objects[row]];
+        answer.outlier = unlike[table.objects[row]];
         answer.certainty = certainty_of(answer, chosen);
         if (answer.certainty != "clear" && answer.certainty != "likely" && answer.certainty != "doubtful") answer.answer.clear();
     }
@@ -282,7 +282,7 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
     return study;
 }
 
-void TechniqueStudyOptions::list_options(OptionList& list) {
+void TechniqueStudyOptions::declare_options(OptionList& list) {
     list("positive", positive, "label of the positive class of F1; by default the label with the rounder bodies");
     std::vector<std::string> classifiers;
     for (const TechniqueClassifier& classifier : technique_classifiers()) classifiers.push_back(classifier.name);

@@ -57,7 +57,7 @@ std::string outlier_words(const TechniqueOutlier& unlike) {
 }
 
 std::string verdict(const TechniqueStudy& study, const TechniqueAnswer& answer, const std::string& classifier_words) {
-    if (answer.unlike) return outlier_words(*answer.unlike);
+    if (answer.outlier) return outlier_words(*answer.outlier);
     if (answer.certainty == "not told apart")
         return fmt::format("no answer: {} does not distinguish {} from {} here", classifier_words, study.positive,
                            study.negative);

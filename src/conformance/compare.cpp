@@ -16,7 +16,8 @@ namespace ostraka {
 namespace {
 
 bool is_free(const Comparison& comparison, const std::string& freedom) {
-    return std::find(comparison.freedoms.begin(), comparison.freedoms.end(), freedom) != comparison.freedoms.end();
+    return std::find(comparison.permitted_differences.begin(), comparison.permitted_differences.end(), freedom) !=
+           comparison.permitted_differences.end();
 }
 
 double length_scale(const Comparison& comparison, const Mesh& mesh) {

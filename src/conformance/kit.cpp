@@ -27,7 +27,7 @@ Comparison read_comparison(const JsonValue& value) {
     comparison.method = text_in(value, "as");
     comparison.tolerance = number_or(value, "within", 0);
     if (const std::string scale = text_in(value, "of"); !scale.empty()) comparison.scale = scale;
-    comparison.freedoms = texts_in(value, "freedoms");
+    comparison.permitted_differences = texts_in(value, "freedoms");
     comparison.mesh = text_in(value, "mesh");
     comparison.only = texts_in(value, "only");
     comparison.ignored = texts_in(value, "but");

@@ -152,9 +152,9 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
     const auto count = static_cast<double>(points.size());
     result.negative = negative / count / static_cast<double>(corner.size());
     result.negative_rows = negative_rows / count;
-    for (const Index n : carriers(W)) {
-        result.carriers_mean += n / count;
-        result.carriers_max = std::max(result.carriers_max, n);
+    for (const Index n : dominant_weight_counts(W)) {
+        result.dominant_weights_mean += n / count;
+        result.dominant_weights_max = std::max(result.dominant_weights_max, n);
     }
     return result;
 }
@@ -166,7 +166,8 @@ JsonValue to_json(const CoordinateCertificate& c, JsonAllocator& allocator) {
     if (c.edges) add_members(object, allocator, "edgeLinearity", *c.edges);
     if (c.on_faces) add_members(object, allocator, "faceLinearity", *c.on_faces);
     add_members(object, allocator, "negativeShare", c.negative, "negativeRows", c.negative_rows, "negativeSum", c.negative_sum,
-                "min", c.minimum, "max", c.maximum, "carriersMean", c.carriers_mean, "carriersMax", c.carriers_max);
+                "min", c.minimum, "max", c.maximum, "carriersMean", c.dominant_weights_mean, "carriersMax",
+                c.dominant_weights_max);
     return object;
 }
 

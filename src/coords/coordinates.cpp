@@ -181,7 +181,7 @@ double Coordinates::stored_share() const {
     return static_cast<double>(sparse.nonZeros()) / static_cast<double>(vertex.size());
 }
 
-void CoordinateOptions::list_options(OptionList& list) {
+void CoordinateOptions::declare_options(OptionList& list) {
     list("snap", snap, "points within this distance of the cage count as lying on the cage", Range{0, 1e-6},
          "share of the cage's diagonal");
     list("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage", Range{100, 5e6});

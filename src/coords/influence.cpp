@@ -36,7 +36,7 @@ std::vector<double> influence_of(const Coordinates& coordinates, Index cage_vert
     return result;
 }
 
-std::vector<Index> carriers(const WeightMatrix& weights, double share) {
+std::vector<Index> dominant_weight_counts(const WeightMatrix& weights, double share) {
     std::vector<Index> counts(static_cast<std::size_t>(weights.rows()));
     parallel_blocks(counts.size(), 256, [&](std::size_t begin, std::size_t end) {
         std::vector<double> row(static_cast<std::size_t>(weights.cols()));

@@ -37,7 +37,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
         try {
             const WatchScope watched(watch);
             const TransactionScope written(transaction);
-            const WriteScope::Within within(scope);
+            const WriteScope::ScopeGuard within(scope);
             check_cancelled();
             body(begin, std::min(count, begin + block));
         } catch (...) {

@@ -215,7 +215,7 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
     return result;
 }
 
-void CurvatureOptions::list_options(OptionList& list) {
+void CurvatureOptions::declare_options(OptionList& list) {
     list("scale", scale,
          "radius over which curvature is averaged; a larger radius makes the curvature less sensitive to noise; 0: only the "
          "faces around each vertex",

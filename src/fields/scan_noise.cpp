@@ -37,7 +37,7 @@ QuadricFit fit_quadric(const std::vector<Vector3d>& places, const Vector3d& outw
     Matrix3d spread = Matrix3d::Zero();
     for (const Vector3d& p : places) spread += (p - mean) * (p - mean).transpose();
     const SymmetricEigen3 axes(spread);
-    if (!axes.found() || !(axes.eigenvalues()[1] > 1e-12 * axes.eigenvalues()[2])) return fit;
+    if (!axes.succeeded() || !(axes.eigenvalues()[1] > 1e-12 * axes.eigenvalues()[2])) return fit;
     const auto row_of = [&](const Vector3d& p) {
         const Vector3d local = axes.eigenvectors().transpose() * (p - mean);
         const double x = local[2], y = local[1];

@@ -5,7 +5,7 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/neighbourhood.h"
-#include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/ray_search.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>
@@ -72,32 +72,6 @@ double robust_mean(const std::vector<double>& lengths, const std::vector<double>
     return sum / weight;
 }
 
-class Caster {
-public:
-    explicit Caster(const Mesh& mesh) : search_(mesh), diagonal_(search_.diagonal()) {}
-
-    /// Distance from `origin` to the first face, other than `start`, through which the ray leaves the solid; `expected` is the
-    /// length that is tested first.
-    [[nodiscard]] std::optional<double> exit_distance(const Point& origin, Index start, const Vector& direction,
-                                                      double expected) const {
-        const double minimum = 1e-9 * diagonal_;
-        for (double max_distance = std::max(expected, diagonal_ / 64);; max_distance *= 4) {
-            max_distance = std::min(max_distance, 1.01 * diagonal_);
-            // The query segment extends in both directions: its middle is half way along the ray.
-            for (const SurfaceHit& hit :
-                 search_.line_hits(origin + direction * (max_distance / 2), direction, max_distance / 2)) {
-                const double distance = hit.distance + max_distance / 2;
-                if (hit.face != start && distance > minimum && search_.normal(hit.face) * direction > 0) return distance;
-            }
-            if (max_distance > diagonal_) return {};
-        }
-    }
-
-private:
-    SurfaceSearch search_;
-    double diagonal_;
-};
-
 }  // namespace
 
 std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options) {
@@ -106,7 +80,8 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
     if (result.empty() || !(surface_area(mesh) > 0)) return result;
     const std::vector<ConeRay> rays = cone_rays(options.rays, options.cone);
     const std::vector<Vector> normals = smooth_normals(mesh, options.scale * box_diagonal(mesh));
-    const Caster caster(mesh);
+    const RaySearch search(mesh);
+    const double diagonal = box_diagonal(mesh);
     parallel_for(result.size(), 64, [&](std::size_t f) {
         const Face face(static_cast<Index>(f));
         Vector axis = -normals[f];
@@ -116,14 +91,12 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
         const Vector perpendicular = std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
         const Vector u = perpendicular / std::sqrt(perpendicular.squared_length()), w = CGAL::cross_product(axis, u);
         std::vector<double> lengths, weights;
-        double expected = 0;
         const Point origin = centroid(mesh, face);
         for (const ConeRay& ray : rays) {
-            const auto distance =
-                caster.exit_distance(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
-            if (!distance) continue;
-            expected = 1.5 * *distance;
-            lengths.push_back(*distance);
+            const Vector direction = ray.x * u + ray.y * w + ray.z * axis;
+            const auto exit = search.first_exit(origin, direction, static_cast<Index>(f), 1e-9 * diagonal);
+            if (!exit) continue;
+            lengths.push_back(exit->distance);
             weights.push_back(ray.weight);
         }
         if (2 * lengths.size() >= rays.size()) result[f] = robust_mean(lengths, weights);
@@ -151,7 +124,7 @@ std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<doub
     return result;
 }
 
-void ThicknessOptions::list_options(OptionList& list) {
+void ThicknessOptions::declare_options(OptionList& list) {
     list("rays", rays, "number of rays sent inward from each face", Range{1, 1000});
     list("cone", cone, "opening angle of the cone in which the rays of a face lie", Range{0, 175}, "degrees");
     list("thickness-scale", scale,

@@ -94,7 +94,7 @@ bool CatalogueStyle::section_right() const {
     return section == Section::right || (section == Section::automatic && convention == Convention::american);
 }
 
-void CatalogueStyle::list_options(OptionList& list) {
+void CatalogueStyle::declare_options(OptionList& list) {
     list("scale", scale,
          "scale of the drawings, such as 1:2; auto: the largest of 1:1, 1:2 and 1:3, or else a smaller one, that fits the page",
          Words{{"auto"}, "a scale such as 1:2", [](const std::string& word) {

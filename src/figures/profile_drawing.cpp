@@ -61,7 +61,7 @@ std::vector<std::vector<Vector2d>> beyond_section(const Profile& profile) {
             const int parts = static_cast<int>(std::clamp(std::ceil((b - a).norm() / step), 1.0, 1000.0));
             for (int k = 0; k < parts; ++k) {
                 const Vector2d p = a + double(k) / parts * (b - a);
-                const bool beyond = p.x() <= 0 && -p.x() > profile.reach_at(p.y()) + height / 100;
+                const bool beyond = p.x() <= 0 && -p.x() > profile.extent_at(p.y()) + height / 100;
                 if (beyond && !open) runs.emplace_back();
                 if (beyond) runs.back().push_back(p);
                 open = beyond;

@@ -62,7 +62,7 @@ struct Input {
 };
 
 thread_local OutputTransaction* open_transaction = nullptr;
-thread_local std::vector<Path> kept_files;
+thread_local std::vector<Path> protected_inputs;
 
 /// Several threads may write into one transaction.
 std::mutex pending_mutex;
@@ -428,8 +428,10 @@ OutputTransaction::~OutputTransaction() {
 OutputTransaction* current_transaction() { return open_transaction; }
 TransactionScope::TransactionScope(OutputTransaction* transaction) : outer_(open_transaction) { open_transaction = transaction; }
 TransactionScope::~TransactionScope() { open_transaction = outer_; }
-KeptFiles::KeptFiles(std::vector<Path> files) : outer_(std::move(kept_files)) { kept_files = std::move(files); }
-KeptFiles::~KeptFiles() { kept_files = std::move(outer_); }
+ProtectedInputs::ProtectedInputs(std::vector<Path> files) : outer_(std::move(protected_inputs)) {
+    protected_inputs = std::move(files);
+}
+ProtectedInputs::~ProtectedInputs() { protected_inputs = std::move(outer_); }
 
 namespace {
 /// An existing file that is about to be replaced; a hard link keeps it during the lifetime of this object.
@@ -460,7 +462,7 @@ struct Replaced {
 
 void OutputTransaction::commit() {
     std::vector<OutputSweep> sweeps;
-    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, pending_, kept_files);
+    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, pending_, protected_inputs);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
     // Files in memory last: renaming them cannot fail, so none of them has to be restored.

@@ -95,8 +95,8 @@ WriteScope::WriteScope(Path folder) : folder_(std::move(folder)), outer_(scope_o
 WriteScope::~WriteScope() { scope_of_thread = outer_; }
 
 const WriteScope* WriteScope::current() { return scope_of_thread; }
-WriteScope::Within::Within(const WriteScope* scope) : outer_(scope_of_thread) { scope_of_thread = scope; }
-WriteScope::Within::~Within() { scope_of_thread = outer_; }
+WriteScope::ScopeGuard::ScopeGuard(const WriteScope* scope) : outer_(scope_of_thread) { scope_of_thread = scope; }
+WriteScope::ScopeGuard::~ScopeGuard() { scope_of_thread = outer_; }
 
 void WriteScope::check(const Path& file) {
     if (scope_of_thread != nullptr) require_writable_inside(file, scope_of_thread->folder_);

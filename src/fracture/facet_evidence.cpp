@@ -151,7 +151,7 @@ private:
 
     /// Relief finer than the patches, or noise of the scan.
     void ruffle() {
-        std::vector<double> ruffle = neighbourhood_means(evidence_, 1, graph_.ruffle);
+        std::vector<double> ruffle = neighbourhood_means(evidence_, 1, graph_.normal_deviation);
         for (double& value : ruffle) value = feature_level(value);
         const double usual = area_quantile(ruffle, graph_.areas, 0.5);
         const std::vector<double> rank = area_ranks(ruffle, graph_.areas);
@@ -167,11 +167,11 @@ private:
     }
 
     [[nodiscard]] bool over_wall(std::size_t p) const {
-        return walls_.opposite[p] > 0.7 && walls_.depth[p] < 1.6 * walls_.typical;
+        return walls_.opposite[p] > 0.7 && walls_.depth[p] < 1.6 * walls_.thickness;
     }
 
     void walls() {
-        const double typical = walls_.typical > 0 ? walls_.typical : graph_.size;
+        const double typical = walls_.thickness > 0 ? walls_.thickness : graph_.size;
         columns_.add("depth", [&](std::size_t p) { return std::min(3.0, walls_.depth[p] / graph_.size); });
         columns_.add("depth in walls", [&](std::size_t p) { return std::min(20.0, walls_.depth[p] / typical); });
         columns_.add("opposite", [&](std::size_t p) { return walls_.opposite[p]; });
@@ -253,7 +253,7 @@ private:
             std::vector<std::size_t> contacts;
             for (std::size_t k = 0; k < graph_.contacts.size(); ++k) {
                 const FacetGraph::Contact& c = graph_.contacts[k];
-                if ((outward ? c.turn : -c.turn) <= 35 * degree) continue;
+                if ((outward ? c.dihedral_angle : -c.dihedral_angle) <= 35 * degree) continue;
                 places.push_back(c.middle);
                 lengths.push_back(c.length);
                 contacts.push_back(k);
@@ -270,7 +270,7 @@ private:
                 const PointTree::Near near = tree.nearest(graph_.places[p], graph_.size);
                 if (near.index == no_index) return;
                 nearest[p] = std::sqrt(near.squared) / graph_.size;
-                if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].turn;
+                if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].dihedral_angle;
                 if (nearest[p] > 0.1) return;
                 std::vector<Index> near_edges;
                 tree.within(graph_.places[p], radius, near_edges);

@@ -114,11 +114,11 @@ FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches) {
     const double spacing = 1.5 * graph.size / std::sqrt(static_cast<double>(count));
     graph.normals = filtered_normals(sum, neighbours, filter_steps(0.02 * graph.size, spacing));
     for (std::size_t p = 0; p < count; ++p)
-        graph.ruffle.push_back(graph.areas[p] > 0 ? std::max(0.0, 1 - sum[p] * graph.normals[p] / graph.areas[p]) : 0);
+        graph.normal_deviation.push_back(graph.areas[p] > 0 ? std::max(0.0, 1 - sum[p] * graph.normals[p] / graph.areas[p]) : 0);
     for (auto& c : graph.contacts) {
         const Vector &m = graph.normals[c.a], &n = graph.normals[c.b];
         const double angle = std::atan2(std::sqrt(CGAL::cross_product(m, n).squared_length()), m * n);
-        c.turn = (n - m) * (graph.places[c.b] - graph.places[c.a]) >= 0 ? angle : -angle;
+        c.dihedral_angle = (n - m) * (graph.places[c.b] - graph.places[c.a]) >= 0 ? angle : -angle;
     }
     return graph;
 }

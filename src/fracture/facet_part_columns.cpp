@@ -121,9 +121,9 @@ private:
             for (const auto& [from, to] : {std::pair(part_[c.a], part_[c.b]), std::pair(part_[c.b], part_[c.a])}) {
                 Part& part = parts_[from];
                 part.length += c.length;
-                part.turn += c.length * c.turn;
-                part.turn_spread += c.length * c.turn * c.turn;
-                part.sharp += c.turn > 40 * degree ? c.length : 0;
+                part.turn += c.length * c.dihedral_angle;
+                part.turn_spread += c.length * c.dihedral_angle * c.dihedral_angle;
+                part.sharp += c.dihedral_angle > 40 * degree ? c.length : 0;
                 part.jagged += c.length * values_.jagged[k];
                 part.other_rough += c.length * parts_[to].rough;
                 part.other_bent += c.length * parts_[to].bent;

@@ -27,14 +27,14 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     std::vector<std::size_t> order(contacts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::pair(std::abs(contacts[a].turn), a) < std::pair(std::abs(contacts[b].turn), b);
+        return std::pair(std::abs(contacts[a].dihedral_angle), a) < std::pair(std::abs(contacts[b].dihedral_angle), b);
     });
     // Small parts first, so that a gap in an edge merges only small parts.
     constexpr double patch = 0.002;
     DisjointSets sets(n);
     std::vector<double> size = graph.areas;
     for (const std::size_t c : order) {
-        if (std::abs(contacts[c].turn) > sharpest) break;
+        if (std::abs(contacts[c].dihedral_angle) > sharpest) break;
         std::size_t a = sets.find(contacts[c].a), b = sets.find(contacts[c].b);
         if (a == b || size[a] + size[b] > patch * graph.area) continue;
         if (b < a) std::swap(a, b);
@@ -47,7 +47,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
         if (a == b) continue;
         for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
             around[from][to].length += contact.length;
-            around[from][to].turn += contact.length * contact.turn;
+            around[from][to].turn += contact.length * contact.dihedral_angle;
         }
     }
     struct Pair {

@@ -59,9 +59,9 @@ Walls measure_walls(const Mesh& mesh, const FacetGraph& graph) {
     std::vector<std::pair<double, double>> depths;
     for (std::size_t p = 0; p < n; ++p)
         if (walls.opposite[p] > 0.7) depths.emplace_back(walls.depth[p], graph.areas[p]);
-    walls.typical = weighted_median(depths);
+    walls.thickness = weighted_median(depths);
     for (const auto& [depth, area] : depths)
-        if (depth < 1.5 * walls.typical && depth > walls.typical / 1.5) walls.share += area / graph.area;
+        if (depth < 1.5 * walls.thickness && depth > walls.thickness / 1.5) walls.share += area / graph.area;
     return walls;
 }
 

@@ -36,12 +36,12 @@ private:
 
     /// Cost of the boundary at each contact: its length, reduced at or near sharp convex turns, since edges are rounded.
     [[nodiscard]] std::vector<double> boundary() const {
-        const double width = std::min(0.05 * graph_.size, walls_.typical > 0 ? 0.5 * walls_.typical : graph_.size);
+        const double width = std::min(0.05 * graph_.size, walls_.thickness > 0 ? 0.5 * walls_.thickness : graph_.size);
         std::vector<double> costs;
         for (const auto& contact : graph_.contacts) {
             // Near the edge of two planes, points lie about a quarter of the dihedral angle below the tangent plane.
             const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
-            const double turn = std::max({0.0, contact.turn, about}) / (options_.edge * degree);
+            const double turn = std::max({0.0, contact.dihedral_angle, about}) / (options_.edge * degree);
             costs.push_back(options_.coherence * width * contact.length * (0.03 + std::exp(-turn * turn)));
         }
         return costs;
@@ -197,7 +197,7 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
     return find_facets(mesh, evidence, facet_model().log_odds(evidence), options);
 }
 
-void FacetOptions::list_options(OptionList& list) {
+void FacetOptions::declare_options(OptionList& list) {
     list("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
     list("facet-wall", wall, "maximum wall thickness of a two-sided fragment, as a share of the root of its area",
          Range{0.01, 1});

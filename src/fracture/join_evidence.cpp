@@ -193,14 +193,14 @@ JoinEvidence measure_join(const PreparedFracture& first, const PreparedFracture&
             row << ((places[i] - middle) / unit).cross(normals[i]), normals[i];
             system += row * row.transpose();
         }
-        evidence.grip = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
+        evidence.stability = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
     }
     double inside = 0, depth = 0;
     penetrate(a, b, pose, tolerance, samples, inside, depth);
     penetrate(b, a, back, tolerance, samples, inside, depth);
     evidence.penetration = inside / std::max(area, 0.01 * smaller);
     evidence.depth = depth / tolerance;
-    evidence.widths = std::abs(std::log(a.width / b.width));
+    evidence.width_log_ratio = std::abs(std::log(a.width / b.width));
     evidence.noise = std::hypot(a.noise, b.noise) / tolerance;
     evidence.edge = std::max(a.edge, b.edge) / tolerance;
     evidence.roughness = std::min(a.relief, b.relief) / tolerance;
@@ -254,7 +254,7 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             -3 * residual,
             logarithm(relief / std::max(residual, 0.02), 0.1, 30),
             logarithm(bending / std::max(residual, 0.02), 0.1, 100) - 1,
-            logarithm(grip, 1e-4, 1) / 2 + 2,
+            logarithm(stability, 1e-4, 1) / 2 + 2,
             10 * (facing - 0.9),
             logarithm(rim, 0.5, 500) - 3,
             4 * rim_share,
@@ -262,7 +262,7 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             -3 * rim_step,
             -logarithm(0.01 + penetration, 0.01, 10) - 2,
             -logarithm(1 + depth, 1, 100),
-            -3 * std::min(widths, 1.5),
+            -3 * std::min(width_log_ratio, 1.5),
             -5 * side_turn,
             -5 * side_step,
             logarithm(side_length, 0.5, 500) - 3,

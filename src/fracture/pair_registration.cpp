@@ -413,7 +413,7 @@ JsonValue pair_to_json(const PairRegistration& pair, const std::string& a, const
     return result;
 }
 
-void PairOptions::list_options(OptionList& list) {
+void PairOptions::declare_options(OptionList& list) {
     list("frames", frames, "number of local frames along each rim, from which initial poses are made", Range{4, 2000});
     list("samples", samples, "number of sample points on the fracture surface of each fragment, and on its intact surface",
          Range{50, 1e6});

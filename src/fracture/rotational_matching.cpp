@@ -289,7 +289,7 @@ RotationMatch match_rotations(const Mesh& vessel, const Vector3d& point, const V
     return RotationMatcher(vessel, point, direction.normalized(), sherds, options).run();
 }
 
-void RotationMatchOptions::list_options(OptionList& list) {
+void RotationMatchOptions::declare_options(OptionList& list) {
     list("turns", rotations,
          "determination of unknown rotations about a vessel's axis from the fracture surfaces: auto (where the rotation is "
          "unknown) or never",

@@ -69,7 +69,7 @@ T copy_or_move(const Slot& slot, std::size_t i, const T& object) {
 
 }  // namespace
 
-std::vector<std::string> endings_of(Kind kind) {
+std::vector<std::string> extensions_of(Kind kind) {
     const auto point_cloud_files = [] {
         std::vector<std::string> endings = point_cloud_endings();
         endings.insert(endings.end(), {".ply", ".obj", ".off"});
@@ -158,7 +158,7 @@ const PolygonSoup& MeshInput::polygons(std::size_t i) const {
 
 PolygonSoup MeshInput::take_polygons(std::size_t i) const { return copy_or_move(*this, i, polygons(i)); }
 
-void Slot::describe_shared(OptionList& options, const OptionList& slot_options) {
+void Slot::declare_shared(OptionList& options, const OptionList& slot_options) {
     for (const Option& option : slot_options)
         if (const Option* operation_option = options.find(option.name))
             shared_.emplace_back(operation_option->value, option.value);
@@ -175,7 +175,7 @@ void Slot::take_shared() const {
             operation_option.place, slot_option.place);
 }
 
-void AnnotationsInput::list_options(OptionList& options) { describe_shared(options, options_of(reading)); }
+void AnnotationsInput::declare_options(OptionList& options) { declare_shared(options, options_of(reading)); }
 
 std::string checksum_of(AnnotatedMeshView object) { return sha256(to_text(annotations_to_json(object, "", {}))); }
 
@@ -219,7 +219,7 @@ const Json& JsonInput::operator*() const {
     return loaded<Json>(*this, 0, "", read_json, [](const Json& document) { return sha256(to_text(document)); });
 }
 
-void TemplateInput::list_options(OptionList& operation_options) { describe_shared(operation_options, options_of(options)); }
+void TemplateInput::declare_options(OptionList& operation_options) { declare_shared(operation_options, options_of(options)); }
 
 const Template& TemplateInput::operator*() const {
     take_shared();

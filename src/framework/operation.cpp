@@ -19,7 +19,7 @@ Slot& Parameters::input(std::string name, Kind kind, Slot& slot, std::string hel
     slot.role = Role::input;
     slot.help = std::move(help);
     slots_.push_back(&slot);
-    slot.list_options(options);
+    slot.declare_options(options);
     return slot;
 }
 
@@ -220,7 +220,7 @@ namespace {
 /// Refuses a mesh file where a JSON document is expected (arguments in the wrong order).
 void refuse_mesh(const Slot& slot, const Path& file) {
     constexpr std::array documents{Kind::annotations, Kind::graph, Kind::edit, Kind::recipe, Kind::rules};
-    const auto mesh_extensions = endings_of(Kind::mesh);
+    const auto mesh_extensions = extensions_of(Kind::mesh);
     if (std::find(documents.begin(), documents.end(), slot.kind) == documents.end() ||
         std::find(mesh_extensions.begin(), mesh_extensions.end(), extension(file)) == mesh_extensions.end())
         return;
@@ -310,7 +310,7 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
             if (slot->role == Role::input) inputs.push_back(source.file);
-    const KeptFiles kept_files(std::move(inputs));
+    const ProtectedInputs protected_inputs(std::move(inputs));
     outputs.commit();
     for (Slot* slot : parameters_.slots()) slot->finish();
     return report;
@@ -330,7 +330,7 @@ std::string Call::usual_ending(const std::string& output) const {
     if (dynamic_cast<const FolderOutput*>(match) != nullptr) return {};
     if (const auto* file = dynamic_cast<const FileOutput*>(match); file != nullptr && !file->extension_.empty())
         return file->extension_;
-    if (const auto endings = endings_of(match->kind); !endings.empty()) return endings.front();
+    if (const auto endings = extensions_of(match->kind); !endings.empty()) return endings.front();
     return dynamic_cast<const ValuesOutput*>(match) != nullptr ? ".npy" : ".json";
 }
 

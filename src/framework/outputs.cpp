@@ -17,7 +17,7 @@ namespace ostraka {
 namespace {
 
 /// Inserts `ending` before the extension of the file name.
-Path with_ending(const Path& file, const std::string& ending) {
+Path with_suffix(const Path& file, const std::string& ending) {
     return ending.empty() ? file : file.parent_path() / (file.stem().string() + ending + file.extension().string());
 }
 
@@ -30,7 +30,7 @@ void write_or_keep(const Slot& slot, T data, Write write, const std::string& end
     auto& sources = const_cast<std::vector<Source>&>(slot.sources);
     if (sources.empty()) throw std::logic_error(fmt::format("output {} was not requested", slot.name));
     if (goes_to_file(slot)) {
-        const Path file = with_ending(sources.front().file, ending);
+        const Path file = with_suffix(sources.front().file, ending);
         slot.context->check_output(file);
         write(file, data);
         return;
@@ -55,7 +55,7 @@ void check_can_be_created(const Path& folder) {
 
 }  // namespace
 
-void MeshOutput::list_options(OptionList& options) {
+void MeshOutput::declare_options(OptionList& options) {
     if (encoded_) options("ascii", ascii_, "write PLY and STL as text");
 }
 
@@ -68,12 +68,12 @@ void MeshOutput::write(Mesh mesh, MeshExtras extras, WriteOptions options) const
     keep(std::move(mesh), std::move(extras), std::move(options), {});
 }
 
-void MeshOutput::write_part(const std::string& ending, Mesh mesh, MeshExtras extras) const {
-    keep(std::move(mesh), std::move(extras), {}, ending);
+void MeshOutput::write_part(const std::string& suffix, Mesh mesh, MeshExtras extras) const {
+    keep(std::move(mesh), std::move(extras), {}, suffix);
 }
 
-std::string MeshOutput::part_file(const std::string& ending) const {
-    return file().empty() ? std::string() : with_ending(file(), ending).string();
+std::string MeshOutput::part_file(const std::string& suffix) const {
+    return file().empty() ? std::string() : with_suffix(file(), suffix).string();
 }
 
 void MeshOutput::keep(Mesh mesh, MeshExtras extras, WriteOptions options, const std::string& ending) const {

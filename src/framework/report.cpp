@@ -107,7 +107,7 @@ Report& Report::operator()(std::string_view key, ReportValue value, std::optiona
     if (field == nullptr && layout_.schema.empty()) throw std::logic_error(fmt::format("the report declares no value '{}'", key));
     if (value.absent()) return *this;
     if (field != nullptr && !field->title.empty())
-        people(field->title, (shown ? *shown : value.text()) + (in_unit(*field).empty() ? "" : " " + in_unit(*field)));
+        text_only(field->title, (shown ? *shown : value.text()) + (in_unit(*field).empty() ? "" : " " + in_unit(*field)));
     set_member(result_, key, value.json(allocator()), allocator());
     return *this;
 }
@@ -180,7 +180,7 @@ Report::Row& Report::Row::shown(std::string_view title_or_key, ReportText text) 
     return *this;
 }
 
-void Report::people(const std::string& title, const std::string& text) {
+void Report::text_only(const std::string& title, const std::string& text) {
     blocks_.push_back({Block::Kind::value, title, text, 0});
 }
 

@@ -10,16 +10,15 @@
 namespace ostraka::detail {
 
 /// The corners of the convex hull of points, counter-clockwise (Andrew 1979). `left(a, b, c)`: true if c lies strictly to the
-/// left of the line from a to b.
-template <class Left>
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> p, Left&& left) {
-    using Eigen::Vector2d;
+/// left of the line from a to b. PlanarPoint: has the coordinates [0] and [1].
+template <class PlanarPoint, class Left>
+std::vector<PlanarPoint> convex_hull(std::vector<PlanarPoint> p, Left&& left) {
     std::sort(p.begin(), p.end(),
-              [](const Vector2d& a, const Vector2d& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
-    std::vector<Vector2d> hull;
+              [](const PlanarPoint& a, const PlanarPoint& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
+    std::vector<PlanarPoint> hull;
     for (int side = 0; side < 2; ++side) {
         const std::size_t base = hull.size();
-        for (const Vector2d& q : p) {
+        for (const PlanarPoint& q : p) {
             while (hull.size() >= base + 2 && !left(hull[hull.size() - 2], hull.back(), q)) hull.pop_back();
             hull.push_back(q);
         }

@@ -69,7 +69,7 @@ Eigen::MatrixXd Diffusion::smoothed(const Eigen::MatrixXd& values, double sigma,
     for (Eigen::Index i = 0; i < count; ++i) entries.emplace_back(static_cast<int>(i), static_cast<int>(i), s.mass[i]);
     a.setFromTriplets(entries.begin(), entries.end());
     const SparseLdlt solver(a);
-    if (!solver.found())
+    if (!solver.succeeded())
         throw Error(ErrorKind::failure, "mesh", "the surface cannot be smoothed", "repair it: are there faces without area?");
     Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(count, values.cols()), x(count, values.cols());
     for (const auto& e : s.to_fixed) pull.row(e.row()) += time * e.value() * values.row(e.col());

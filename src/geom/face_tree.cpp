@@ -343,6 +343,82 @@ std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& no
     return search.best;
 }
 
+/// A ray in single precision, with conservative tests of nodes.
+struct FaceTree::Ray {
+    Place from, inverse, direction;
+    float margin;
+
+    Ray(const FaceTree& tree, const Point& origin, const Vector& along) {
+        const Vector3d at = tree.place(origin);
+        from = floats(at, 0);
+        direction = floats(eigen(along), 0);
+        // A direction without extent along an axis is replaced by a tiny one, so that no product is undefined.
+        for (Eigen::Index k = 0; k < 4; ++k) inverse[k] = 1 / (std::abs(direction[k]) > 1e-30F ? direction[k] : 1e-30F);
+        // Rounding errors of the origin, of the direction and of the products below, for distances up to the diagonal.
+        margin = 1e-6F + static_cast<float>(2e-7 * std::max(0.0, at.cwiseAbs().maxCoeff() - 1));
+    }
+
+    /// Distance at which the ray reaches the node, in the unit of the boxes; infinite if it misses the node or reaches it
+    /// beyond `limit`, or if all faces of the node point towards the origin.
+    [[nodiscard]] float entry(const Node& node, float limit) const {
+        constexpr float never = std::numeric_limits<float>::infinity();
+        constexpr auto uncertain = static_cast<float>(rounding);
+        if (node.cone[3] > uncertain && (direction * node.cone).sum() < -node.sine - uncertain) return never;
+        const Place a = (node.low - margin - from) * inverse, b = (node.high + margin - from) * inverse;
+        const float enters = a.min(b).head<3>().maxCoeff(), leaves = a.max(b).head<3>().minCoeff();
+        return enters <= leaves && leaves >= 0 && enters <= limit ? std::max(enters, 0.0F) : never;
+    }
+};
+
+std::optional<RayExit> FaceTree::first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                            double min_distance) const {
+    std::optional<RayExit> best;
+    if (size_ == 0) return best;
+    const double length = 1.01 * unit_;
+    const Point end = origin + length * direction;
+    const Ray ray(*this, origin, direction);
+    struct Waiting {
+        std::uint32_t node;
+        float entry;
+    };
+    std::array<Waiting, most_levels + 1> stack;
+    std::size_t waiting = 0;
+    constexpr float never = std::numeric_limits<float>::infinity();
+    float limit = static_cast<float>(1.01 * (1 + 1e-5));
+    const auto push = [&](std::uint32_t node, float entry) {
+        if (entry < never) stack[waiting++] = {node, entry};
+    };
+    const auto test = [&](const Triangle& triangle) {
+        const auto& [a, b, c] = triangle.corners;
+        const Point &pa = mesh_.point(Vertex(a)), &pb = mesh_.point(Vertex(b)), &pc = mesh_.point(Vertex(c));
+        const Vector n = CGAL::cross_product(pb - pa, pc - pa);
+        const double slope = n * direction;
+        if (triangle.face == ignored || !(slope > 0)) return;
+        const double to_a = (pa - origin) * direction, to_b = (pb - origin) * direction, to_c = (pc - origin) * direction;
+        const double distance = std::clamp(n * (pa - origin) / slope, std::min({to_a, to_b, to_c}), std::max({to_a, to_b, to_c}));
+        if (!(distance > min_distance) || (best && std::pair(distance, triangle.face) > std::pair(best->distance, best->face)) ||
+            !meet(origin, end, pa, pb, pc))
+            return;
+        best = RayExit{triangle.face, distance};
+        limit = static_cast<float>(distance * scale_ * (1 + 1e-5)) + ray.margin;
+    };
+    push(0, ray.entry(nodes_[0], limit));
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (next.entry > limit) continue;
+        const Node& node = nodes_[next.node];
+        if (node.count > 0) {
+            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) test(triangles_[i]);
+            continue;
+        }
+        const std::uint32_t a = next.node + 1, b = node.first;
+        const float to_a = ray.entry(nodes_[a], limit), to_b = ray.entry(nodes_[b], limit);
+        push(to_a <= to_b ? b : a, std::max(to_a, to_b));
+        push(to_a <= to_b ? a : b, std::min(to_a, to_b));
+    }
+    return best;
+}
+
 /// Calls `visit(face)` for each face that the segment intersects until it returns false.
 template <class Visit>
 void FaceTree::along(const Point& from, const Point& to, const Visit& visit) const {

@@ -1,6 +1,7 @@
 // Search tree for the closest face with a compatible normal, and for the faces that a segment intersects.
 #pragma once
 
+#include "ostraka/geom/ray_search.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <Eigen/Core>
@@ -41,6 +42,10 @@ public:
     /// True if the segment intersects a face for which `ignored` is false. The test is exact for the given coordinates.
     [[nodiscard]] bool meets(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
+    /// RaySearch::first_exit.
+    [[nodiscard]] std::optional<RayExit> first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                                    double min_distance) const;
+
 private:
     /// Position relative to the centre of the bounding box, in multiples of its diagonal; the fourth number is used otherwise.
     using Place = Eigen::Array4f;
@@ -58,6 +63,7 @@ private:
         Index face;
     };
     struct Search;
+    struct Ray;
     void build(const FaceOrder& order);
     std::uint32_t build(const FaceOrder& order, std::uint32_t begin, std::uint32_t end, std::uint32_t node);
     void fill(const FaceOrder& order, std::uint32_t begin, std::uint32_t end, Node& leaf);

@@ -84,7 +84,7 @@ std::vector<double> laplace_spectrum(const Mesh& mesh, int count) {
     Eigen::SparseMatrix<double> shifted = system.stiffness;
     for (Eigen::Index i = 0; i < n; ++i) shifted.coeffRef(i, i) += system.mass[i];
     const SparseLdlt solver(shifted);
-    if (!solver.found()) return {};
+    if (!solver.succeeded()) return {};
     // Per iteration, the errors of the eigenvalues decrease by the square of the ratio of the last requested eigenvalue to the
     // first one outside the subspace, which is near 1/2 (Weyl).
     constexpr int rounds = 20;
@@ -98,7 +98,7 @@ std::vector<double> laplace_spectrum(const Mesh& mesh, int count) {
         x = solver.solve(system.mass.asDiagonal() * x);
         const Eigen::MatrixXd inner = x.transpose() * (system.mass.asDiagonal() * x), outer = x.transpose() * (shifted * x);
         const SymmetricEigenX ritz = generalised_eigen(outer, inner);
-        if (!ritz.found()) return {};
+        if (!ritz.succeeded()) return {};
         values = ritz.eigenvalues();
         x = (x * ritz.eigenvectors()).eval();
     }

@@ -33,18 +33,78 @@ std::vector<Vector3d> directions(int count) {
     return list;
 }
 
-/// The extreme points in each direction and in its opposite.
-std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const std::vector<Vector3d>& along) {
-    std::vector<Index> extreme(2 * along.size(), 0);
-    parallel_for(along.size(), 4, [&](std::size_t d) {
-        const Vector3d& n = along[d];
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (Index v = 0; v < points.size(); ++v) {
-            const double height = n[0] * points[v][0] + n[1] * points[v][1] + n[2] * points[v][2];
-            if (height < low) low = height, extreme[2 * d] = v;
-            if (height > high) high = height, extreme[2 * d + 1] = v;
+/// Axis-parallel boxes of consecutive points, with which the extreme points of many directions are found without reading most of
+/// the points.
+class PointBlocks {
+public:
+    explicit PointBlocks(const std::vector<Array3>& points) : points_(points), boxes_((points.size() + size - 1) / size) {
+        parallel_for(boxes_.size(), 64, [&](std::size_t b) {
+            Box& box = boxes_[b];
+            for (std::size_t v = b * size; v < end(b); ++v)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    box.low[c] = std::min(box.low[c], points_[v][c]);
+                    box.high[c] = std::max(box.high[c], points_[v][c]);
+                }
+        });
+        for (const Box& box : boxes_)
+            for (std::size_t c = 0; c < 3; ++c)
+                rounding_ = std::max({rounding_, 1e-14 * std::abs(box.low[c]), 1e-14 * std::abs(box.high[c])});
+    }
+
+    /// Index of the first point that is lowest along the direction n, a unit vector.
+    [[nodiscard]] Index lowest(const Vector3d& n) const {
+        Lowest best;
+        std::size_t first = 0;
+        std::vector<double> bounds(boxes_.size());
+        for (std::size_t b = 0; b < boxes_.size(); ++b) {
+            bounds[b] = bound(boxes_[b], n);
+            if (bounds[b] < bounds[first]) first = b;
         }
-    });
+        search(first, n, best);
+        for (std::size_t b = 0; b < boxes_.size(); ++b)
+            if (b != first && bounds[b] - rounding_ <= best.height) search(b, n, best);
+        return best.point;
+    }
+
+private:
+    static constexpr std::size_t size = 128;
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+    struct Box {
+        Array3 low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
+    };
+    struct Lowest {
+        double height = infinite;
+        Index point = 0;
+    };
+
+    [[nodiscard]] std::size_t end(std::size_t b) const { return std::min((b + 1) * size, points_.size()); }
+    /// Lower bound of the heights in a block, apart from rounding.
+    static double bound(const Box& box, const Vector3d& n) {
+        double height = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double slope = n[static_cast<Eigen::Index>(c)];
+            height += slope * (slope > 0 ? box.low[c] : box.high[c]);
+        }
+        return height;
+    }
+    void search(std::size_t b, const Vector3d& n, Lowest& best) const {
+        for (std::size_t v = b * size; v < end(b); ++v) {
+            const double height = n[0] * points_[v][0] + n[1] * points_[v][1] + n[2] * points_[v][2];
+            if (height < best.height || (height == best.height && v < best.point)) best = {height, static_cast<Index>(v)};
+        }
+    }
+
+    const std::vector<Array3>& points_;
+    std::vector<Box> boxes_;
+    double rounding_ = 0;  ///< bound of the rounding error of heights
+};
+
+/// The extreme points in each direction and in its opposite.
+std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const PointBlocks& blocks,
+                                     const std::vector<Vector3d>& along) {
+    std::vector<Index> extreme(2 * along.size(), 0);
+    parallel_for(extreme.size(), 4,
+                 [&](std::size_t k) { extreme[k] = blocks.lowest(k % 2 == 0 ? along[k / 2] : Vector3d(-along[k / 2])); });
     std::sort(extreme.begin(), extreme.end());
     extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
     std::vector<Vector3d> list;
@@ -55,24 +115,71 @@ std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const st
 struct Candidate {
     double volume = std::numeric_limits<double>::infinity();
     Vector3d normal = Vector3d::UnitZ(), side = Vector3d::UnitX();
+    std::vector<Index> outline;  ///< indices of the corners of the convex hull of the points' projection, counter-clockwise
 };
 
-/// The smallest box with a face perpendicular to `normal`.
-Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points) {
+/// A point of a projection, with its index.
+struct Projected {
+    double x = 0, y = 0;
+    Index index = 0;
+    double operator[](int c) const { return c == 0 ? x : y; }
+};
+
+/// Removes points that lie clearly inside the polygon with the given corners, and therefore are no corners of the convex hull.
+/// The points are compared with an ellipse inside the polygon. Removes nothing if the polygon is not star-shaped around the mean
+/// of its corners, or too thin.
+void remove_interior(std::vector<Projected>& points, const std::vector<Index>& corners) {
+    if (corners.size() < 3) return;
+    Vector2d centre = Vector2d::Zero();
+    for (const Index k : corners) centre += Vector2d(points[k].x, points[k].y);
+    centre /= static_cast<double>(corners.size());
+    double xx = 0, xy = 0, yy = 0;
+    for (const Index k : corners) {
+        const double x = points[k].x - centre[0], y = points[k].y - centre[1];
+        xx += x * x, xy += x * y, yy += y * y;
+    }
+    // With the Cholesky factor of the scatter, distances are measured in units in which the corners lie around a circle.
+    if (!(xx * yy - xy * xy > 1e-6 * xx * yy)) return;
+    const double a = 1 / std::sqrt(xx), slope = xy / xx, b = 1 / std::sqrt(yy - xy * slope);
+    const auto scaled = [&](const Projected& p) {
+        const double x = p.x - centre[0], y = p.y - centre[1];
+        return Vector2d(a * x, b * (y - slope * x));
+    };
+    double radius = std::numeric_limits<double>::infinity();
+    Vector2d from = scaled(points[corners.back()]);
+    for (const Index k : corners) {
+        const Vector2d to = scaled(points[k]);
+        const double twice_area = from[0] * to[1] - from[1] * to[0];
+        if (!(twice_area > 0)) return;
+        radius = std::min(radius, twice_area / (to - from).norm());
+        from = to;
+    }
+    const double limit = radius * radius * (1 - 1e-6);
+    points.erase(
+        std::remove_if(points.begin(), points.end(), [&](const Projected& p) { return scaled(p).squaredNorm() < limit; }),
+        points.end());
+}
+
+/// The smallest box with a face perpendicular to `normal`. `outline`: corners of the hull for a similar normal; may be empty.
+Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points, const std::vector<Index>& outline = {}) {
     const Vector3d u = normal.unitOrthogonal(), w = normal.cross(u);
-    std::vector<Vector2d> flat;
+    std::vector<Projected> flat;
     flat.reserve(points.size());
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Vector3d& p : points) {
-        flat.emplace_back(u.dot(p), w.dot(p));
+        flat.push_back({u.dot(p), w.dot(p), static_cast<Index>(flat.size())});
         low = std::min(low, normal.dot(p));
         high = std::max(high, normal.dot(p));
     }
-    const auto hull = convex_hull(std::move(flat), [](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-        return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) > 0;
+    remove_interior(flat, outline);
+    const auto corners = convex_hull(std::move(flat), [](const Projected& a, const Projected& b, const Projected& c) {
+        return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x) > 0;
     });
+    std::vector<Vector2d> hull;
+    for (const Projected& corner : corners) hull.emplace_back(corner.x, corner.y);
     Candidate best;
     best.normal = normal;
+    for (const Projected& corner : corners) best.outline.push_back(corner.index);
     // Flat objects have boxes without volume; a small multiple of the cubed sum of the sides ranks them.
     const auto cost_of = [&](const Extent& e) {
         const double thickness = high - low, x = e.x1 - e.x0, y = e.y1 - e.y0, sum = thickness + x + y;
@@ -114,8 +221,8 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
             for (int k = 0; k < 8; ++k) {
                 const Vector3d u = best.side, w = best.normal.cross(u);
                 const double turn = k * pi / 4;
-                const Candidate next =
-                    box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), points);
+                const Candidate next = box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(),
+                                                  points, best.outline);
                 if (next.volume < better.volume) better = next;
             }
             // A gain must be proportional to the step, and the number of moves per step size is limited: otherwise the search
@@ -163,7 +270,8 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     OrientedBox box;
     box.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     if (points.empty()) return box;
-    std::vector<Vector3d> extreme = extreme_points(points, directions(points.size() > 50000 ? 128 : 512));
+    const PointBlocks blocks(points);
+    std::vector<Vector3d> extreme = extreme_points(points, blocks, directions(points.size() > 50000 ? 128 : 512));
     // Directions do not depend on position and scale; coordinates near one keep products in range.
     const Vector3d origin = extreme.front();
     double extent = 0;
@@ -202,7 +310,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
         const std::vector<Vector3d> list = directions_around(candidate);
         around.insert(around.end(), list.begin(), list.end());
     }
-    std::vector<Vector3d> more = extreme_points(points, around);
+    std::vector<Vector3d> more = extreme_points(points, blocks, around);
     near_one(more);
     extreme.insert(extreme.end(), more.begin(), more.end());
     for (Candidate& candidate : candidates) candidate = box_across(candidate.normal, extreme);

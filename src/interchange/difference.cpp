@@ -111,7 +111,7 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
     return std::move(comparison.differences);
 }
 
-void MergeOptions::list_options(OptionList& list) {
+void MergeOptions::declare_options(OptionList& list) {
     list("prefer", prefer, "set whose value is kept where both sets changed a field; none: a conflict is reported",
          Choices{"none", "ours", "theirs"});
     list("merge-faces", merge_faces, "where both sets changed a region, merge face by face instead of reporting a conflict",

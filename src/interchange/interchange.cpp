@@ -161,11 +161,11 @@ PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes,
     return result;
 }
 
-void ExportOptions::list_options(OptionList& list) { landmarks.list_options(list); }
+void ExportOptions::declare_options(OptionList& list) { landmarks.declare_options(list); }
 
-void ImportOptions::list_options(OptionList& list) {
-    landmarks.list_options(list);
-    place.list_options(list);
+void ImportOptions::declare_options(OptionList& list) {
+    landmarks.declare_options(list);
+    place.declare_options(list);
 }
 
 }  // namespace ostraka

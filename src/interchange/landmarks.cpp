@@ -240,7 +240,7 @@ PlacedAnnotations place_landmarks(const Mesh& mesh, const LandmarkSet& landmarks
     return Assembler(mesh, where).assemble(landmarks, options);
 }
 
-void LandmarkFileOptions::list_options(OptionList& list) {
+void LandmarkFileOptions::declare_options(OptionList& list) {
     list("mesh-space", mesh_space,
          "anatomical coordinate system of the mesh, for file formats that state their coordinate system: LPS (x to the left, y "
          "to the back; 3D Slicer since 4.11) or RAS (x to the right, y to the front; older versions)",
@@ -248,7 +248,7 @@ void LandmarkFileOptions::list_options(OptionList& list) {
     list("specimen", specimen, "specimen of a TPS file that has several: the ID, or the number from 1", Anything{});
 }
 
-void PlaceOptions::list_options(OptionList& list) {
+void PlaceOptions::declare_options(OptionList& list) {
     list("tolerance", tolerance, "maximum distance of a point of the file from the mesh surface", Range{0, 1},
          "share of the box diagonal");
     list("skip-far", skip_far, "skip points farther away than --tolerance, with a note, instead of refusing the file",

@@ -176,7 +176,7 @@ std::string specimens_to_tps(const LandmarkSpecimens& set) {
     return text;
 }
 
-void SpecimenOptions::list_options(OptionList& list) {
+void SpecimenOptions::declare_options(OptionList& list) {
     list("negative-missing", negative_missing,
          "landmarks with a negative coordinate are missing, as some digitising programs mark them", Anything{});
 }

@@ -369,7 +369,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
 
 double crack_width(const TriangleSoup& soup) { return detail::crack_width(soup); }
 
-void DiagnoseOptions::list_options(OptionList& list) {
+void DiagnoseOptions::declare_options(OptionList& list) {
     list("skip-self-intersections", skip_self_intersections, "skip the search for self-intersections", Anything{});
 }
 

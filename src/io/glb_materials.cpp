@@ -39,7 +39,7 @@ GlbMaterials::GlbMaterials(const Appearance& appearance, std::vector<Index> used
     : appearance_(appearance), used_(std::move(used)), where_(where) {
     bool drops_mtl = false;
     for (const Index m : used_) {
-        Json& rest = rests_.emplace_back();
+        Json& rest = unread_material_json_.emplace_back();
         rest.SetObject();
         if (m == no_index) continue;
         const Material& material = appearance_.materials[m];
@@ -116,7 +116,7 @@ JsonValue GlbMaterials::material(std::size_t number, bool translucent, JsonAlloc
         return plain;
     }
     const Material& source = appearance_.materials[used_[number]];
-    JsonValue result(rests_[number], allocator);
+    JsonValue result(unread_material_json_[number], allocator);
     convert_textures(result, source, allocator);
     JsonValue& pbr = object_member(result, "pbrMetallicRoughness", allocator);
     if (source.gltf_rest.empty()) add_members(pbr, allocator, "metallicFactor", 0, "roughnessFactor", 1);

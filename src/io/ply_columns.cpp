@@ -16,7 +16,7 @@ class PlyVertexReader {
 public:
     PlyVertexReader(Rows rows, const PlyHeader& header) : rows_(std::move(rows)), header_(header) {}
 
-    PlyVertexColumns read() {
+    PlyVertexProperties read() {
         for (const PlyElement& element : header_.elements) {
             const std::size_t minimum = element.min_bytes(header_.format);
             if (minimum > 0 && element.count > rows_.remaining() / minimum)
@@ -64,18 +64,18 @@ private:
 
     Rows rows_;
     const PlyHeader& header_;
-    PlyVertexColumns result_;
+    PlyVertexProperties result_;
 };
 
 }  // namespace
 
 }  // namespace io
 
-PlyVertexColumns read_ply_vertex_columns(const std::string& bytes, const std::string& file) {
+PlyVertexProperties read_ply_vertex_properties(const std::string& bytes, const std::string& file) {
     const io::PlyHeader header = io::read_ply_header(bytes, file);
     for (const char* faces : {"face", "tristrips"})
         if (const io::PlyElement* element = header.find(faces); element != nullptr && element->count > 0) {
-            PlyVertexColumns result;
+            PlyVertexProperties result;
             result.has_faces = true;
             return result;
         }

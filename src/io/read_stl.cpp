@@ -87,7 +87,7 @@ public:
         // Magics files whose attributes are all zero have the colour of the object only.
         const bool coloured = is_magics_ ? any_bits_ || object_colour_ != white : any_marked_;
         if (any_bits_ && !coloured)
-            soup.notes.emplace_back("attribute bytes of the triangles, which are no colours, are not kept");
+            soup.notes.emplace_back("attribute bytes of the triangles, which are not colours, are not kept");
         if (!coloured) return;
         std::size_t uncoloured = 0;
         soup.extras.face_colours.reserve(attributes_.size());

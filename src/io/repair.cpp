@@ -290,7 +290,7 @@ void prepare_for_stl(RepairResult& result) {
     result.after = std::move(stl_diagnosis);
 }
 
-void RepairOptions::list_options(OptionList& list) {
+void RepairOptions::declare_options(OptionList& list) {
     list("merge-distance", merge_distance, "merge border points closer than this (0: only equal positions)", Range{0, 0.1},
          "share of the diagonal");
     list("merge-gap", merge_gap, "also merge border points across cracks narrower than this width (0: no cracks)", Range{0, 0.5},

@@ -131,7 +131,7 @@ DescriptorSearch::DescriptorSearch(const Mesh& mesh, DescriptorOptions options)
 }
 DescriptorSearch::~DescriptorSearch() = default;
 
-void DescriptorSearch::expect(const AnnotationSet& set) {
+void DescriptorSearch::prepare(const AnnotationSet& set) {
     for (const Annotation& annotation : set.annotations) {
         if (!is_free(annotation)) continue;
         cache_->expected.push_back(annotation);
@@ -270,11 +270,11 @@ void store(Annotation& annotation, const std::vector<Quantity>& quantities, cons
     }
 }
 
-void DescriptorOptions::list_options(OptionList& list) {
+void DescriptorOptions::declare_options(OptionList& list) {
     list("curvature", curvature, "compute statistics of the mean and Gaussian curvature at the vertices");
     list("thickness", thickness, "compute statistics of the thickness of the object under the faces (shape diameter)");
-    curvature_options.list_options(list);
-    thickness_options.list_options(list);
+    curvature_options.declare_options(list);
+    thickness_options.declare_options(list);
 }
 
 }  // namespace ostraka

@@ -342,7 +342,7 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
     RefreshResult result;
     Evaluator evaluator(mesh);
     DescriptorSearch descriptors(mesh);
-    descriptors.expect(set);
+    descriptors.prepare(set);
     const auto stays_stale = [&](bool& mark, const Annotation& annotation, const Attribute& attribute,
                                  const std::string& reason) {
         mark = true;

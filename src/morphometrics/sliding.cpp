@@ -177,7 +177,7 @@ private:
             // Bending is indifferent to some slides where the curve is straight: then the shortest one is taken.
             if (count > 0) {
                 const Cholesky factor(A);
-                steps = factor.found() && factor.rcond() > 1e-11 ? factor.solve(b) : solve_least_squares(A, b, 1e-11);
+                steps = factor.succeeded() && factor.rcond() > 1e-11 ? factor.solve(b) : solve_least_squares(A, b, 1e-11);
             }
         }
         Landmarks moved = y;
@@ -216,7 +216,7 @@ SlidSample slide_semilandmarks(const ShapeSample& sample, const SemiLandmarks& s
     return Slide(sample, semi, options).run();
 }
 
-void SlidingOptions::list_options(OptionList& list) {
+void SlidingOptions::declare_options(OptionList& list) {
     list("slide-by", criterion, "what sliding semi-landmarks minimise: bending energy, or Procrustes distance from the mean",
          Choices{"bending-energy", "procrustes-distance"});
     list("slide-iterations", iterations, "maximum number of alternations of sliding and superimposition", Range{1, 1000});

@@ -41,11 +41,11 @@ struct Assemble final : Operation {
         p.input_option("class", Kind::shape_class, class_file, "class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "write no pictures of the groups");
         p.options("fresh", fresh, "register all pairs again, and ignore the stored results of earlier runs").unrecorded();
-        options.list_options(p.options);
-        reading.list_options(p.options);
+        options.declare_options(p.options);
+        reading.declare_options(p.options);
         p.report.schema = "reassembly";
-        p.report.people_table("fragments", {"fragment", "facets by", "fracture %", "group", "why alone"});
-        p.report.people_table("joins", {"joined", "confidence", "of the pair alone", "contact %", "confirmed by"});
+        p.report.text_table("fragments", {"fragment", "facets by", "fracture %", "group", "why alone"});
+        p.report.text_table("joins", {"joined", "confidence", "of the pair alone", "contact %", "confirmed by"});
     }
 
     void check() const override {
@@ -79,7 +79,7 @@ private:
                 given_files.push_back({file, k, false});
                 continue;
             }
-            const std::vector<std::string> endings = endings_of(Kind::mesh);
+            const std::vector<std::string> endings = extensions_of(Kind::mesh);
             const std::size_t before = given_files.size();
             std::size_t points = 0;
             for (const std::string& name : files_in(file)) {
@@ -174,8 +174,8 @@ private:
             return ResultStore::key({sums[i], sums[j], options_text(pair_options) + join_model_version()});
         };
         PairMemory memory;
-        memory.recall = [this, key, &store](std::size_t i, std::size_t j,
-                                            const PairOptions& pair_options) -> std::optional<PairResult> {
+        memory.load = [this, key, &store](std::size_t i, std::size_t j,
+                                          const PairOptions& pair_options) -> std::optional<PairResult> {
             ++pairs_requested;
             if (fresh) return {};
             const std::string pair_key = key(i, j, pair_options);
@@ -184,7 +184,7 @@ private:
             ++pairs_recalled;
             return pair_result_from_json(*stored, i, j);
         };
-        memory.keep = [key, &store](const PairResult& pair, const PairOptions& pair_options) {
+        memory.store = [key, &store](const PairResult& pair, const PairOptions& pair_options) {
             const std::string pair_key = key(pair.first, pair.second, pair_options);
             Json document;
             store.keep(pair_key.substr(0, 32), pair_key, pair_result_to_json(pair, document.GetAllocator()));
@@ -202,7 +202,7 @@ private:
         const std::vector<GroupAxis> axes = own_axes(fragments, result);
         for (std::size_t k = 0; k < fragments.size(); ++k) {
             const double fracture_fraction = fracture_share(fragments[k]);
-            const std::string alone = why_alone(k, result.alone[k], fracture_fraction);
+            const std::string alone = why_alone(k, result.reasons_not_joined[k], fracture_fraction);
             JsonValue fragment_entry =
                 json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k], "fracture",
                             fracture_fraction, "pose", pose_to_json(result.poses[k], allocator));
@@ -222,11 +222,11 @@ private:
         const JsonValue reassembly = reassembly_to_json(result, names, allocator);
         for (const auto& member : reassembly.GetObject()) add_members(content, allocator, member.name.GetString(), member.value);
         for (const FragmentJoin& join : result.joins)
-            report.row("joins", {names[join.first] + " - " + names[join.second], number(join.confidence, 3), number(join.pair, 3),
-                                 number(100 * join.evidence.share, 3), join.reason});
-        for (const RejectedJoin& undone : result.undone)
+            report.row("joins", {names[join.first] + " - " + names[join.second], number(join.confidence, 3),
+                                 number(join.pair_probability, 3), number(100 * join.evidence.share, 3), join.reason});
+        for (const RejectedJoin& undone : result.rejected)
             report.line(fmt::format("not joined: {} and {} (confidence of the pair alone {}): {}", printable(names[undone.first]),
-                                    printable(names[undone.second]), number(undone.pair, 2), undone.reason));
+                                    printable(names[undone.second]), number(undone.pair_probability, 2), undone.reason));
         for (int g = 0; g < result.groups(); ++g) {
             JsonValue& group = content["groups"][static_cast<unsigned>(g)];
             report_group_axis(report, fragments, result, g, group, content["joins"], allocator);

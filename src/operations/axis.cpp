@@ -24,8 +24,8 @@ struct FindAxis final : Operation {
                   "fitted to it")
             .words();
         attribute.declare(p, "axis");
-        options.list_options(p.options);
-        intervals.list_options(p.options);
+        options.declare_options(p.options);
+        intervals.declare_options(p.options);
 
         p.report.values(boolean("found", "axis"), text("verdict"), text("reason"), numbers("point", "through"),
                         numbers("direction", "direction"), any("polylines"), number("quality", "quality"), any("figures"));
@@ -145,7 +145,7 @@ struct FindAxis final : Operation {
                 shown += fmt::format(" ({})", interval_text(diameter, {}, 5));
             }
             figures.PushBack(entry, allocator);
-            report.people(figure.name, shown);
+            report.text_only(figure.name, shown);
         }
         report("figures", std::move(figures));
         if (const std::string line = verdict_text(result, unit); !line.empty()) report.line(line);

@@ -102,9 +102,9 @@ struct MakeCatalogue final : Operation {
             "catalogue to write: .pdf (all pages), .html (pages and table in one file) or .svg (the page of a single object)");
         p.output_option("html", Kind::text, html, "HTML file to write as well");
         p.output_option("table", Kind::table, table, "table of all objects to write (.csv)");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options.group("Print");
-        style.list_options(p.options);
+        style.declare_options(p.options);
         p.report.values(integer("objects", "objects"), integer("unreadable", "unreadable"), integer("pages", "pages"),
                         integer("resumed"));
         p.report.table("entries", text("name", "name"), text("kind", "kind"), text("diameterOf"),

@@ -95,7 +95,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
         } else if (flag == "threads") {
             candidates.clear();
         } else if (slot != nullptr) {
-            add_files(candidates, prefix, endings_of(slot->kind));
+            add_files(candidates, prefix, extensions_of(slot->kind));
         } else if (option != nullptr && option->type() != OptionType::boolean) {
             if (!named_values.empty()) candidates = named_values;
             else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(candidates, words);
@@ -111,7 +111,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             }
             const auto& order = call.parameters().orders.front();
             const Slot* next = order.empty() ? nullptr : call.parameters().slot(order[std::min(place, order.size() - 1)]);
-            if (next != nullptr) add_files(candidates, prefix, endings_of(next->kind));
+            if (next != nullptr) add_files(candidates, prefix, extensions_of(next->kind));
         }
     }
     // Words with control characters cannot be typed.

@@ -35,9 +35,9 @@ struct Deform final : Operation {
                         "annotations to write for the deformed mesh, with recomputed measures");
         p.output_option("cage-out", Kind::cage, cage_out, "cage after the deformation, to write");
         p.options("states", states, "also write the shape after each step of the edit, before solving, as output-step1, ...");
-        words.list_options(p.options);
-        options.list_options(p.options);
-        tolerances.list_options(p.options);
+        words.declare_options(p.options);
+        options.declare_options(p.options);
+        tolerances.declare_options(p.options);
         p.report.values(
             boolean("acceptable"), texts("objections"),
             number("followed.share", "", "how closely the result follows the edit, as a fraction of the edit's displacement"),
@@ -82,7 +82,7 @@ struct Deform final : Operation {
                                         : Subject{&*mesh, &no_annotations};
         if (!words.keep.empty()) {
             own_set = *subject.set;
-            take_measures(words, subject.object->mesh, own_set);
+            add_missing_measures(words, subject.object->mesh, own_set);
             subject.set = &own_set;
         }
         if (cage) {
@@ -152,7 +152,7 @@ struct Deform final : Operation {
     [[nodiscard]] Edit all_steps(const Subject& subject, const Edit& given) const {
         Edit all;
         if (deformed_cage) all.steps.push_back(step_to_cage(subject));
-        const Edit message_about = edit_of(words, *subject.set);
+        const Edit message_about = parse_edit(words, *subject.set);
         for (const Edit* part : {&given, &message_about})
             all.steps.insert(all.steps.end(), part->steps.begin(), part->steps.end());
         return all;

@@ -40,13 +40,13 @@ struct Fit final : Operation {
             .unrecorded();
         p.options("placed", placed, "also write each fragment in its computed pose, as NAME.placed.ply");
         vocabulary.declare(p, as_template_words);
-        options.list_options(p.options);
-        reading.list_options(p.options);
+        options.declare_options(p.options);
+        reading.declare_options(p.options);
         for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
         p.report.schema = "assembly";
-        p.report.people_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});
-        p.report.people_table("joints", {"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"});
-        p.report.people_table("constraints", {"id", "constraint", "verdict", "how well"});
+        p.report.text_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});
+        p.report.text_table("joints", {"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"});
+        p.report.text_table("constraints", {"id", "constraint", "verdict", "how well"});
     }
 
     void check() const override {

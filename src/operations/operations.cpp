@@ -33,7 +33,7 @@ struct Operations final : Operation {
         }
         if (!any_matching) static_cast<void>(find_operation(name));
         if (pages)
-            for (const std::string& word : command_pages()) write_text(pages, word + ".md", commands_page(word));
+            for (const std::string& word : command_page_names()) write_text(pages, word + ".md", command_page(word));
         if (manuals)
             for (const OperationEntry& entry : operations()) write_text(manuals, manual_name(entry) + ".1", manual_page(entry));
         if (shells) {

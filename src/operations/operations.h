@@ -18,7 +18,7 @@ using namespace fields;
 
 /// An operation on a mesh and its annotations.
 struct AnnotatedMeshOperation : Operation {
-    void describe_inputs(Parameters& p) {
+    void declare_inputs(Parameters& p) {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
     }

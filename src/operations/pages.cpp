@@ -131,7 +131,7 @@ std::string usage_of(const Call& call, const std::vector<std::string>& order) {
     return text + " [options]";
 }
 
-std::vector<std::string> command_pages() {
+std::vector<std::string> command_page_names() {
     std::vector<std::string> words;
     for (const OperationEntry& entry : operations())
         if (const std::string word = first_word_of(entry.name); std::find(words.begin(), words.end(), word) == words.end())
@@ -139,7 +139,7 @@ std::vector<std::string> command_pages() {
     return words;
 }
 
-std::string commands_page(const std::string& first_word) {
+std::string command_page(const std::string& first_word) {
     std::string page = fmt::format("# ostraka {}\n\n", first_word);
     for (const OperationGroup& group : operation_groups())
         if (group.name == first_word) page += sentence(group.help) + "\n";

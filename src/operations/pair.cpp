@@ -25,10 +25,10 @@ struct PairFragments final : Operation {
                  "folder, created if missing, for second.ply (the second fragment in the computed pose; face labels 0 outer, 1 "
                  "inner, 2 fracture) and pair.json")
             .flag();
-        options.list_options(p.options);
-        reading.list_options(p.options);
+        options.declare_options(p.options);
+        reading.declare_options(p.options);
         p.report.schema = "pair";
-        p.report.people_table("", {"pose", "score", "contact %", "rim %", "residual", "penetration %"});
+        p.report.text_table("", {"pose", "score", "contact %", "rim %", "residual", "penetration %"});
     }
 
     void run(Context& context, Report& report) override {

@@ -65,7 +65,7 @@ std::optional<Point> label_position(const Mesh& mesh, const Annotation& annotati
 
 struct Publish final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.output("folder", Kind::folder, folder, "folder to write; created if missing");
         p.options("address", address, "web address at which the folder will be served, such as https://museum.example/pot");
         p.options("title", title, "title of the object; by default the name of the mesh");

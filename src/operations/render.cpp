@@ -48,13 +48,15 @@ struct Render final : Operation {
                   "name of a property of vertices or faces in the mesh file (PLY), which is shown as a map");
         p.options("map-label", map_label, "label of the colour bar, including the unit");
         p.options("map-range", map_range, "MIN,MAX: range of the colour bar, instead of the minimum and maximum of the map");
-        p.options("colour", colouring,
-                  "colours of the surface: the texture, own (colours of vertices or faces) or labels in the file, annotations, "
-                  "values (a map) or clay (one neutral colour); auto: values or annotations of parts if they are given, "
-                  "otherwise the texture, labels or colours in the file, otherwise clay",
-                  colouring_names());
+        p.options(
+            "colour", colouring,
+            "source of the surface colours. texture: the image in the file. own: colours of vertices or faces in the file. "
+            "labels: "
+            "labels in the file. annotations: colours of annotations. values: a map. clay: one neutral colour. auto: values "
+            "or annotations if they are given, otherwise the texture, labels or colours in the file, otherwise clay",
+            colouring_names());
         p.options("unit", unit, "unit of the mesh's coordinates, for the scale bar");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("picture"));
         for (const char* side : {"width", "height"}) p.report.values(integer(side, "", "pixels"));
         p.report.values(number("dpi"), text("scale"));

@@ -60,7 +60,7 @@ struct Replay final : Operation {
         check_run_folder(*plan, folder);
         RunStudyOptions options;
         options.only = request.only;
-        options.again = true;
+        options.rerun_all = true;
         options.program_folder = programs.empty() ? executable_folder() : Path(programs);
         std::optional<ScratchFolder> scratch;
         if (!output) scratch.emplace("replay");

@@ -90,7 +90,7 @@ struct Run final : Operation {
         RunStudyOptions options;
         options.only = only;
         options.dry_run = dry_run || !explain.empty();
-        options.again = again;
+        options.rerun_all = again;
         options.share = parse_shard(shard);
         options.program_folder = programs.empty() ? executable_folder() : Path(programs);
         if (!explain.empty()) options.only = {explain};
@@ -135,7 +135,7 @@ struct Run final : Operation {
             report.line(fmt::format("shard {} is done; run it without --shard to gather the shards", shard));
             return;
         }
-        auto written = write_collected(*plan, results, folder, [&](const std::string& name) { return output.in(name); });
+        auto written = write_study_tables(*plan, results, folder, [&](const std::string& name) { return output.in(name); });
         const auto absolute_path = [](const Path& path) {
             return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
         };

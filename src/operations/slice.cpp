@@ -105,7 +105,7 @@ struct SliceObject final : Operation {
                   "quantity that colours the .ply output: height, or a descriptor by its name in the .csv output",
                   Choices(slice_quantities()));
         p.options.group("The tubular part");
-        tube_options.list_options(p.options);
+        tube_options.declare_options(p.options);
         declare_slices(p.report);
     }
 
@@ -285,16 +285,16 @@ struct SliceObject final : Operation {
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
         const Profile found_profile = find_profile(sliced_mesh(), axis, section_angle);
         const std::string name = file.filename().string();
-        if (!found_profile.turned && 2 * found_profile.open < 24 && draw_sherd(file, is_requested, report)) return;
+        if (!found_profile.is_revolved && 2 * found_profile.open < 24 && draw_sherd(file, is_requested, report)) return;
         const std::string reason = 2 * found_profile.open >= 24
                                        ? fmt::format(
                                              "the contours of {} of 24 slices do not close, so that it cannot be determined "
                                              "whether the object is round: ",
                                              found_profile.open)
                                        : "not a surface of revolution about this axis (fewer than half of 24 slices are round): ";
-        if (!found_profile.turned && !is_requested)
+        if (!found_profile.is_revolved && !is_requested)
             return report.note(fmt::format("{}{} is not written; --profile FILE draws it anyway", reason, name));
-        if (!found_profile.turned)
+        if (!found_profile.is_revolved)
             report.note(reason + (found_profile.rim_high > 0
                                       ? "the drawing shows one section, and the circle of the rim as far as its arc determines it"
                                       : "a profile drawing describes it poorly"));

@@ -45,7 +45,7 @@ void add_slice_soundness(std::vector<std::string>& remarks, const SlicedObject& 
         "are left empty (ostraka mesh repair --wrap makes one surface of them)");
     add([](const Slice& s) { return s.completeness.crossing > 0 && s.completeness.has_areas(); },
         "have contours that cross by less than a thousandth of their area: their descriptors are reported");
-    add([](const Slice& s) { return s.completeness.turned > 0; },
+    add([](const Slice& s) { return s.completeness.reversed_contours > 0; },
         "have contours whose orientation contradicts their nesting, such as a wrongly oriented cavity or part: their nesting is "
         "used");
     add(slice_has_holes_only, "have holes only, without an outer contour: the mesh is inside out, or its outside is missing");

@@ -72,7 +72,7 @@ JsonValue slice_json(const Contour& contour, JsonAllocator& allocator) {
         add_members(object, allocator, "hole", contour.hole, "parent", contour.parent, "depth", contour.depth, "area",
                     contour.area);
         if (contour.crosses) add_members(object, allocator, "crosses", true);
-        if (contour.turned) add_members(object, allocator, "reversed", true);
+        if (contour.reversed) add_members(object, allocator, "reversed", true);
     } else {
         add_members(object, allocator, "gap", contour.gap);
     }
@@ -104,7 +104,7 @@ void add_slice_completeness(Report::Row& row, const Slice& slice) {
     row("completeness.closed_share", c.closed_share)("completeness.share", c.share)("completeness.share_low", c.share_low)(
         "completeness.share_high", c.share_high)("completeness.share_at_most", c.share_at_most)(
         "completeness.angle_degrees", c.angle() / degree)("completeness.crossing_contours", c.crossing)(
-        "completeness.turned_contours", c.turned)("completeness.doubtful_share", c.doubtful);
+        "completeness.turned_contours", c.reversed_contours)("completeness.doubtful_share", c.doubtful);
     row.shown("completeness.share", shown);
 }
 
@@ -183,9 +183,9 @@ void add_slice_tube(Report& report, const SliceFindings& findings) {
 
 void declare_slices(ReportLayout& layout) {
     layout.values(text("unit"), text("planes"), boolean("reversed"), numbers("heights_of_the_mesh", "", "length"));
-    std::vector<Field> columns{people("slice"),
+    std::vector<Field> columns{text_only("slice"),
                                number("height", "height", "length"),
-                               people("contours"),
+                               text_only("contours"),
                                any("frame"),
                                boolean("completeness.empty"),
                                boolean("completeness.complete"),
@@ -261,7 +261,7 @@ std::string slice_table(const SlicedObject& cut, const std::string& unit) {
                                      cell_or_empty(slice.completeness.share_at_most),
                                      cell_or_empty(slice.completeness.angle() / degree),
                                      cell_or_empty(slice.completeness.crossing),
-                                     cell_or_empty(slice.completeness.turned),
+                                     cell_or_empty(slice.completeness.reversed_contours),
                                      cell_or_empty(slice.completeness.doubtful)};
         for (const auto& entry : list_descriptors(cut.descriptors[i])) row.push_back(cell(entry.value));
         text += csv_row(row);

@@ -57,7 +57,7 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
     return normals;
 }
 
-void CloudOptions::list_options(OptionList& list) {
+void CloudOptions::declare_options(OptionList& list) {
     list("cloud-neighbours", neighbours, "for point clouds: number of neighbours from which a normal is estimated",
          Range{6, 1000});
     list("cloud-edge", longest, "for point clouds: maximum edge length, in multiples of the point spacing; 0: no limit",

@@ -19,7 +19,7 @@ namespace clouds {
 namespace {
 
 std::optional<PointCloud> read_ply_points(const std::string& bytes, const std::string& file) {
-    const PlyVertexColumns vertices = read_ply_vertex_columns(bytes, file);
+    const PlyVertexProperties vertices = read_ply_vertex_properties(bytes, file);
     if (vertices.has_faces) return std::nullopt;
     CloudBuilder builder(file, bytes.size());
     for (const std::string& text : vertices.notes) builder.note(text);

@@ -147,7 +147,7 @@ CloudSurface poisson_surface(const PointCloud& cloud, const PoissonOptions& opti
     return result;
 }
 
-void PoissonOptions::list_options(OptionList& list) {
+void PoissonOptions::declare_options(OptionList& list) {
     list("edge", edge, "for poisson: largest circumradius of a triangle, in multiples of the point spacing", Range{0.2, 1000});
     list("deviation", deviation,
          "for poisson: largest distance of a triangle from the Poisson surface, in multiples of the spacing", Range{0.01, 100});

@@ -44,15 +44,15 @@ std::vector<PairResult> PairGraph::register_pairs(const std::string& phase, cons
         check_cancelled();
         const auto [i, j] = pairs[p];
         std::optional<PairResult> pair;
-        if (memory.recall) {
+        if (memory.load) {
             const std::lock_guard lock(memory_mutex);
-            pair = memory.recall(i, j, options);
+            pair = memory.load(i, j, options);
         }
         if (!pair) {
             PairRegistration registration = register_fractures(fragments_[i], fragments_[j], options);
             pair = PairResult{i, j, std::move(registration.candidates), registration.confidence};
             const std::lock_guard lock(memory_mutex);
-            if (memory.keep) memory.keep(*pair, options);
+            if (memory.store) memory.store(*pair, options);
         }
         result[p] = std::move(*pair);
         progress.advance();

@@ -19,16 +19,16 @@ public:
         : options_(options),
           effort_(pair_effort(fragments.size(), options)),
           result_(nothing_joined(fragments.size())),
-          fragments_(fragments, options, effort_, result_.alone),
+          fragments_(fragments, options, effort_, result_.reasons_not_joined),
           graph_(fragments_, effort_, memory, result_),
           groups_(fragments_, graph_, options) {}
 
     Reassembly run() {
         groups_.merge(effort_.all_pairs);
-        result_.undone = groups_.undone();
+        result_.rejected = groups_.undone();
         place_groups();
-        for (std::size_t k = 0; k < result_.alone.size(); ++k)
-            if (result_.group[k] < 0 && result_.alone[k].empty()) result_.alone[k] = reason_alone(k);
+        for (std::size_t k = 0; k < result_.reasons_not_joined.size(); ++k)
+            if (result_.group[k] < 0 && result_.reasons_not_joined[k].empty()) result_.reasons_not_joined[k] = reason_alone(k);
         return std::move(result_);
     }
 
@@ -37,7 +37,7 @@ private:
         Reassembly result;
         result.poses.resize(count);
         result.group.assign(count, -1);
-        result.alone.resize(count);
+        result.reasons_not_joined.resize(count);
         return result;
     }
 
@@ -86,7 +86,7 @@ private:
             join.first = contact.i;
             join.second = contact.j;
             join.pose = result_.poses[contact.i].inverse().after(result_.poses[contact.j]);
-            join.pair = probability(contact.log_odds);
+            join.pair_probability = probability(contact.log_odds);
             join.evidence = contact.evidence;
             double support = 0;
             for (const std::size_t k : group) {
@@ -140,7 +140,7 @@ private:
         if (corrected < options_.min_join)
             return fmt::format("{}; a join needs at least {}: {}", text, percent(options_.min_join),
                                weakest_evidence(best->evidence));
-        for (const RejectedJoin& rejected : result_.undone)
+        for (const RejectedJoin& rejected : result_.rejected)
             if (rejected.first == std::min(k, other) && rejected.second == std::max(k, other))
                 return fmt::format("{}; not joined, since {}", text, rejected.reason);
         return text + "; not joined, since other contacts of the join do not fit";
@@ -165,11 +165,11 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
     return Assembler(fragments, options, memory).run();
 }
 
-void ReassemblyOptions::list_options(OptionList& list) {
+void ReassemblyOptions::declare_options(OptionList& list) {
     list("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
     list("partners", partners, "number of fragments with which each fragment is fully registered, best first", Range{1, 100000});
     list("min-faces", min_faces, "minimum number of faces of a fragment; smaller fragments are not joined", Range{4, 1e9});
-    pairs.list_options(list);
+    pairs.declare_options(list);
 }
 
 }  // namespace ostraka

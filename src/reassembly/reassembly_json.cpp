@@ -14,11 +14,11 @@ namespace ostraka {
 namespace {
 
 constexpr double JoinEvidence::*evidence_members[] = {
-    &JoinEvidence::area,        &JoinEvidence::share,       &JoinEvidence::coverage,     &JoinEvidence::residual,
-    &JoinEvidence::relief,      &JoinEvidence::bending,     &JoinEvidence::grip,         &JoinEvidence::facing,
-    &JoinEvidence::rim,         &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage, &JoinEvidence::rim_step,
-    &JoinEvidence::penetration, &JoinEvidence::depth,       &JoinEvidence::widths,       &JoinEvidence::side_turn,
-    &JoinEvidence::side_step,   &JoinEvidence::side_length, &JoinEvidence::noise,        &JoinEvidence::edge,
+    &JoinEvidence::area,        &JoinEvidence::share,       &JoinEvidence::coverage,        &JoinEvidence::residual,
+    &JoinEvidence::relief,      &JoinEvidence::bending,     &JoinEvidence::stability,       &JoinEvidence::facing,
+    &JoinEvidence::rim,         &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage,    &JoinEvidence::rim_step,
+    &JoinEvidence::penetration, &JoinEvidence::depth,       &JoinEvidence::width_log_ratio, &JoinEvidence::side_turn,
+    &JoinEvidence::side_step,   &JoinEvidence::side_length, &JoinEvidence::noise,           &JoinEvidence::edge,
     &JoinEvidence::roughness,   &JoinEvidence::axis,        &JoinEvidence::own_axis};
 static_assert(std::size(evidence_members) == JoinEvidence::numbers, "a member that is not stored would be lost in a resumed run");
 
@@ -96,17 +96,17 @@ JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::st
     }
     const auto join_to_json = [&](const FragmentJoin& join) {
         return json_object(allocator, "first", names[join.first], "second", names[join.second], "group",
-                           result.group[join.first] + 1, "confidence", join.confidence, "byTheTwoAlone", join.pair, "loops",
-                           join.loops, "carries", join.carries, "contact", join.evidence.share, "rim", join.evidence.rim_share,
-                           "penetration", join.evidence.penetration, "pose", pose_to_json(join.pose, allocator), "because",
-                           join.reason);
+                           result.group[join.first] + 1, "confidence", join.confidence, "byTheTwoAlone", join.pair_probability,
+                           "loops", join.loops, "carries", join.carries, "contact", join.evidence.share, "rim",
+                           join.evidence.rim_share, "penetration", join.evidence.penetration, "pose",
+                           pose_to_json(join.pose, allocator), "because", join.reason);
     };
     const auto rejected_to_json = [&](const RejectedJoin& rejected) {
         return json_object(allocator, "first", names[rejected.first], "second", names[rejected.second], "byTheTwoAlone",
-                           rejected.pair, "because", rejected.reason);
+                           rejected.pair_probability, "because", rejected.reason);
     };
     return json_object(allocator, "groups", std::move(groups), "joins", json_list(result.joins, allocator, join_to_json),
-                       "undone", json_list(result.undone, allocator, rejected_to_json), "pairsTried", result.pairs_tried,
+                       "undone", json_list(result.rejected, allocator, rejected_to_json), "pairsTried", result.pairs_tried,
                        "pairsLeft", result.pairs_left);
 }
 

@@ -116,18 +116,18 @@ std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, Annotat
     std::vector<AnnotationMatch> result;
     std::vector<bool> used(ours.size(), false), has_statement(theirs.size(), false);
     for (const StatedMatch& statement : stated) {
-        const std::size_t b = position_of(theirs, statement.of_fragment, "fragment");
+        const std::size_t b = position_of(theirs, statement.fragment_annotation, "fragment");
         if (has_statement[b])
-            fail_input("stated matches", fmt::format("name annotation {} of the fragment twice", statement.of_fragment),
+            fail_input("stated matches", fmt::format("name annotation {} of the fragment twice", statement.fragment_annotation),
                        "keep one of them");
         has_statement[b] = true;
-        if (!statement.of_template) continue;
-        const std::size_t a = position_of(ours, *statement.of_template, "template");
+        if (!statement.template_annotation) continue;
+        const std::size_t a = position_of(ours, *statement.template_annotation, "template");
         if (ours[a].annotation->type != theirs[b].annotation->type)
             fail_input("stated matches",
                        fmt::format("match a {} (annotation {} of the fragment) with a {} (annotation {} of the template)",
-                                   to_string(theirs[b].annotation->type), statement.of_fragment,
-                                   to_string(ours[a].annotation->type), *statement.of_template),
+                                   to_string(theirs[b].annotation->type), statement.fragment_annotation,
+                                   to_string(ours[a].annotation->type), *statement.template_annotation),
                        "match annotations of the same type");
         used[a] = true;
         result.push_back(compare(theirs[b], ours[a], diagonal));
@@ -155,11 +155,12 @@ std::vector<AnnotationMatch> match_annotations(AnnotatedMeshView scaled, Annotat
         for (const auto& [pair, match] : candidates)
             if (mate[pair.first] == n + pair.second) result.push_back(match);
     }
-    std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.of_fragment < b.of_fragment; });
+    std::sort(result.begin(), result.end(),
+              [](const auto& a, const auto& b) { return a.fragment_annotation < b.fragment_annotation; });
     return result;
 }
 
-void AnnotationMatchOptions::list_options(OptionList& list) {
+void AnnotationMatchOptions::declare_options(OptionList& list) {
     list("min-score", min_score, "minimum score, from 0 to 1, of the agreement of two matched annotations", Range{0, 1});
 }
 

@@ -40,7 +40,7 @@ JsonValue search_to_json(const PoseSearchResult& search, JsonAllocator& allocato
     const auto range_entry = [&](const SlippableRange& range) {
         return json_object(allocator, "turns", range.rotates, "min", range.minimum, "max", range.maximum);
     };
-    add_members(slippable, allocator, "ways", json_list(search.ways, allocator, range_entry));
+    add_members(slippable, allocator, "ways", json_list(search.slippable_ranges, allocator, range_entry));
     add_members(entry, allocator, "freedom", std::move(slippable));
     return entry;
 }
@@ -85,9 +85,9 @@ JsonValue constraint_to_json(const ConstraintReport& constraint, JsonAllocator& 
 }
 
 JsonValue match_to_json(const AnnotationMatch& match, JsonAllocator& allocator) {
-    return json_object(allocator, "ofFragment", match.of_fragment, "ofTemplate", match.of_template, "score", match.score,
-                       "attributes", match.attributes, "containers", match.containers, "place", match.place, "extent",
-                       match.extent, "stated", match.stated);
+    return json_object(allocator, "ofFragment", match.fragment_annotation, "ofTemplate", match.template_annotation, "score",
+                       match.score, "attributes", match.attributes, "containers", match.containers, "place", match.place,
+                       "extent", match.extent, "stated", match.stated);
 }
 
 JsonValue objection_to_json(const Objection& objection, const std::vector<std::string>& names, JsonAllocator& allocator) {
@@ -175,13 +175,14 @@ std::vector<Statement> statements(const JsonValue& assembly, const std::string& 
             if (stated == nullptr || !stated->GetBool()) continue;
             StatedMatch match{item["ofFragment"].GetInt(), {}};
             const std::string pointer = place + "/annotations/" + std::to_string(i),
-                              subject = fmt::format("at {}: annotation {} of fragment '{}'", pointer, match.of_fragment, name);
+                              subject =
+                                  fmt::format("at {}: annotation {} of fragment '{}'", pointer, match.fragment_annotation, name);
             if (of_template == nullptr)
                 fail_input(file, subject + " is stated without \"ofTemplate\"",
                            "give the id of the template's annotation, or null for none");
-            if (const auto [previous, inserted] = stated_ids.emplace(match.of_fragment, pointer); !inserted)
+            if (const auto [previous, inserted] = stated_ids.emplace(match.fragment_annotation, pointer); !inserted)
                 fail_input(file, fmt::format("{} is already stated, at {}", subject, previous->second), "keep one of them");
-            if (!of_template->IsNull()) match.of_template = of_template->GetInt();
+            if (!of_template->IsNull()) match.template_annotation = of_template->GetInt();
             result.push_back({match, pointer});
         }
     }
@@ -208,13 +209,14 @@ std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const Fragmen
                            "list its ids with 'annotation list'");
             return annotation->type;
         };
-        const AnnotationType theirs = find(fragment.annotations, match.of_fragment, fragment_name);
-        if (match.of_template) {
-            const AnnotationType ours = find(of_template, *match.of_template, "for " + fragment_name + ", the template");
+        const AnnotationType theirs = find(fragment.annotations, match.fragment_annotation, fragment_name);
+        if (match.template_annotation) {
+            const AnnotationType ours = find(of_template, *match.template_annotation, "for " + fragment_name + ", the template");
             if (ours != theirs)
                 fail_input(file,
                            fmt::format("{}matches a {} (annotation {} of {}) with a {} (annotation {} of the template)", prefix,
-                                       to_string(theirs), match.of_fragment, fragment_name, to_string(ours), *match.of_template),
+                                       to_string(theirs), match.fragment_annotation, fragment_name, to_string(ours),
+                                       *match.template_annotation),
                            "match annotations of the same type");
         }
         result.push_back(match);

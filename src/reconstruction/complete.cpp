@@ -75,7 +75,7 @@ private:
             if (std::all_of(c.begin(), c.end(), [&](Vertex v) { return object_.fragment[hits[v]->face] >= 0; }))
                 shared_area += area;
         }
-        object_.lying.push_back(outer_area > 0 ? lying_area / outer_area : 0);
+        object_.on_template.push_back(outer_area > 0 ? lying_area / outer_area : 0);
         object_.shared.push_back(outer_area > 0 ? shared_area / outer_area : 0);
         for (auto& hit : hits)
             if (hit && object_.template_face[hit->face] == no_index) hit.reset();
@@ -118,7 +118,7 @@ private:
         }
         next.notes = std::move(object_.notes);
         next.joined = std::move(object_.joined);
-        next.lying = std::move(object_.lying);
+        next.on_template = std::move(object_.on_template);
         next.shared = std::move(object_.shared);
         next.joined[static_cast<std::size_t>(number)] = joint.patch_faces;
         object_ = std::move(next);
@@ -161,7 +161,7 @@ private:
         parallel_for(mesh.number_of_faces(), [&](std::size_t f) {
             if (is_observed[f]) return;
             object_.distance[f] = search.closest(centroid(mesh, Face(static_cast<Index>(f)))).distance;
-            object_.confidence[f] = std::exp2(-object_.distance[f] / (options_.halving * diagonal_));
+            object_.confidence[f] = std::exp2(-object_.distance[f] / (options_.confidence_half_distance * diagonal_));
             if (object_.distance[f] <= options_.blend * diagonal_) object_.origin[f] = Origin::interpolated;
         });
     }
@@ -180,13 +180,14 @@ CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& 
     return Completer(fitted, fragments, options).run();
 }
 
-void CompleteOptions::list_options(OptionList& list) {
+void CompleteOptions::declare_options(OptionList& list) {
     list("seam-angle", angle, "maximum angle between the normals of a used fragment face and of the fitted template",
          Range{0, 90}, "degrees");
     list("seam-width", blend, "width of the zone in which the template is blended into the edge of a fragment", Range{0, 1},
          "share of the diagonal");
-    list("confidence-length", halving, "distance from observed surface over which the confidence of completed surface is halved",
-         Range{1e-6, 1e6}, "share of the diagonal");
+    list("confidence-length", confidence_half_distance,
+         "distance from observed surface over which the confidence of completed surface is halved", Range{1e-6, 1e6},
+         "share of the diagonal");
     list("join", join, "insert the triangles of the fragments into the completed mesh", Anything{});
     list("min-piece", min_piece, "minimum area of an inserted piece of a fragment, as a share of the fragment's area",
          Range{0, 1});

@@ -160,7 +160,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     if ((options.counterparts == NonRigidOptions::Counterparts::best ||
          options.counterparts == NonRigidOptions::Counterparts::one_to_one) &&
         !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
-        fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
+        fail_usage("all three weights of the vertex assignment are zero", "give --distance-weight or another one");
     State& s = *state_;
     NonRigidFit fit;
     const bool slides = options.counterparts == NonRigidOptions::Counterparts::sliding;
@@ -193,19 +193,20 @@ NonRigidFit fit_template(AnnotatedMeshView scaled, const std::vector<PlacedFragm
     return TemplateFitter(scaled).fit(1, fragments, options);
 }
 
-void NonRigidOptions::list_options(OptionList& list) {
+void NonRigidOptions::declare_options(OptionList& list) {
     list("space", space,
-         "unknowns of the fit: vertices of the template (mesh), vertices of a cage around the template (cage: fewer degrees of "
-         "freedom, no folds by noise), or first the cage and in the last level the template (both)",
+         "unknowns of the fit. mesh: vertices of the template. cage: vertices of a cage around the template, with fewer degrees "
+         "of freedom, so that noise causes no folds. both: the cage first, the template in the last level",
          Choices{"mesh", "cage", "both"});
     list("smoothing", start, "smoothing length of the first level", Range{1e-3, 10}, "share of the template's diagonal");
     list("detail", end, "smoothing length of the last level, as a share of the diagonal: shorter details are not fitted",
          Range{1e-4, 10});
     list("levels", levels, "number of levels of the fit, from stiff to flexible", Range{1, 100});
     list("steps", steps, "maximum number of iterations (matching and solving) in each level", Range{1, 1000});
-    list("transition", stay, "first level: distance from observed surface over which the deformation decreases to zero",
-         Range{1e-3, 1e3}, "share of the diagonal");
-    list("fade", fade,
+    list("transition", first_decay_length,
+         "first level: distance from observed surface over which the deformation decreases to zero", Range{1e-3, 1e3},
+         "share of the diagonal");
+    list("fade", later_decay_lengths,
          "later levels: distance from observed surface over which the deformation decreases to zero, in smoothing lengths of the "
          "level",
          Range{0.1, 1e3});
@@ -215,14 +216,16 @@ void NonRigidOptions::list_options(OptionList& list) {
     list("match-angle", angle, "maximum angle between the normals of a vertex and its match", Range{0, 180}, "degrees");
     list("counterparts", counterparts,
          "matches of template vertices: points on the surface along which the vertex may slide, on curves between parts along "
-         "the curve (sliding); closest surface points (surface); or vertices of matched annotations by equation 5.1, each used "
+         "the curve (sliding); closest surface points (surface); or vertices of matched annotations with the lowest cost, each "
+         "used "
          "any number of times (best) or at most once (one-to-one)",
          Choices{"sliding", "surface", "best", "one-to-one"});
-    list("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on outlines relative to interior vertices",
-         Range{0, 1e6});
-    list("distance-weight", vertices.distance, "equation 5.1: weight of the distance between matched vertices", Range{0, 1e6});
-    list("outline-weight", vertices.outline, "equation 5.1: weight of the difference of positions along the outline",
-         Range{0, 1e6});
+    list("boundary-weight", vertices.boundary,
+         "with --counterparts best or one-to-one: weight of vertices on outlines relative to interior vertices", Range{0, 1e6});
+    list("distance-weight", vertices.distance,
+         "with --counterparts best or one-to-one: weight of the distance between matched vertices", Range{0, 1e6});
+    list("outline-weight", vertices.outline,
+         "with --counterparts best or one-to-one: weight of the difference of positions along the outline", Range{0, 1e6});
     list("guides", correspondences, "weight of matched outlines and landmarks relative to the weight of the surface",
          Range{0, 1e6});
     list("outlines", outlines,

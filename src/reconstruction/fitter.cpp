@@ -54,7 +54,9 @@ void Fitter::run(int first, int end, NonRigidFit& fit) {
             const ScopedSeconds watch(fit.seconds_solving);
             const Points before = current_;
             if (record.steps == 0) start_ = level == 0 ? rest_ : current_;
-            solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing, record.steps == 0);
+            solve(record.smoothing,
+                  level == 0 ? options_.first_decay_length * diagonal_ : options_.later_decay_lengths * record.smoothing,
+                  record.steps == 0);
             const double change = (current_ - before).colwise().norm().maxCoeff();
             if (change < 0.05 * record.smoothing) {
                 ++record.steps;
@@ -115,7 +117,7 @@ bool Fitter::step_to_planes(const Points& level_points, double smoothing) {
     for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += place_products;
     normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
     const Cholesky factor(normal);
-    if (!factor.found()) return false;
+    if (!factor.succeeded()) return false;
     const Eigen::VectorXd change = factor.solve(right);
     if (!change.allFinite()) return false;
     for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();

@@ -178,14 +178,14 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
     }
 }
 
-void FragmentFileOptions::list_options(OptionList& list) {
+void FragmentFileOptions::declare_options(OptionList& list) {
     list("facets", facets,
          "classification of outer, inner and fracture surface: annotated: from annotations; auto: from the shape, overridden by "
          "annotations; either: from annotations if there are any, otherwise from the shape of closed meshes; none: everything is "
          "outer surface",
          Choices{"either", "annotated", "auto", "none"});
-    finding.list_options(list);
-    cloud.list_options(list);
+    finding.declare_options(list);
+    cloud.declare_options(list);
 }
 
 }  // namespace ostraka

@@ -51,8 +51,8 @@ MatchSearch::MatchSearch(AnnotatedMeshView template_object, const std::vector<Pl
         const PlacedFragment& fragment = fragments[k];
         std::vector<std::pair<const Annotation*, int>> theirs;
         for (const AnnotationMatch& match : fragment.matches) {
-            const Annotation *a = template_object.annotations.find(match.of_template),
-                             *b = fragment.annotations->find(match.of_fragment);
+            const Annotation *a = template_object.annotations.find(match.template_annotation),
+                             *b = fragment.annotations->find(match.fragment_annotation);
             if (a == nullptr || b == nullptr || a->type != b->type) continue;
             if (a->type == AnnotationType::region && !a->all && !b->all) {
                 theirs.emplace_back(b, a->id);
@@ -96,7 +96,7 @@ void MatchSearch::add_path_correspondences(const AnnotationSet& set) {
             if (landmark_fragment_[l] == static_cast<int>(k)) landmarks.push_back(landmarks_[l]);
         if (landmarks.empty()) continue;
         for (const AnnotationMatch& match : fragment.matches) {
-            const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
+            const Annotation *a = set.find(match.template_annotation), *b = fragment.annotations->find(match.fragment_annotation);
             if (a == nullptr || b == nullptr || a->type != b->type || a->type == AnnotationType::point || a->all || b->all)
                 continue;
             Annotation outer = *b;

@@ -328,7 +328,7 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
     return placement;
 }
 
-void PlacementOptions::list_options(OptionList& list) {
+void PlacementOptions::declare_options(OptionList& list) {
     list("outlier", outlier, "minimum residual of a possible outlier, as a share of the spread of the template's landmarks",
          Range{0, 1});
     list("unit-ratio", unit_ratio, "ratio of scales above which two fragments are assumed to have different units",

@@ -17,7 +17,7 @@ struct PoseSearches::TemplateSearch {
 
 PoseSearches::PoseSearches(const Mesh& mesh, const PoseSearchOptions& options) : mesh_(mesh), options_(options) {
     std::string text = version() + '\n' + mesh_checksum(mesh);
-    for (const auto& [name, value] : list_options(options)) text += '\n' + name + '=' + value;
+    for (const auto& [name, value] : declare_options(options)) text += '\n' + name + '=' + value;
     template_key_ = sha256(text);
 }
 PoseSearches::~PoseSearches() = default;
@@ -66,7 +66,7 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
                                       "direction", result.slippable.direction, "pitch", result.slippable.pitch);
     return json_object(allocator, "candidates", json_list(result.candidates, allocator, candidate_entry), "margin", result.margin,
                        "confidence", result.confidence, "decided", result.decided, "reason", result.reason, "freedom",
-                       std::move(slippable), "ways", json_list(result.ways, allocator, range_entry));
+                       std::move(slippable), "ways", json_list(result.slippable_ranges, allocator, range_entry));
 }
 
 // The input is already validated against the schema.
@@ -101,8 +101,8 @@ PoseSearchResult result_from(const JsonValue& entry) {
     result.slippable.direction = vector_from(slippable["direction"]);
     result.slippable.pitch = slippable["pitch"].GetDouble();
     for (const auto& item : entry["ways"].GetArray())
-        result.ways.push_back({vector_from(item["point"]), vector_from(item["direction"]), item["turns"].GetBool(),
-                               item["min"].GetDouble(), item["max"].GetDouble()});
+        result.slippable_ranges.push_back({vector_from(item["point"]), vector_from(item["direction"]), item["turns"].GetBool(),
+                                           item["min"].GetDouble(), item["max"].GetDouble()});
     return result;
 }
 

@@ -285,7 +285,7 @@ private:
                                   prepared_.fragments[k].trees};
             // A landmark found to be wrong constrains nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& match) {
-                const Annotation* a = prepared_.annotations.find(match.of_template);
+                const Annotation* a = prepared_.annotations.find(match.template_annotation);
                 return a != nullptr && a->type == AnnotationType::point &&
                        std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
                                    [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
@@ -419,16 +419,16 @@ Reconstruction reconstruct(AnnotatedMeshView template_object, const RelationGrap
     return reconstructor.run();
 }
 
-void ReconstructOptions::list_options(OptionList& list) {
-    placement.list_options(list);
-    search.list_options(list);
+void ReconstructOptions::declare_options(OptionList& list) {
+    placement.declare_options(list);
+    search.declare_options(list);
     list("refine", refine, "refine poses of fragments by iterative closest points, with landmarks as anchors", Anything{});
-    alignment.list_options(list);
-    rotations.list_options(list);
-    annotations.list_options(list);
-    prior.list_options(list);
-    fit.list_options(list);
-    completion.list_options(list);
+    alignment.declare_options(list);
+    rotations.declare_options(list);
+    annotations.declare_options(list);
+    prior.declare_options(list);
+    fit.declare_options(list);
+    completion.declare_options(list);
     list("observed", observed, "maximum distance of an observed template vertex from the fragments, share of the diagonal",
          Range{0, 1});
     list("scale-tolerance", scale_tolerance,
@@ -440,8 +440,8 @@ void ReconstructOptions::list_options(OptionList& list) {
     list("residual", residual,
          "maximum root mean square residual of the landmarks of a fragment; a fragment with a larger residual is incompatible",
          Range{0, 10}, "share of their spread");
-    list("lying", lying, "minimum share, in per cent, of a fragment's outer surface that lies on the fitted template",
-         Range{0, 100});
+    list("min-on-template", min_on_template,
+         "minimum share, in per cent, of a fragment's outer surface that lies on the fitted template", Range{0, 100});
     list("overlap", overlap, "maximum share, in per cent, of a fragment's outer surface that overlaps another fragment",
          Range{0, 100});
     list("restore", restore, "enforce the constraints of the template's graph on the unobserved surface", Anything{});

@@ -181,12 +181,12 @@ private:
 
     /// Whether a fragment lies on the template, and does not overlap others.
     void judge_surface(std::size_t i) {
-        const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
+        const double lying = 100 * result_.object.on_template[i], shared = 100 * result_.object.shared[i];
         const int k = placed_[i];
-        record_objection(ObjectionKind::surface, k, -1, (100 - lying) / std::max(100 - options_.lying, 1e-9),
+        record_objection(ObjectionKind::surface, k, -1, (100 - lying) / std::max(100 - options_.min_on_template, 1e-9),
                          fmt::format("{} % of its outer surface lies on the fitted template, less than {} %: it has another "
                                      "shape or a wrong pose, or some of its faces are inside out or fracture surface",
-                                     digits(lying, 3), digits(options_.lying, 3)));
+                                     digits(lying, 3), digits(options_.min_on_template, 3)));
         record_objection(ObjectionKind::overlap, k, -1, shared / std::max(options_.overlap, 1e-9),
                          fmt::format("{} % of its outer surface lies where earlier fragments are observed, more than {} %: two "
                                      "fragments of one object do not overlap",

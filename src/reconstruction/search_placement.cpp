@@ -70,9 +70,9 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
 
 bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, double limit, PoseSearchResult& search,
                           FragmentPlacement& placed) {
-    if (pairs.empty() || search.ways.empty()) return false;
+    if (pairs.empty() || search.slippable_ranges.empty()) return false;
     Motion pose = placed.pose;
-    for (const SlippableRange& range : search.ways) {
+    for (const SlippableRange& range : search.slippable_ranges) {
         const Vector3d d = range.direction.normalized();
         double sine = 0, cosine = 0, along = 0;
         for (const LandmarkPair& pair : pairs) {
@@ -99,7 +99,7 @@ bool resolve_open_motions(const std::vector<LandmarkPair>& pairs, double scale, 
     placed.pose = pose;
     for (LandmarkResidual& landmark : placed.landmarks) landmark.used = true;
     search.slippable.kind = SlippableKind::none;
-    search.ways.clear();
+    search.slippable_ranges.clear();
     return true;
 }
 
@@ -110,11 +110,11 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
     return place_by_search(searches, fragments, options, scale, placed);
 }
 
-void SearchOptions::list_options(OptionList& list) {
+void SearchOptions::declare_options(OptionList& list) {
     list("search", search,
          "pose search by shape, without landmarks: always, never, or only for fragments with fewer than three landmarks (auto)",
          Choices{"auto", "always", "never"});
-    poses.list_options(list);
+    poses.declare_options(list);
 }
 
 }  // namespace ostraka

@@ -317,7 +317,7 @@ PriorFit fit_prior(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& 
     return PriorFitter(scaled, fragments, prior, options).run();
 }
 
-void PriorOptions::list_options(OptionList& list) {
+void PriorOptions::declare_options(OptionList& list) {
     list("class-iterations", iterations, "maximum number of iterations that fit the modes of variation of --class",
          Range{1, 1000});
     list("class-limit", maximum, "maximum deviation of a mode of variation from the class mean, in standard deviations",

@@ -241,7 +241,7 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
                                  const std::vector<std::pair<Index, Index>>& landmarks, const VertexAssignmentOptions& options) {
     check_options(options, "correspondence");
     if (!(options.boundary + options.distance + options.outline > 0))
-        fail_usage("all three weights of equation 5.1 are zero", "give one of them");
+        fail_usage("all three weights of the vertex assignment are zero", "give one of them");
     std::vector<Index> ours, theirs;
     for (const auto& [a, b] : landmarks) {
         if (a >= mesh.number_of_vertices() || b >= fragment.number_of_vertices())
@@ -252,7 +252,7 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
     return Assigner(part_of(mesh, part, ours, "template"), part_of(fragment, of_fragment, theirs, "fragment"), options).run();
 }
 
-void VertexAssignmentOptions::list_options(OptionList& list) {
+void VertexAssignmentOptions::declare_options(OptionList& list) {
     list("counterpart", counterpart,
          "counterpart of a template vertex: the best vertex of the fragment, or an assignment that uses each vertex once",
          Choices{"best", "one-to-one"});

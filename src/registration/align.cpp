@@ -90,7 +90,7 @@ public:
             start, options_.iterations, 1e-3, pairs_, [&](const Motion& motion) { return measure(motion); },
             [&](const Motion& motion) { return step(motion); });
         return {registration.pose, registration.fit.residual / (0.5 * (a_.size + b_.size)), registration.fit.overlap,
-                registration.iterations, registration.settled};
+                registration.iterations, registration.converged};
     }
 
 private:
@@ -159,7 +159,7 @@ Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<
     return best;
 }
 
-void AlignOptions::list_options(OptionList& list) {
+void AlignOptions::declare_options(OptionList& list) {
     list("shrinkage", shrinkage, "maximum relative difference in size between template and object; 0: rigid registration",
          Range{0, 0.5});
     list("trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});

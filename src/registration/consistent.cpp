@@ -94,7 +94,7 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
     return result;
 }
 
-void ConsistentOptions::list_options(OptionList& list) {
+void ConsistentOptions::declare_options(OptionList& list) {
     list("tolerance", tolerance, "maximum distance between matched features after registration", Range{0, 1},
          "share of the size");
     list("normal-angle", angle, "maximum angle between the normals of matched features", Range{0, 180}, "degrees");

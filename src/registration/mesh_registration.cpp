@@ -525,7 +525,7 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
     return remarks;
 }
 
-void MeshRegistrationOptions::list_options(OptionList& list) {
+void MeshRegistrationOptions::declare_options(OptionList& list) {
     list("scale", scale, "also find the scale, because the two meshes may be in different units", Anything{});
     list("tolerance", tolerance,
          "points of the two registered meshes within this distance count as the same surface; 0: estimated from the resolutions",

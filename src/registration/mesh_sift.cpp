@@ -284,7 +284,7 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
     return matches;
 }
 
-void SiftOptions::list_options(OptionList& list) {
+void SiftOptions::declare_options(OptionList& list) {
     list("feature-size", size, "length to which --first-scale is relative; 0: square root of the area", Range{0, 1e60},
          "the mesh's unit");
     list("first-scale", first_scale, "standard deviation of the Gaussian of the first smoothing", Range{1e-4, 0.5},
@@ -302,7 +302,7 @@ void SiftOptions::list_options(OptionList& list) {
          Range{0.1, 1});
 }
 
-void MatchOptions::list_options(OptionList& list) {
+void MatchOptions::declare_options(OptionList& list) {
     list("ratio", ratio, "maximum ratio of the descriptor angles of the best and the second best match", Range{0, 1});
 }
 

@@ -48,7 +48,7 @@ public:
             start, options_.iterations, 1e-4, pairs_, [&](const Motion& pose) { return measure(pose); },
             [&](const Motion& pose) { return step(pose); });
         return {registration.pose, registration.fit.residual, registration.fit.overlap, registration.iterations,
-                registration.settled};
+                registration.converged};
     }
 
 private:
@@ -108,7 +108,7 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
     return PartAligner(samples_of(part, of_part, options.samples), whole, anchors, options).run(start);
 }
 
-void PartAlignmentOptions::list_options(OptionList& list) {
+void PartAlignmentOptions::declare_options(OptionList& list) {
     list("icp-trim", trim, "share of the point pairs, closest first, that a registration uses (trimming)", Range{0.1, 1});
     list("icp-reach", search_radius, "maximum distance of two points paired in the registration", Range{0, 10},
          "share of the whole's diagonal");

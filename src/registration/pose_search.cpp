@@ -212,7 +212,7 @@ struct PoseSearch::State {
         }
         if (slippable.kind == SlippableKind::none || slippable.kind == SlippableKind::more) return slippable;
         const double missing = 1 - score_on(*grid, sample, onto, near);
-        const auto sampled_ways = slippable.ways(pi, whole.diagonal() * candidate.scale, 72);
+        const auto sampled_ways = slippable.sampled_motions(pi, whole.diagonal() * candidate.scale, 72);
         bool any_rotation = false, any_translation = false;
         for (const auto& way : sampled_ways) {
             double reached = 0;
@@ -253,7 +253,7 @@ struct PoseSearch::State {
 
 void PoseSearch::State::decide(const SurfacePoints& points, double tolerance, PoseSearchResult& result) const {
     const PoseCandidate& best = result.candidates.front();
-    const SlippableMotions open = slippable_from(points, best, tolerance, &result.ways);
+    const SlippableMotions open = slippable_from(points, best, tolerance, &result.slippable_ranges);
     result.slippable = open;
     result.slippable.point = best.pose(open.point);
     result.slippable.direction = best.pose.rotation * open.direction;
@@ -390,7 +390,7 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     return result;
 }
 
-void PoseSearchOptions::list_options(OptionList& list) {
+void PoseSearchOptions::declare_options(OptionList& list) {
     list("search-min-scale", min_scale, "minimum scale of the template in the search for poses", Range{1e-6, 1e6});
     list("search-max-scale", max_scale, "maximum scale of the template in the search for poses", Range{1e-6, 1e6});
     list("search-tolerance", tolerance,

@@ -164,7 +164,7 @@ Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {
     return rows;
 }
 
-void ProcrustesOptions::list_options(OptionList& list) {
+void ProcrustesOptions::declare_options(OptionList& list) {
     list("scaling", scaling, "scale all objects to the same size", Anything{});
     list("reflection", reflection, "treat mirror images as the same shape", Anything{});
 }

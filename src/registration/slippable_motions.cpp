@@ -35,7 +35,8 @@ Vector3d across(const Vector3d& direction) {
 
 }  // namespace
 
-std::vector<std::vector<SlippableMotions::Step>> SlippableMotions::ways(double radians, double length, int steps) const {
+std::vector<std::vector<SlippableMotions::Step>> SlippableMotions::sampled_motions(double radians, double length,
+                                                                                   int steps) const {
     std::vector<std::vector<Step>> result;
     const auto add_rotation = [&](const Vector3d& axis, double sign, double along) {
         auto& way = result.emplace_back();

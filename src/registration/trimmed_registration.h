@@ -55,10 +55,10 @@ public:
 
 /// Result of `register_from`.
 struct Registration {
-    Motion pose;           ///< best pose encountered
-    PoseFit fit;           ///< quality of this pose
-    int iterations = 0;    ///< number of steps
-    bool settled = false;  ///< true: the last steps did not improve the pose
+    Motion pose;             ///< best pose encountered
+    PoseFit fit;             ///< quality of this pose
+    int iterations = 0;      ///< number of steps
+    bool converged = false;  ///< true: the last steps did not improve the pose
 };
 
 /// ICP from the pose `start`: measure(pose) fills `pairs` and returns the fit, step(pose) returns the next pose. As the pairs
@@ -76,7 +76,7 @@ Registration register_from(const Motion& start, int iterations, double min_gain,
         const PoseFit current = measure(pose);
         steps_without_gain = current.minimised < result.fit.minimised * (1 - min_gain) ? 0 : steps_without_gain + 1;
         if (current.minimised < result.fit.minimised) result.pose = pose, result.fit = current;
-        result.settled = steps_without_gain >= patience;
+        result.converged = steps_without_gain >= patience;
     }
     return result;
 }

@@ -101,7 +101,7 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
     for (const auto& relationship : graph.relationships)
         if (relationship.annotations.size() == 2)
             stated[std::minmax(relationship.annotations[0], relationship.annotations[1])] = 0;
-    const Topology found = topology(given);
+    const AnnotationTopology found = topology(given);
     for (const auto& pair : found.adjacent) {
         const std::pair<int, int> ids =
             std::minmax(object.annotations.annotations[pair.a].id, object.annotations.annotations[pair.b].id);
@@ -126,7 +126,7 @@ std::vector<RelationCheck> check_relations(AnnotatedMeshView given, const Relati
     return checks;
 }
 
-void RelationOptions::list_options(OptionList& list) {
+void RelationOptions::declare_options(OptionList& list) {
     list("distance", distance, "tolerance of distances and of height differences", Range{0, 1}, "share of the mesh's diagonal");
     list("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
     list("tilt", tilt, "maximum tilt of a contact's outline from horizontal (support) or vertical (side contact)", Range{0, 90},

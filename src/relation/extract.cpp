@@ -328,7 +328,7 @@ std::vector<std::string> geometric_types(const std::vector<std::string>& names) 
 }
 
 namespace {
-void note_left_out(const Topology& found, const std::function<bool(const std::string&)>& wanted,
+void note_left_out(const AnnotationTopology& found, const std::function<bool(const std::string&)>& wanted,
                    std::vector<std::string>& notes) {
     std::size_t containments = 0;
     for (const auto& direct : found.order.direct) containments += direct.size();
@@ -359,7 +359,7 @@ ExtractedRelations extract_relations(AnnotatedMeshView object, const RelationGra
         relationship.id = ids.next();
         result.graph.relationships.push_back(std::move(relationship));
     };
-    Topology found = topology(object);
+    AnnotationTopology found = topology(object);
     for (Relationship& relationship : relationships_of(found, object.annotations, 0, most_of_type))
         if (wanted(relationship.type)) add(std::move(relationship));
     note_left_out(found, wanted, result.notes);

@@ -307,7 +307,7 @@ void require_few(const AnnotationSet& set) {
 
 }  // namespace
 
-Topology topology(AnnotatedMeshView given) {
+AnnotationTopology topology(AnnotatedMeshView given) {
     require_few(given.annotations);
     check_annotations(given, "annotations");
     const EdgeAlignedAnnotations along_edges(given);
@@ -315,13 +315,13 @@ Topology topology(AnnotatedMeshView given) {
     FaceClasses classes(object);
     if (along_edges.cut()) classes.drop_slivers(object);
     Containments containments = contain(object, classes);
-    Topology result;
+    AnnotationTopology result;
     result.adjacent = adjacent_pairs(object.mesh, classes, containments.overlaps);
     result.order = order_of(object, std::move(containments));
     return result;
 }
 
-std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
+std::vector<Relationship> relationships_of(const AnnotationTopology& topology, const AnnotationSet& set, int first_id,
                                            std::size_t max_per_kind) {
     std::vector<Relationship> list;
     const auto id_of = [&](std::size_t a) { return set.annotations[a].id; };

@@ -77,7 +77,7 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
     return result;
 }
 
-void RefineOptions::list_options(OptionList& list) {
+void RefineOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices (reached exactly); 0: determined by --levels", Range{0, 5e8});
     list("levels", levels, "number of times each triangle is split into four", Range{0, 12});
     list("scheme", scheme,

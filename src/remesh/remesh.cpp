@@ -169,7 +169,7 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     return result;
 }
 
-void RemeshOptions::list_options(OptionList& list) {
+void RemeshOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices (reached exactly unless the topology forbids)", Range{1, 5e8});
     list("iterations", iterations, "number of rounds of splitting, collapsing and flipping edges and smoothing vertices",
          Range{1, 100});

@@ -296,7 +296,7 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
     return result;
 }
 
-void SimplifyOptions::list_options(OptionList& list) {
+void SimplifyOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices of the mesh", Range{1, 5e8});
     list("method", method,
          "cost and vertex position of an edge collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, memoryless)",

@@ -64,7 +64,7 @@ void check_render_options(const RenderOptions& options) {
         fail_usage("--light flat with --ambient-occlusion", "flat light has no shade: give one of them");
 }
 
-void RenderOptions::list_options(OptionList& list) {
+void RenderOptions::declare_options(OptionList& list) {
     list("size", size, "width and height of the picture in pixels, such as 1200x900");
     list("view", view, "view direction", view_words());
     list("views", views, "several views on one sheet",

@@ -353,7 +353,7 @@ RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sh
     return RevolutionBuilder(sherds, options, std::move(left_out)).run();
 }
 
-void RevolutionOptions::list_options(OptionList& list) {
+void RevolutionOptions::declare_options(OptionList& list) {
     list("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
     list("columns", columns, "number of directions around the axis at which the walls are sampled", Range{8, 7200});
     list("presence", presence, "minimum angle, in degrees about the axis, that sherds must cover at a height of the profile",
@@ -365,7 +365,7 @@ void RevolutionOptions::list_options(OptionList& list) {
          "standard deviation of the error of a sherd's position in the given poses, as a share of the vessel's diagonal",
          Range{1e-6, 1});
     list("vertices", vertices, "approximate number of vertices of the template", Range{100, 1e7});
-    axis.list_options(list);
+    axis.declare_options(list);
 }
 
 }  // namespace ostraka

@@ -40,9 +40,9 @@ std::string text(double value) { return digits(value, 3); }
 
 void check(const Mesh& mesh, const CreaseOptions& options) {
     check_options(options, "creases");
-    if (options.weak > options.strong)
-        fail_usage("creases begin at a response of " + text(options.weak) + " (weak), but need to reach " + text(options.strong) +
-                       " (strong) only",
+    if (options.lower_threshold > options.upper_threshold)
+        fail_usage("creases begin at a response of " + text(options.lower_threshold) + " (weak), but need to reach " +
+                       text(options.upper_threshold) + " (strong) only",
                    "let --weak be at most --strong");
     const double edge = mean_edge_length(mesh), radius = options.scale * box_diagonal(mesh);
     // A ball smaller than an edge contains nothing to average over.
@@ -59,7 +59,7 @@ Response respond(const Mesh& mesh, const CreaseOptions& options) {
     const double radius = options.scale * box_diagonal(mesh);
     Response response;
     response.curvature = curvature(mesh, {options.scale}).mean;
-    const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.wide)}).mean;
+    const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.background_radius)}).mean;
     std::vector<double>& values = response.values;
     values.assign(wide.size(), 0);
     // Beside a border few faces of the ball are left, so that noise counts more than anywhere else.
@@ -270,7 +270,8 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
     const Response response = respond(mesh, options);
     if (mesh.number_of_faces() == 0) return {};
     const double deviation = response.deviation, diagonal = box_diagonal(mesh);
-    const double weak = std::max(options.floor, options.weak * deviation), strong = std::max(weak, options.strong * deviation);
+    const double weak = std::max(options.floor, options.lower_threshold * deviation),
+                 strong = std::max(weak, options.upper_threshold * deviation);
     std::vector<Crease> creases;
     std::vector<Index> place(mesh.number_of_vertices(), no_index);
     for (const bool ridge : {true, false}) {
@@ -285,7 +286,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
                 *std::max_element(reached.begin(), reached.end(), [&](Vertex a, Vertex b) { return strength[a] < strength[b]; });
             std::vector<Index> patch(reached.begin(), reached.end());
             if (!(strength[top] > strong) ||
-                strength[top] < echo * rival(mesh, strength, top, options.wide * options.scale * diagonal))
+                strength[top] < echo * rival(mesh, strength, top, options.background_radius * options.scale * diagonal))
                 continue;
             std::sort(patch.begin(), patch.end());
             const Patch ground(mesh, strength, std::move(patch), place);
@@ -344,16 +345,17 @@ AnnotationSet annotate_creases(const std::vector<Crease>& creases, bool regions,
     return set;
 }
 
-void CreaseOptions::list_options(OptionList& list) {
+void CreaseOptions::declare_options(OptionList& list) {
     list("kind", kind, "kind of crease: ridges (clay that stands out), hollows (where parts meet), or both",
          Choices{"ridge", "hollow", "both"});
     list("scale", scale, "radius over which curvature is averaged: about the crease width", Range{1e-6, 0.5},
          "share of the box diagonal");
-    list("wide", wide, "radius of the neighbourhood with which a place is compared, as a multiple of --scale", Range{1.1, 20});
-    list("weak", weak, "lower hysteresis threshold of the crease response, in robust deviations over the surface",
-         Range{0, 1000});
-    list("strong", strong, "upper hysteresis threshold, which each crease exceeds somewhere, in robust deviations",
-         Range{0, 1000});
+    list("wide", background_radius, "radius of the neighbourhood with which a place is compared, as a multiple of --scale",
+         Range{1.1, 20});
+    list("weak", lower_threshold,
+         "lower hysteresis threshold of the crease response, in robust standard deviations over the surface", Range{0, 1000});
+    list("strong", upper_threshold,
+         "upper hysteresis threshold, which each crease exceeds somewhere, in robust standard deviations", Range{0, 1000});
     list("floor", floor, "minimum response (curvature times scale) of a crease", Range{0, 100});
     list("shortest", shortest, "minimum length of a crease", Range{0, 10}, "share of the box diagonal");
 }

@@ -75,7 +75,7 @@ double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const s
     return quantile(values, weights, share, where);
 }
 
-void SegmentOptions::list_options(OptionList& list) {
+void SegmentOptions::declare_options(OptionList& list) {
     list("clusters", clusters, "number of thickness levels", Range{2, 100});
     list("smoothing", smoothing, "preference for short borders between segments in concave places, 0 to 1", Range{0, 1});
 }

@@ -143,7 +143,7 @@ std::optional<double> segment_agreement(const SliceSegments& segments, const std
     return found.empty() ? std::nullopt : std::optional(adjusted_rand_index(found, truth));
 }
 
-void SliceSegmentOptions::list_options(OptionList& list) {
+void SliceSegmentOptions::declare_options(OptionList& list) {
     list("slices", slices, "number of evenly spaced slices across the object", Range{4, 10000});
     list("clusters", clusters, "number of clusters of slices; 0: the number that --criterion proposes", Range{0, 1000});
     list("min-run", min_run,
@@ -151,7 +151,7 @@ void SliceSegmentOptions::list_options(OptionList& list) {
          "run",
          Range{1, 1000});
     list("size", size, "also cluster by the size of slices: the radius of the circle with the same area", Anything{});
-    count.list_options(list);
+    count.declare_options(list);
 }
 
 }  // namespace ostraka

@@ -251,7 +251,7 @@ Statement structural_continuity(const MembersPtr& members, const spec::Structura
     // If the shape is judged alone, a part that deviates from the axis at once, and as a whole, does not continue the
     // reference.
     if (const Axis own = axis_of_part(members->shape().mesh, members->member(0));
-        members->shape().alone && segment->turned && own.found) {
+        members->shape().alone && segment->is_empty && own.found) {
         const Vector3d along = eigen(own.direction), direction = eigen(rest.direction);
         Deviation turned = angle;
         turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;

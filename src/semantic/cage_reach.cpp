@@ -113,8 +113,8 @@ std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relat
                      tolerance = tolerances.distance * diagonal_of(*constraint, rest);
         if (!(left > worst * tolerance)) continue;
         worst = tolerance > 0 ? left / tolerance : 0;
-        reach.asked = rms_distance(*constraint, solved.edited);
-        reach.left = left;
+        reach.distance_after_edit = rms_distance(*constraint, solved.edited);
+        reach.remaining_distance = left;
         reach.tolerance = tolerance;
         reach.lacking = owner_of(*constraint, space, relationship);
     }
@@ -122,14 +122,15 @@ std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relat
     const semantic::Measured measured = statement.measure(now);
     reach.verdict = measured.verdict;
     reach.deviations = measured.deviations;
-    reach.reached = reach.rank == reach.rows || (measured.verdict == Verdict::holds && reach.left <= reach.tolerance);
+    reach.reached =
+        reach.rank == reach.rows || (measured.verdict == Verdict::holds && reach.remaining_distance <= reach.tolerance);
     return reach;
 }
 
 /// True if the first is farther from its tolerance.
 bool is_worse(const ConstraintReach& one, const ConstraintReach& other) {
     if ((one.verdict == Verdict::holds) != (other.verdict == Verdict::holds)) return one.verdict != Verdict::holds;
-    return one.left * other.tolerance > other.left * one.tolerance;
+    return one.remaining_distance * other.tolerance > other.remaining_distance * one.tolerance;
 }
 
 }  // namespace
@@ -175,7 +176,7 @@ ConstraintCage make_cage_for_constraints(AnnotatedMeshView object, const Relatio
         std::pair<std::size_t, double> off{0, 0};
         for (const ConstraintReach& one : list) {
             off.first += one.reached ? 0 : 1;
-            if (one.tolerance > 0) off.second = std::max(off.second, one.left / one.tolerance);
+            if (one.tolerance > 0) off.second = std::max(off.second, one.remaining_distance / one.tolerance);
         }
         return off;
     };
@@ -202,8 +203,8 @@ std::string describe(const ConstraintReach& reach, const AnnotationSet& set) {
     if (reach.reached) return {};
     const std::string unit = set.unit.empty() ? "" : " " + set.unit;
     std::string text = "constraint " + std::to_string(reach.id) + " (" + reach.type + "): the cage ";
-    if (reach.left > reach.tolerance)
-        text += "leaves " + digits(reach.left, 3) + unit + " of " + digits(reach.asked, 3) + unit +
+    if (reach.remaining_distance > reach.tolerance)
+        text += "leaves " + digits(reach.remaining_distance, 3) + unit + " of " + digits(reach.distance_after_edit, 3) + unit +
                 " (root mean square; tolerance " + digits(reach.tolerance, 3) + unit + ")";
     else text += "leaves it unmet";
     std::vector<std::string> off;

@@ -68,7 +68,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
         if (!(step.norm() > 0) || std::abs(step.normalized().dot(direction)) < limit) break;
     }
     if (last < 2) {
-        result.turned = true;
+        result.is_empty = true;
         result.reason = "does not begin in the direction of the reference: its skeleton leaves it by more than " +
                         std::to_string(angle) + " degrees at once";
         return result;

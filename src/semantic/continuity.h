@@ -16,7 +16,7 @@ struct AxisSegment {
     std::vector<double> shares;  ///< for each vertex, its position between that station and the next, 0 to 1
     int count = 0;               ///< number of stations
     std::string reason;          ///< why there is no segment; empty if there is one
-    bool turned = false;         ///< true: there is no segment, since the part leaves the axis immediately
+    bool is_empty = false;       ///< true: there is no segment, since the part leaves the axis immediately
 };
 
 /// Positions of the stations on deformed points: for each station, the mean of the vertices around it, weighted by hat functions

@@ -134,7 +134,7 @@ void check_constraint(AnnotatedMeshView object, const Relationship& relationship
     if (statement.unknown.empty()) static_cast<void>(statement.lower(state, state));
 }
 
-void DeformOptions::list_options(OptionList& list) {
+void DeformOptions::declare_options(OptionList& list) {
     list("space", space,
          "unknowns of the solve: mesh vertices (mesh), cage vertices (cage: fast, but constraints hold only as far as the cage "
          "permits), or auto (ornaments move rigidly, the rest is solved over the mesh; if that result is not acceptable, the "
@@ -157,7 +157,7 @@ void DeformOptions::list_options(OptionList& list) {
          "acceptable results: maximum root mean square distortion of a part that neither the edit nor a violated constraint "
          "changes",
          Range{0, 1}, "share of the diagonal");
-    solve.list_options(list);
+    solve.declare_options(list);
     list("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
     list("passes", passes,
          "maximum number of passes that update constraints on axes and measures of other parts; up to four times as many passes "

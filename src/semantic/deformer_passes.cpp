@@ -47,7 +47,7 @@ std::vector<std::size_t> Deformer::follow_steps(const Edit& edit) {
     std::vector<std::size_t> selected;
     last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
     last_.touched.assign(last_.handles.size(), false);
-    last_.named.assign(space_.mesh.number_of_vertices(), false);
+    last_.is_referenced.assign(space_.mesh.number_of_vertices(), false);
     for (auto& state : follow_edit(edit, space_, where_)) {
         last_ = std::move(state);
         selected.push_back(last_.selected.size());

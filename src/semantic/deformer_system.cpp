@@ -113,9 +113,9 @@ std::vector<std::unique_ptr<Constraint>> Deformer::take(std::vector<std::unique_
 
 std::vector<bool> Deformer::handles_on_mesh() const {
     if (space_.cage == nullptr) return last_.touched;
-    const auto named = static_cast<std::size_t>(std::count(last_.named.begin(), last_.named.end(), true));
-    if (2 * named <= last_.named.size()) return last_.named;
-    return std::vector<bool>(last_.named.size(), false);
+    const auto named = static_cast<std::size_t>(std::count(last_.is_referenced.begin(), last_.is_referenced.end(), true));
+    if (2 * named <= last_.is_referenced.size()) return last_.is_referenced;
+    return std::vector<bool>(last_.is_referenced.size(), false);
 }
 
 void Deformer::solve_mesh(Outcome& outcome) {

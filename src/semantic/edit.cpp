@@ -22,7 +22,7 @@ public:
     Follower(const HandleSpace& space, const std::string& where) : space_(space), where_(where) {
         state_.handles = ostraka::points_of(space.cage != nullptr ? *space.cage : space.mesh);
         state_.touched.assign(state_.handles.size(), false);
-        state_.named.assign(space.mesh.number_of_vertices(), false);
+        state_.is_referenced.assign(space.mesh.number_of_vertices(), false);
         if (space.cage == nullptr) return;
         levels_ = cage_levels(*space.cage);
         carrying_ = carrying_weights(levels_);
@@ -120,7 +120,7 @@ private:
 
     /// Chooses these vertices of the mesh, through a cage the handles that influence them.
     void choose_at(const std::vector<Index>& vertices, const std::string& name, const EditStep& step, std::set<Index>& chosen) {
-        for (const Index v : vertices) state_.named[v] = true;
+        for (const Index v : vertices) state_.is_referenced[v] = true;
         if (space_.cage == nullptr) {
             chosen.insert(vertices.begin(), vertices.end());
             return;
@@ -142,7 +142,7 @@ private:
         else if (rule == nullptr) state_.threshold = std::get<double>(*step.threshold);
         else
             state_.threshold = influence_threshold(step.rule_within_selection ? weights.vertex : weights_in(level, {}).vertex,
-                                                   *rule == EditStep::Rule::auto_mesh ? "auto-mesh" : "auto-cage");
+                                                   *rule == EditStep::Rule::cover_mesh ? "auto-mesh" : "auto-cage");
         std::vector<Index> list = influential(weights, rows, state_.threshold);
         if (list.empty())
             fail(fmt::format("no cage vertex has an influence of {} on {}; the largest is {}", std::to_string(state_.threshold),

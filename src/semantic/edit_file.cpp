@@ -63,8 +63,8 @@ private:
         if (value.IsNumber()) return value.GetDouble();
         const std::string rule = value.GetString();
         return rule == "per-point"   ? EditStep::Rule::per_point
-               : rule == "auto-mesh" ? EditStep::Rule::auto_mesh
-                                     : EditStep::Rule::auto_cage;
+               : rule == "auto-mesh" ? EditStep::Rule::cover_mesh
+                                     : EditStep::Rule::cover_cage;
     }
 
     [[nodiscard]] decltype(EditStep::select) selection() const {

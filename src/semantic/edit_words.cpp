@@ -80,7 +80,7 @@ Amount amount_of(const std::string& text, const char* option, const AnnotationSe
 
 }  // namespace
 
-void EditWords::list_options(OptionList& list) {
+void EditWords::declare_options(OptionList& list) {
     list("stretch", stretch, "PART=FACTOR or PART=FACTOR,AXIS: stretch parts from the base along an axis (up); repeatable");
     list("raise", raise, "PART=LENGTH or PART=LENGTH,AXIS: move parts by a length along an axis (default: up); repeatable");
     list("rotate", rotate, "PART=DEGREES or PART=DEGREES,AXIS: rotate parts about an axis (up) through their middle");
@@ -108,7 +108,7 @@ std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::
     return all;
 }
 
-Edit edit_of(const EditWords& words, const AnnotationSet& set) {
+Edit parse_edit(const EditWords& words, const AnnotationSet& set) {
     Edit edit;
     const auto add = [&](const std::vector<std::string>& texts, const char* option, auto&& operation_of) {
         for (const std::string& text : texts) {
@@ -168,7 +168,7 @@ bool has_measure(const Annotation& part, const std::string& name) {
 
 }  // namespace
 
-void take_measures(const EditWords& words, const Mesh& mesh, AnnotationSet& set) {
+void add_missing_measures(const EditWords& words, const Mesh& mesh, AnnotationSet& set) {
     for (const std::string& text : words.keep) {
         const Kept kept = kept_by(text, set);
         if (!set.up || (kept.measure != "height" && kept.measure != "thickness")) continue;

@@ -9,7 +9,7 @@ namespace ostraka::semantic {
 
 std::vector<bool> edited_vertices(const HandleSpace& space, const EditState& last, const Points& displacements) {
     if (space.cage == nullptr) return last.touched;
-    std::vector<bool> flags = last.named;
+    std::vector<bool> flags = last.is_referenced;
     if (!last.by_handles || flags.empty()) return flags;
     const Eigen::VectorXd wanted = displacements.colwise().norm();
     const double half = wanted.maxCoeff() / 2;

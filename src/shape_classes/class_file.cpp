@@ -267,7 +267,7 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
         if (check.low) add_members(item, allocator, "low", *check.low);
         if (check.high) add_members(item, allocator, "high", *check.high);
         if (check.recognised) add_members(item, allocator, "recognised", *check.recognised);
-        add_members(item, allocator, "decides", check.decides, "off", check.off, "excess", check.excess);
+        add_members(item, allocator, "decides", check.decides, "off", check.distance_from_range, "excess", check.excess);
         if (!check.worst.empty()) add_members(item, allocator, "worst", check.worst);
         return item;
     };
@@ -281,9 +281,9 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
     const auto explained = [&](const ClassAnswer& class_answer) {
         const FitResiduals& residuals = *class_answer.fit.residuals;
         return json_object(allocator, "object", 1 - residuals.unexplained, "template", 1 - residuals.unmatched, "within",
-                           class_answer.fit.contact_distance, "liesOn", class_answer.off.empty(), "mostOff",
-                           class_answer.most_off, "foreign", json_list(class_answer.fit.foreign, allocator, of_region), "missing",
-                           json_list(class_answer.fit.missing, allocator, of_region));
+                           class_answer.fit.contact_distance, "liesOn", class_answer.fit_problem.empty(), "mostOff",
+                           class_answer.misfit_limit, "foreign", json_list(class_answer.fit.foreign, allocator, of_region),
+                           "missing", json_list(class_answer.fit.missing, allocator, of_region));
     };
     const auto of_class = [&](const ClassAnswer& class_answer) {
         JsonValue object = json_object(allocator, "class", class_answer.name, "verdict", to_string(class_answer.verdict));
@@ -292,7 +292,7 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
             add_members(object, allocator, "score", class_answer.score, "placedBy", class_answer.fit.placed_by, "scale",
                         class_answer.fit.scale, "coefficients", class_answer.coordinates.coefficients, "mahalanobis",
                         class_answer.coordinates.mahalanobis);
-        add_nonempty_members(object, allocator, "odd", class_answer.odd, "notes", class_answer.fit.notes);
+        add_nonempty_members(object, allocator, "odd", class_answer.unusual_findings, "notes", class_answer.fit.notes);
         if (class_answer.fit.problem.empty() && class_answer.fit.residuals)
             add_members(object, allocator, "explained", explained(class_answer));
         add_members(object, allocator, "against", class_answer.reasons(), "checks",

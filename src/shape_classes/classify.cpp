@@ -31,10 +31,11 @@ QuantityCheck check_of(const LearntRange& range, const std::optional<double>& va
         check.decides = false;
         return check;
     }
-    if (*value > *range.high) check.off = *value - *range.high;
-    if (range.low && *value < *range.low) check.off = *range.low - *value;
+    if (*value > *range.high) check.distance_from_range = *value - *range.high;
+    if (range.low && *value < *range.low) check.distance_from_range = *range.low - *value;
     const double width = range.low ? *range.high - *range.low : *range.high;
-    if (check.off > 0) check.excess = width > 0 ? check.off / width : std::numeric_limits<double>::max();
+    if (check.distance_from_range > 0)
+        check.excess = width > 0 ? check.distance_from_range / width : std::numeric_limits<double>::max();
     return check;
 }
 
@@ -44,7 +45,8 @@ std::string check_text(const QuantityCheck& check) {
     std::string text = fmt::format("{}: {}{}", quantity.text(), digits(quantity.value.value_or(0), 4), unit);
     const bool above = check.high && *quantity.value > *check.high;
     text += above ? ", at most " + digits(*check.high, 4) : ", at least " + digits(check.low.value_or(0), 4);
-    return fmt::format("{}{} is accepted: {}{}{}{}", text, unit, digits(check.off, 3), unit, above ? " too much" : " too little",
+    return fmt::format("{}{} is accepted: {}{}{}{}", text, unit, digits(check.distance_from_range, 3), unit,
+                       above ? " too much" : " too little",
                        check.worst.empty() ? "" : "; the largest deviation is " + check.worst);
 }
 
@@ -102,7 +104,7 @@ void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quanti
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
     const auto dissimilarity_found = dissimilarity(learnt, values);
     if (!dissimilarity_found) return;
-    class_answer.unlike = dissimilarity_found->value;
+    class_answer.dissimilarity = dissimilarity_found->value;
     ClassQuantity& quantity = quantities.emplace_back();
     quantity.name = unlike_the_members;
     quantity.value = dissimilarity_found->value;
@@ -121,10 +123,11 @@ bool fitted_to_given(const ShapeClass& learnt, const LearntMember& object) {
 
 /// Whether the object is rejected only by distances of vertices.
 bool only_shape(const ClassAnswer& answer) {
-    return !answer.against.empty() && std::all_of(answer.against.begin(), answer.against.end(), [&](std::size_t i) {
-        const std::string& name = answer.checks[i].quantity.name;
-        return name == "from the mean shape" || name == "outside the modes";
-    });
+    return !answer.rejecting_checks.empty() &&
+           std::all_of(answer.rejecting_checks.begin(), answer.rejecting_checks.end(), [&](std::size_t i) {
+               const std::string& name = answer.checks[i].quantity.name;
+               return name == "from the mean shape" || name == "outside the modes";
+           });
 }
 
 std::vector<std::string> unit_and_mirror_warnings(const ShapeClass& learnt, const LearntMember& object,
@@ -172,8 +175,8 @@ std::string unsure_text(const ShapeClass& learnt, const QuantityCheck& check) {
 
 std::vector<std::string> ClassAnswer::reasons() const {
     std::vector<std::string> texts;
-    if (hopeless) texts.push_back(off);
-    for (const std::size_t i : against) texts.push_back(check_text(checks[i]));
+    if (fit_failed) texts.push_back(fit_problem);
+    for (const std::size_t i : rejecting_checks) texts.push_back(check_text(checks[i]));
     return texts;
 }
 
@@ -187,11 +190,11 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.score = std::numeric_limits<double>::max();
         return answer;
     }
-    answer.most_off = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
-    answer.off = fit_off_message(object.fit, answer.most_off);
-    answer.hopeless = !fit_off_message(object.fit, std::max(uninformative_fit, answer.most_off)).empty();
+    answer.misfit_limit = options.strict ? options.fit.max_off : std::max(options.fit.max_off, learnt.most_off.value_or(0));
+    answer.fit_problem = fit_off_message(object.fit, answer.misfit_limit);
+    answer.fit_failed = !fit_off_message(object.fit, std::max(uninformative_fit, answer.misfit_limit)).empty();
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
-    answer.odd = unit_and_mirror_warnings(learnt, object, answer.coordinates);
+    answer.unusual_findings = unit_and_mirror_warnings(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;
@@ -211,16 +214,16 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         QuantityCheck& check = answer.checks.back();
         check.worst = worst[range.quantity.key()];
         any_decides = any_decides || check.decides;
-        if (check.decides && check.off > 0) answer.against.push_back(answer.checks.size() - 1);
+        if (check.decides && check.distance_from_range > 0) answer.rejecting_checks.push_back(answer.checks.size() - 1);
     }
-    std::stable_sort(answer.against.begin(), answer.against.end(), [&](std::size_t a, std::size_t b) {
+    std::stable_sort(answer.rejecting_checks.begin(), answer.rejecting_checks.end(), [&](std::size_t a, std::size_t b) {
         const auto rank = [&](const QuantityCheck& check) {
             return check.quantity.kind == QuantityKind::constraint ? QuantityKind::proportion : check.quantity.kind;
         };
         const QuantityCheck &x = answer.checks[a], &y = answer.checks[b];
         return std::make_tuple(rank(x), -x.excess) < std::make_tuple(rank(y), -y.excess);
     });
-    if (answer.hopeless) {
+    if (answer.fit_failed) {
         answer.verdict = Membership::other;
     } else if (!any_decides) {
         answer.undecided = learnt.has_thresholds()      ? "none of the learnt quantities can be measured on it"
@@ -230,14 +233,14 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
         answer.undecided = fmt::format(
             "the class was learnt from objects in correspondence, but this object was fitted: {}, which may be an error of the "
             "fit",
-            check_text(answer.checks[answer.against.front()]));
-        answer.against.clear();
-    } else if (answer.against.empty() && !answer.off.empty()) {
-        answer.undecided = answer.off;
-    } else if (const QuantityCheck* check = not_recognised(answer); answer.against.empty() && check != nullptr) {
+            check_text(answer.checks[answer.rejecting_checks.front()]));
+        answer.rejecting_checks.clear();
+    } else if (answer.rejecting_checks.empty() && !answer.fit_problem.empty()) {
+        answer.undecided = answer.fit_problem;
+    } else if (const QuantityCheck* check = not_recognised(answer); answer.rejecting_checks.empty() && check != nullptr) {
         answer.undecided = unsure_text(learnt, *check);
     } else {
-        answer.verdict = answer.against.empty() ? Membership::member : Membership::other;
+        answer.verdict = answer.rejecting_checks.empty() ? Membership::member : Membership::other;
     }
     return answer;
 }
@@ -247,10 +250,11 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     Classification result;
     result.object = std::move(object);
     result.answers = std::move(answers);
-    if (std::all_of(result.answers.begin(), result.answers.end(),
-                    [](const ClassAnswer& class_answer) { return class_answer.unlike || !class_answer.fit.problem.empty(); }))
+    if (std::all_of(result.answers.begin(), result.answers.end(), [](const ClassAnswer& class_answer) {
+            return class_answer.dissimilarity || !class_answer.fit.problem.empty();
+        }))
         for (ClassAnswer& class_answer : result.answers)
-            if (class_answer.unlike) class_answer.score = *class_answer.unlike + class_answer.parts;
+            if (class_answer.dissimilarity) class_answer.score = *class_answer.dissimilarity + class_answer.parts;
     int second = -1;
     std::size_t undecided_count = 0;
     for (std::size_t i = 0; i < result.answers.size(); ++i) {
@@ -267,7 +271,7 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     }
     const auto name = [&](int k) { return fmt::format("'{}'", result.answers[static_cast<std::size_t>(k)].name); };
     const auto score = [&](int k) { return result.answers[static_cast<std::size_t>(k)].score; };
-    if (result.best >= 0 && second >= 0 && score(second) - score(result.best) <= options.close * score(second)) {
+    if (result.best >= 0 && second >= 0 && score(second) - score(result.best) <= options.tie_tolerance * score(second)) {
         result.text = fmt::format("cannot decide, because it may belong to {} as well as to {}", name(result.best), name(second));
         result.best = -1;
     } else if (result.best >= 0) {
@@ -291,8 +295,8 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
     return result;
 }
 
-void ClassifyOptions::list_options(OptionList& list) {
-    fit.list_options(list);
+void ClassifyOptions::declare_options(OptionList& list) {
+    fit.declare_options(list);
     list("correspondence", correspondence,
          "vertex correspondence between template and object: given (the object must have the template's triangles), fitted (the "
          "template is fitted to the object), or auto (given if the object has the template's triangles, otherwise fitted)",
@@ -300,7 +304,7 @@ void ClassifyOptions::list_options(OptionList& list) {
     list("strict", strict, "decide whether the template fits an object by --max-off alone, without comparison with the members",
          Anything{});
     list("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
-    list("close", close, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
+    list("close", tie_tolerance, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }
 
 }  // namespace ostraka

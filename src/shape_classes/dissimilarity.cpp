@@ -130,7 +130,7 @@ private:
                 if (i != j && products(i, i) > 0 && products(j, j) > 0)
                     correlation(i, j) = weight * products(i, j) / std::sqrt(products(i, i) * products(j, j));
         const SymmetricEigenX eigen(correlation);
-        if (!eigen.found()) return;
+        if (!eigen.succeeded()) return;
         constexpr double min_eigenvalue = 0.05;  // missing values can make the matrix indefinite
         const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse();
         root_ = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();

@@ -335,11 +335,11 @@ MemberFit fit_member(AnnotatedMeshView object, const WholeObject& member, const 
     return best;
 }
 
-void MemberFitOptions::list_options(OptionList& list) {
-    placement.list_options(list);
-    alignment.list_options(list);
-    annotations.list_options(list);
-    fit.list_options(list);
+void MemberFitOptions::declare_options(OptionList& list) {
+    placement.declare_options(list);
+    alignment.declare_options(list);
+    annotations.declare_options(list);
+    fit.declare_options(list);
     list("ignore-landmarks", ignore_landmarks, "ignore landmarks, and register the template onto objects by the surfaces alone",
          Anything{});
     list("tries", tries,

@@ -164,7 +164,7 @@ private:
         member.fit.points = sample.points;
         member.quantities = measure_quantities(class_template_, sample.points, learnt_.sizes);
         const ClassAnswer class_answer = compare_with(learnt_, member);
-        if (!class_answer.against.empty()) return reject(result.by_ranges, class_answer.reasons().front());
+        if (!class_answer.rejecting_checks.empty()) return reject(result.by_ranges, class_answer.reasons().front());
         const Mesh mesh = with_points(class_template_.mesh, sample.points);
         for (const auto& pair : crossings(mesh))
             if (!std::binary_search(template_crossings_.begin(), template_crossings_.end(), pair))
@@ -194,7 +194,7 @@ Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_templ
     return Sampler(learnt, class_template, options).run();
 }
 
-void SampleOptions::list_options(OptionList& list) {
+void SampleOptions::declare_options(OptionList& list) {
     list("count", count, "number of new members to sample", Range{1, 1e6});
     list("seed", seed, "random seed", Range{0, 1e18});
     list("by", by,

@@ -120,7 +120,7 @@ void summarise_range(LearntRange& range) {
     range.max = summary.max;
     range.mean = summary.mean;
     range.median = summary.median;
-    range.deviation = summary.deviation;
+    range.deviation = summary.standard_deviation;
     range.percentile_5 = sample_quantile(known_values, 0.05);
     range.percentile_25 = sample_quantile(known_values, 0.25);
     range.percentile_75 = sample_quantile(known_values, 0.75);
@@ -512,9 +512,9 @@ ShapePrior prior_of(const ShapeModes& modes) {
     return prior;
 }
 
-void LearnOptions::list_options(OptionList& list) {
-    fit.list_options(list);
-    modes.list_options(list);
+void LearnOptions::declare_options(OptionList& list) {
+    fit.declare_options(list);
+    modes.declare_options(list);
     list("correspondence", correspondence,
          "vertex correspondence between template and members: given (members must have the template's triangles), fitted (the "
          "template is fitted to each member), or auto (given for members with the template's triangles, fitted for others)",

@@ -162,7 +162,7 @@ Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficie
     return shape_from(row);
 }
 
-void ModeOptions::list_options(OptionList& list) {
+void ModeOptions::declare_options(OptionList& list) {
     list("sizes", sizes, "compare sizes as well as shapes; by default all objects are first scaled to one size", Anything{});
     list("modes", maximum, "maximum number of modes of variation", Range{0, 1e6});
     list("variance", variance, "share of the variance of the members that the kept modes explain", Range{0, 1});

@@ -426,7 +426,7 @@ Mesh revolve_profile(const std::vector<Eigen::Vector2d>& profile, int columns) {
     return build_mesh(soup);
 }
 
-void CapacityOptions::list_options(OptionList& list) {
+void CapacityOptions::declare_options(OptionList& list) {
     list("up-error", up_error, "standard deviation of the upward direction", Range{0, 30}, "degrees");
     list("noise", noise, "standard deviation of the wall's noise; by default estimated from the surface", Range{0, 1e60},
          "the mesh's unit");

@@ -110,7 +110,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i] = layer_of(stack.slices[i], descriptors[i]);
     ClayVolume result;
     result.reversed = stack.reversed;
-    for (const Slice& slice : stack.slices) result.turned += slice.completeness.turned > 0 ? 1 : 0;
+    for (const Slice& slice : stack.slices) result.reversed_slices += slice.completeness.reversed_contours > 0 ? 1 : 0;
     std::vector<double> thinnest, thickest;
     for (const Layer& layer : layers) {
         if (!layer.met) continue;
@@ -146,7 +146,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     return result;
 }
 
-void ClayOptions::list_options(OptionList& list) {
+void ClayOptions::declare_options(OptionList& list) {
     list("slices", slices, "number of layers of equal height from which the volume is summed", Range{2, 1000000});
     list("wall", wall,
          "minimum thickness of walls whose inner side was not scanned; 0: the 5 % quantile of the thickness of scanned walls",

@@ -64,7 +64,7 @@ Completeness completeness(const std::vector<Contour>& contours) {
     for (const auto& contour : contours) {
         length += contour.length;
         if (contour.closed) closed += contour.length;
-        result.crossing += contour.crosses ? 1 : 0, result.turned += contour.turned ? 1 : 0;
+        result.crossing += contour.crosses ? 1 : 0, result.reversed_contours += contour.reversed ? 1 : 0;
     }
     if (contours.empty() || contours.back().closed) return result;
     result.closed_share = closed / length;

@@ -126,7 +126,7 @@ bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_who
     if (std::any_of(wrong.begin(), wrong.end(), has_wrong)) shells.emplace(mesh, slices, wrong);
     parallel_for(slices.size(), 1, [&](std::size_t i) {
         for (Contour& contour : slices[i].contours)
-            if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
+            if (shells && shells->contains(contour)) turn_around(contour), contour.reversed = true;
         const double doubtful = slices[i].completeness.doubtful;
         slices[i].completeness = completeness(slices[i].contours);
         slices[i].completeness.doubtful = doubtful;

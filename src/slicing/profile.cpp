@@ -88,7 +88,7 @@ double widest(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) 
     std::vector<double> maximum(36, -std::numeric_limits<double>::infinity());
     for (const Vertex v : mesh.vertices()) {
         const Vector2d place = axis.place(mesh.point(v));
-        const double wall = profile.reach_at(axis.height(mesh.point(v)));
+        const double wall = profile.extent_at(axis.height(mesh.point(v)));
         for (std::size_t k = 0; k < 36; ++k)
             maximum[k] = std::max(maximum[k],
                                   std::cos(double(k) * pi / 18) * place.x() + std::sin(double(k) * pi / 18) * place.y() - wall);
@@ -105,14 +105,14 @@ bool hides(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
     const Vector2d along(std::cos(profile.view_angle), std::sin(profile.view_angle));
     return std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
         const Vector2d place = axis.place(mesh.point(v));
-        const double wall = profile.reach_at(axis.height(mesh.point(v)));
+        const double wall = profile.extent_at(axis.height(mesh.point(v)));
         return wall > 0 && place.norm() > wall + 0.05 * size && std::abs(along.dot(place)) < wall + 0.01 * size;
     });
 }
 
 }  // namespace
 
-double Profile::reach_at(double height) const {
+double Profile::extent_at(double height) const {
     if (extent.empty() || !(height >= low && height <= high)) return 0;
     const auto n = static_cast<long>(extent.size());
     const long place = std::clamp(static_cast<long>((height - low) / (high - low) * double(n)), 0L, n - 1);
@@ -157,7 +157,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
         round += descriptors[i].roundness_fitted_relative < 0.05 ? 1 : 0;
         profile.open += descriptors[i].open_length > descriptors[i].closed_length ? 1 : 0;
     }
-    profile.turned = 2 * round >= 24;
+    profile.is_revolved = 2 * round >= 24;
     // A wall without thickness has its mouth at the border of the mesh.
     const bool ends_open = std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
         return !mesh.is_isolated(v) && mesh.is_border(v) && axis.height(mesh.point(v)) > profile.high - 0.03 * size;
@@ -173,7 +173,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
         profile.rim_low = arc ? 2 * d.fitted_radius_low : 0, profile.rim_high = arc ? 2 * d.fitted_radius_high : 0;
     }
     profile.view_angle = angle + pi;
-    if (profile.turned) {
+    if (profile.is_revolved) {
         // Only where the slice is round and of similar radius: not on the edge of an arm or a handle.
         for (const auto& edge : breaks(profile)) {
             const auto layer = static_cast<std::size_t>(std::clamp((edge.height - profile.low) / size * 24, 0.0, 23.0));

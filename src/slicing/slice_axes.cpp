@@ -20,7 +20,7 @@ Straightness summary_of(const std::vector<double>& distances, double length) {
     Straightness result;
     if (distances.empty()) return result;
     const Summary summary = summarise(distances);
-    result.mean = summary.mean, result.deviation = summary.deviation.value_or(0), result.maximum = summary.max;
+    result.mean = summary.mean, result.deviation = summary.standard_deviation.value_or(0), result.maximum = summary.max;
     result.length = length;
     if (length > 0) result.relative = result.mean / length;
     return result;
@@ -192,7 +192,7 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
     return tube;
 }
 
-void TubeOptions::list_options(OptionList& list) {
+void TubeOptions::declare_options(OptionList& list) {
     list("min-eccentricity", min_eccentricity,
          "tube: minimum ratio of short to long side of the smallest rectangle around a slice", Range{0, 1});
     list("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its fitted circle", Range{0, 10},

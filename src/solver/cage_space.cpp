@@ -302,7 +302,7 @@ void CageSpaceSolver::State::make_factor() {
     regularisation = 0;
     const double mean = cage > 0 ? normal.trace() / static_cast<double>(cage) : 0;
     factor.compute(normal);
-    for (double share = min_regularisation; !factor.found() || !(factor.rcond() > min_rcond); share *= 100) {
+    for (double share = min_regularisation; !factor.succeeded() || !(factor.rcond() > min_rcond); share *= 100) {
         if (share > 1e4)
             throw Error(ErrorKind::failure, "solver", "the system cannot be factorised", "bring weights closer to each other");
         regularisation = mean > 0 ? share * mean : 1.0;

@@ -94,7 +94,7 @@ Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b) {
 
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m) {
     const Svd3 svd(m);
-    if (!svd.found()) return Eigen::Matrix3d::Identity();  // the matrix is not finite
+    if (!svd.succeeded()) return Eigen::Matrix3d::Identity();  // the matrix is not finite
     Eigen::Matrix3d u = svd.matrixU();
     if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) *= -1;
     return u * svd.matrixV().transpose();

@@ -147,8 +147,8 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     return summary;
 }
 
-void HardOptions::list_options(OptionList& list) {
-    inner.list_options(list);
+void HardOptions::declare_options(OptionList& list) {
+    inner.declare_options(list);
     list("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
     list("hard-tolerance", tolerance, "maximum distance by which a hard constraint may be violated", Range{1e-15, 1},
          "share of the diagonal");

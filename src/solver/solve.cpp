@@ -146,7 +146,7 @@ Points points_of(const CageWeights& weights, const Points& cage) {
     return points;
 }
 
-void SolveOptions::list_options(OptionList& list) {
+void SolveOptions::declare_options(OptionList& list) {
     list("iterations", iterations, "maximum number of global steps", Range{0, 1e7});
     list("tolerance", tolerance, "stop when no point moves by more than this distance per iteration", Range{0, 1},
          "share of the diagonal");

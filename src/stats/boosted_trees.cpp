@@ -249,7 +249,7 @@ BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, co
     return Booster(table, truth, weights, options).run();
 }
 
-void BoostOptions::list_options(OptionList& list) {
+void BoostOptions::declare_options(OptionList& list) {
     list("trees", trees, "number of trees", Range{1, 10000});
     list("depth", depth, "maximum number of decisions from root to leaf", Range{1, 16});
     list("rate", rate, "learning rate: factor on the value of each tree", Range{1e-4, 1});

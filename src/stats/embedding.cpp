@@ -31,7 +31,7 @@ Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions) {
     require_symmetric(symmetric, false, "spectral embedding");
     const Eigen::Index n = symmetric.rows(), d = std::min<Eigen::Index>(dimensions, n);
     const SymmetricEigenX solver((symmetric + symmetric.transpose()) / 2);
-    if (!solver.found())
+    if (!solver.succeeded())
         throw Error(ErrorKind::failure, "spectral embedding", "the eigenvalues were not found",
                     "check that the matrix has entries of moderate size");
     const Eigen::VectorXd& values = solver.eigenvalues();

@@ -61,10 +61,10 @@ std::optional<Interval> deviation_interval(const std::vector<double>& values, bo
     const double n = static_cast<double>(values.size()), z = normal_quantile(0.5 + confidence / 2);
     if (values.size() < 3 || !(n > z)) return std::nullopt;
     const Summary summary = summarise(values);
-    if (!(*summary.deviation > 0) || (relative && summary.mean == 0)) return std::nullopt;
+    if (!(*summary.standard_deviation > 0) || (relative && summary.mean == 0)) return std::nullopt;
     // Standardised: in units of the deviation, about the mean.
     std::vector<double> scaled;
-    for (const double value : values) scaled.push_back((value - summary.mean) / *summary.deviation);
+    for (const double value : values) scaled.push_back((value - summary.mean) / *summary.standard_deviation);
     std::sort(scaled.begin(), scaled.end());
     // Trimmed mean: a fraction 1 / (2 sqrt(n - 4)) of the values is removed at either end.
     const double trimmed_fraction = values.size() > 4 ? std::min(0.5, 1 / (2 * std::sqrt(n - 4))) : 0.5;
@@ -78,12 +78,12 @@ std::optional<Interval> deviation_interval(const std::vector<double>& values, bo
     const double log_error = factor * std::sqrt((kurtosis - (n - 3) / n) / (n - 1)) / 2;
     double error = log_error, variation = 1;
     if (relative) {
-        variation = *summary.deviation / std::abs(summary.mean);
+        variation = *summary.standard_deviation / std::abs(summary.mean);
         const double skewness = std::sqrt(n) * third / std::pow(n - 1, 1.5) * (summary.mean < 0 ? -1 : 1);
         const double square = log_error * log_error + variation * variation / n - skewness * variation / n;
         error = std::sqrt(std::max(square, log_error * log_error / 4));
     }
-    const double centre = std::sqrt(factor) * (relative ? variation : *summary.deviation);
+    const double centre = std::sqrt(factor) * (relative ? variation : *summary.standard_deviation);
     return Interval{centre * std::exp(-z * error), centre * std::exp(z * error)};
 }
 
@@ -141,7 +141,7 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
     return result;
 }
 
-void StabilityOptions::list_options(OptionList& list) {
+void StabilityOptions::declare_options(OptionList& list) {
     list("stability-resamples", resamples, "number of resamples from which the stability of the groups is estimated",
          Range{1, 100000});
     list("stability-share", share, "share of the objects that each resample contains", Range{0.05, 1});

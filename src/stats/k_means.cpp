@@ -189,14 +189,14 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples) {
     return result;
 }
 
-void KMeansOptions::list_options(OptionList& list) {
+void KMeansOptions::declare_options(OptionList& list) {
     list("clusters", clusters, "number of clusters", Range{1, 100000});
     list("restarts", restarts, "number of initialisations of k-means; the best result is kept", Range{1, 100000});
     list("iterations", iterations, "maximum number of iterations of k-means", Range{1, 1000000});
     list("seed", seed, "random seed", Range{0, 1e18});
 }
 
-void ClusterCountOptions::list_options(OptionList& list) {
+void ClusterCountOptions::declare_options(OptionList& list) {
     list("max-clusters", max_clusters, "maximum number of clusters that --criterion tries", Range{1, 10000});
     list("criterion", criterion, "criterion that proposes the number of clusters", Choices{"silhouette", "gap"});
     list("references", references, "number of reference sets of the gap statistic", Range{2, 100000});

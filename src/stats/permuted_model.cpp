@@ -172,7 +172,7 @@ public:
         const double total = y_.squaredNorm();
         for (std::size_t j = 0; j < terms_.size(); ++j) {
             AnovaRow row{terms_[j].name, static_cast<int>(added_[j].cols()), squares(j, y_), {}, 0, {}, {}, {}, {}};
-            if (row.freedom == 0)
+            if (row.degrees_of_freedom == 0)
                 result.notes.push_back(
                     fmt::format("'{}' is confounded with other terms: it has no degrees of freedom", row.term));
             result.rows.push_back(std::move(row));
@@ -181,8 +181,9 @@ public:
         result.rows.push_back({residuals_name, static_cast<int>(freedom_), rest, {}, 0, {}, {}, {}, {}});
         result.rows.push_back({total_name, static_cast<int>(y_.rows()) - 1, total, {}, 0, {}, {}, {}, {}});
         for (AnovaRow& row : result.rows) {
-            if (row.freedom > 0 && row.term != total_name) row.mean = row.squares / row.freedom;
-            row.share = total > 0 ? row.squares / total : 0;
+            if (row.degrees_of_freedom > 0 && row.term != total_name)
+                row.mean_square = row.sum_of_squares / row.degrees_of_freedom;
+            row.r_squared = total > 0 ? row.sum_of_squares / total : 0;
         }
         for (std::size_t j = 0; j < terms_.size(); ++j) test(j, total, result);
         return result;
@@ -205,14 +206,16 @@ private:
         AnovaRow& row = result.rows[j];
         const bool by_term = error_[j] < terms_.size();
         const AnovaRow& error = result.rows[by_term ? error_[j] : terms_.size()];
-        if (row.freedom == 0 || error.freedom == 0 || error_[j] == j || !(error.squares > 1e-20 * total)) {
-            if (row.freedom > 0)
-                result.notes.push_back(fmt::format("'{}' is not tested: {} left for its error", row.term,
-                                                   error.freedom == 0 ? "no degrees of freedom are" : "no variation is"));
+        if (row.degrees_of_freedom == 0 || error.degrees_of_freedom == 0 || error_[j] == j ||
+            !(error.sum_of_squares > 1e-20 * total)) {
+            if (row.degrees_of_freedom > 0)
+                result.notes.push_back(
+                    fmt::format("'{}' is not tested: {} left for its error", row.term,
+                                error.degrees_of_freedom == 0 ? "no degrees of freedom are" : "no variation is"));
             return;
         }
         row.error = error.term;
-        row.f = *row.mean / *error.mean;
+        row.f = *row.mean_square / *error.mean_square;
         if (options_.permutations == 0) return;
         const MatrixXd fitted = reduced_[j] * (reduced_[j].transpose() * y_);
         const MatrixXd rest = y_ - fitted;
@@ -259,7 +262,7 @@ std::vector<ModelTerm> parse_model(const std::string& text, const std::vector<Mo
     const auto index_of = [&](const std::string& name) {
         const auto place = std::find(names.begin(), names.end(), name);
         if (place == names.end())
-            fail_usage(fmt::format("the model names '{}', which is no variable", printable(name, 60)),
+            fail_usage(fmt::format("the model names '{}', which is not a variable", printable(name, 60)),
                        names.empty() ? "give a table of variables" : "use one of: " + joined(names));
         return static_cast<std::size_t>(place - names.begin());
     };
@@ -324,7 +327,7 @@ std::optional<Repeatability> repeatability(const MatrixXd& Y, const std::vector<
     PermutationOptions no_tests;
     no_tests.permutations = 0;
     const Anova anova = permuted_anova(Y, variables, {{"individual", {0}}}, no_tests);
-    const double among = *anova.rows[0].mean, within = *anova.rows[1].mean;
+    const double among = *anova.rows[0].mean_square, within = *anova.rows[1].mean_square;
     double squares = 0;
     for (const auto& [individual, count] : counts) squares += count * count;
     Repeatability result;
@@ -336,7 +339,7 @@ std::optional<Repeatability> repeatability(const MatrixXd& Y, const std::vector<
     return result;
 }
 
-void PermutationOptions::list_options(OptionList& list) {
+void PermutationOptions::declare_options(OptionList& list) {
     list("sums-of-squares", type,
          "each term after the terms before it (sequential, type I), after all terms that do not contain it (hierarchical, type "
          "II), or after all others (marginal, type III)",

@@ -190,12 +190,12 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
     for (double& positive_fraction : result.positive) positive_fraction /= static_cast<double>(repeats);
     const Summary summary = summarise(result.f1, "F1");
     result.mean_f1 = summary.mean;
-    result.deviation = summary.deviation.value_or(0);
+    result.deviation = summary.standard_deviation.value_or(0);
     result.answers = std::move(answers);
     return result;
 }
 
-void CrossValidationOptions::list_options(OptionList& list) {
+void CrossValidationOptions::declare_options(OptionList& list) {
     list("folds", folds, "number of folds that are held out in turn", Range{2, 100000});
     list("repeats", repeats, "number of times the division into folds is repeated", Range{1, 100000});
     list("seed", seed, "random seed", Range{0, 1e18});

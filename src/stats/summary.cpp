@@ -124,8 +124,8 @@ Summary summarise(const std::vector<double>& values, const std::string& where) {
         }
     result.mean = std::clamp(result.median + sum / n * 2 * unit, result.min, result.max);
     if (result.count > 1) {
-        result.deviation = 2 * unit * std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1));
-        if (result.mean != 0) result.variation = *result.deviation / std::abs(result.mean);
+        result.standard_deviation = 2 * unit * std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1));
+        if (result.mean != 0) result.coefficient_of_variation = *result.standard_deviation / std::abs(result.mean);
     }
     return result;
 }

@@ -83,7 +83,7 @@ SyntheticFragment generate_fragment(const Mesh& object, const Point& centre, con
     return result;
 }
 
-void FragmentOptions::list_options(OptionList& list) {
+void FragmentOptions::declare_options(OptionList& list) {
     list("share", share, "share of the surface area of the object that the fragment keeps", Range{0.001, 1});
     list("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
     list("noise", noise, "scan noise: standard deviation of the vertex displacements along the normals", Range{0, 0.1},

@@ -209,7 +209,7 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
     return heads;
 }
 
-void CastOptions::list_options(OptionList& list) {
+void CastOptions::declare_options(OptionList& list) {
     list("wear", wear,
          "maximum wear of a cast: standard deviation of the Gaussian that smooths the surface; the wear of a cast is 50 to 100 "
          "% of this value, and half as large at some places",
@@ -227,7 +227,7 @@ void CastOptions::list_options(OptionList& list) {
     list("cast-seed", seed, "random seed of the wear, deformation and mesh of the casts", Range{0, 9007199254740992.0});
 }
 
-void MouldPopulationOptions::list_options(OptionList& list) {
+void MouldPopulationOptions::declare_options(OptionList& list) {
     list("objects", objects, "number of moulded heads", Range{1, 100000});
     list("moulds", moulds, "number of moulds; every second mould has long hair", Range{1, 1000});
     list("hand-made", hand_made, "number of hand-made heads", Range{0, 100000});

@@ -361,7 +361,7 @@ std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const
     return HeadBuilder(shape, work).build();
 }
 
-void ArchetypeOptions::list_options(OptionList& list) {
+void ArchetypeOptions::declare_options(OptionList& list) {
     list("long-hair", long_hair, "long locks behind the ears, instead of a cap of short hair", Anything{});
     list("hand-made", hand_made, "make a hand-formed head: with larger variation, and with a hat", Anything{});
     list("difference", difference, "difference between the archetypes of moulds: 1 means that proportions vary by about 8 %",

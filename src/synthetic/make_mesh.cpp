@@ -126,7 +126,7 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
     return result;
 }
 
-void MakeOptions::list_options(OptionList& list) {
+void MakeOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices (reached to 1 %)", Range{4, 5e7});
     list("seed", seed, "random seed of mesh and noise: another seed gives another mesh of the same object",
          Range{0, 9007199254740992.0});

@@ -89,7 +89,7 @@ bool ProportionedOptions::is_fixed(const std::string& size) const {
     return !none && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
 }
 
-void ProportionedOptions::list_options(OptionList& list) {
+void ProportionedOptions::declare_options(OptionList& list) {
     list("fixed", fixed, "names of the sizes that have fixed ratios to each other, separated by commas",
          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
         .words();

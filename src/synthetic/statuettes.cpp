@@ -301,7 +301,7 @@ std::unique_ptr<const SyntheticObject> statuette_object(const StatuetteParameter
     return shapes::build_statuette(parameters, shapes::StatuetteBody(parameters));
 }
 
-void StatuetteParameters::list_options(OptionList& list) {
+void StatuetteParameters::declare_options(OptionList& list) {
     list("technique", technique, "technique of the body: wheel-made or hand-made", Choices{"wheel", "hand"});
     list("height", height, "height from the base to the topmost point", Range{100, 500}, "mm");
     list("base-diameter", base_diameter, "diameter of the base", Range{20, 200}, "mm");
@@ -333,7 +333,7 @@ void StatuetteParameters::list_options(OptionList& list) {
     list("vertices", vertices, "number of vertices of the mesh, before patches are removed", Range{4000, 5e6});
 }
 
-void PopulationOptions::list_options(OptionList& list) {
+void PopulationOptions::declare_options(OptionList& list) {
     list("objects", objects, "number of statuettes, half of them wheel-made and half hand-made", Range{1, 100000});
     list("level", level, "difficulty: from 1 (clearly different techniques) to 5 (nearly identical techniques)", Range{1, 5});
     list("seed", seed, "random seed from which all objects are made", Range{0, 1e9});

@@ -100,7 +100,7 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
     return document;
 }
 
-void TemplateOptions::list_options(OptionList& list) {
+void TemplateOptions::declare_options(OptionList& list) {
     list("allow-outside", allow_outside, "allow the template to refer to files outside of its folder", Anything{});
     list("force-mesh", force_mesh, "accept annotations made for another mesh if all their vertices, faces and edges exist here",
          Anything{});

@@ -101,7 +101,7 @@ void check_mesh(const Mesh& mesh) {
 
 }  // namespace
 
-void AtlasOptions::list_options(OptionList& list) {
+void AtlasOptions::declare_options(OptionList& list) {
     list("max-size", max_size, "largest width and height of an image", Range{64, 16384}, "texels");
     list("gutter", gutter, "texels left free around each chart", Range{0, 64}, "texels");
     list("cone", cone, "largest angle between the normals of a chart and its axis: less stretch for smaller charts", Range{5, 75},

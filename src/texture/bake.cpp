@@ -151,7 +151,7 @@ private:
 
 }  // namespace
 
-void BakeOptions::list_options(OptionList& list) {
+void BakeOptions::declare_options(OptionList& list) {
     list("of", quantity, "what is baked: colours, ambient occlusion, mean curvature, height of the source above the target",
          Choices{"colour", "occlusion", "curvature", "relief"});
     list("distance", distance, "largest distance of the source from the target", Range{0, 1}, "share of the box diagonal");

@@ -242,7 +242,7 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     return result;
 }
 
-void CorrespondenceOptions::list_options(OptionList& list) {
+void CorrespondenceOptions::declare_options(OptionList& list) {
     list("max-distance", max_distance, "maximum distance of a vertex from its counterpart", Range{1e-9, 1},
          "share of the box diagonal");
     list("max-angle", max_angle, "maximum angle between the normal of a vertex and the normal of the target face", Range{0, 180},

@@ -49,7 +49,7 @@ public:
           old_unit_(object.annotations.unit),
           unit_(std::move(unit)),
           keeps_sizes_(motion.scale == 1 && old_unit_ == unit_) {
-        search_.expect(object.annotations);
+        search_.prepare(object.annotations);
         const auto factor = old_unit_.empty() || unit_.empty() ? std::nullopt : converted(1, old_unit_, unit_);
         only_other_unit_ = factor && std::abs(motion.scale / *factor - 1) < 1e-12;
     }

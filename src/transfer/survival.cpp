@@ -54,7 +54,7 @@ std::vector<Survival> smallest_resolutions(AnnotatedMeshView object, const Survi
     return survivals;
 }
 
-void SurvivalOptions::list_options(OptionList& list) {
+void SurvivalOptions::declare_options(OptionList& list) {
     list("ratio", ratio, "ratio of the number of vertices of each resolution to that of the previous resolution",
          Range{0.1, 0.95});
     list("area-error", area_error, "a region counts as lost if its area changes by more than this relative amount",

@@ -258,8 +258,8 @@ std::string to_string(TransferOutcome outcome) {
     return words[static_cast<std::size_t>(outcome)];
 }
 
-void TransferOptions::list_options(OptionList& list) {
-    correspondence.list_options(list);
+void TransferOptions::declare_options(OptionList& list) {
+    correspondence.declare_options(list);
     list("metric", metric, "length that paths between corresponding vertices minimise",
          Choices{"euclidean", "segment", "combined"});
     list("spikes", spikes, "spikes of outlines: prune (remove), avoid (visit no vertex twice) or keep",

@@ -383,7 +383,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text) 
     return nullptr;
 }
 
-void CheckVocabularyOptions::list_options(OptionList& list) {
+void CheckVocabularyOptions::declare_options(OptionList& list) {
     list("strict", strict, "report measures and descriptors that the vocabulary does not define as defects", Anything{});
 }
 

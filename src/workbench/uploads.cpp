@@ -112,7 +112,7 @@ std::vector<std::size_t> scans_among(const std::vector<AnnouncedFile>& files) {
     const auto has = [](const std::vector<std::string>& endings, const std::string& ending) {
         return std::find(endings.begin(), endings.end(), ending) != endings.end();
     };
-    const std::vector<std::string> meshes = endings_of(Kind::mesh);
+    const std::vector<std::string> meshes = extensions_of(Kind::mesh);
     std::vector<std::size_t> scans, texts;
     for (std::size_t i = 0; i < files.size(); ++i) {
         const std::string ending = extension(files[i].name);

@@ -323,7 +323,7 @@ void Workbench::run(const JsonValue& request, Json& result, std::string& /*bytes
     const Stopwatch watch;
     const Report report = session_.run(request, *context_);
     auto& a = result.GetAllocator();
-    add_members(result, a, "holds", report.holds(), "text", report.to_text(ReportFormat::table), "notes", report.noted(),
+    add_members(result, a, "holds", report.holds(), "text", report.to_text(ReportFormat::table), "notes", report.notes(),
                 "result", JsonValue(report.result(), a), "seconds", watch.seconds());
 }
 

@@ -305,8 +305,8 @@ std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<
     return tables_of_study;
 }
 
-std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
-                                         const std::function<Path(const std::string&)>& write) {
+std::vector<std::string> write_study_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
+                                            const std::function<Path(const std::string&)>& write) {
     const Study& study = plan.study;
     std::vector<std::string> names;
     const auto write_text = [&](const std::string& name, const std::string& text) {

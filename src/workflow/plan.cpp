@@ -329,7 +329,7 @@ Path StudyPlan::input_file(const std::string& name, const std::string& place, Ki
     study.require_readable(file, place);
     if (!file_exists(file) && !is_folder(file))
         fail_input(study.at(place), fmt::format("'{}' does not exist", file.string()), "names are relative to the study file");
-    const auto endings = endings_of(kind);
+    const auto endings = extensions_of(kind);
     const bool by_ending = kind == Kind::mesh || kind == Kind::cage || kind == Kind::coordinates;
     if (by_ending && std::find(endings.begin(), endings.end(), extension(file)) == endings.end())
         fail_input(study.at(place),

@@ -170,7 +170,7 @@ private:
                 std::vector<std::pair<std::string, std::string>> depends;
                 if (record) depends = dependencies_of(i);
                 std::string why = rerun_reason(plan_, record, depends, instance(i), folder_, checksums_);
-                if (why.empty() && options_.again) why = "all steps were requested to run again (--again)";
+                if (why.empty() && options_.rerun_all) why = "all steps were requested to run again (--again)";
                 lock.lock();
                 if (record) work.expected = record->seconds;
                 if (why.empty()) {

@@ -17,14 +17,14 @@ Eigen::Matrix2d symmetric(double a, double b, double c) {
 
 TEST(SymmetricEigen2, KnownMatrices) {
     const SymmetricEigen2 two(symmetric(2, 1, 2));
-    ASSERT_TRUE(two.found());
+    ASSERT_TRUE(two.succeeded());
     EXPECT_NEAR(two.eigenvalues()[0], 1, 1e-15);
     EXPECT_NEAR(two.eigenvalues()[1], 3, 1e-15);
     EXPECT_NEAR(std::abs(two.eigenvectors().col(1).dot(Eigen::Vector2d(1, 1).normalized())), 1, 1e-15);
     const SymmetricEigen2 diagonal(symmetric(5, 0, -7));
     EXPECT_EQ(diagonal.eigenvalues(), Eigen::Vector2d(-7, 5));
     EXPECT_EQ(SymmetricEigen2(Eigen::Matrix2d::Zero()).eigenvalues(), Eigen::Vector2d::Zero());
-    EXPECT_FALSE(SymmetricEigen2(symmetric(1, std::numeric_limits<double>::quiet_NaN(), 1)).found());
+    EXPECT_FALSE(SymmetricEigen2(symmetric(1, std::numeric_limits<double>::quiet_NaN(), 1)).succeeded());
 }
 
 /// For any size the vectors are orthonormal, the values ascend, and both reproduce the matrix, as with the dynamic solver.

@@ -66,8 +66,8 @@ TEST(Proportions, RowsByHand) {
     ASSERT_EQ(study.measures.size(), 2u);
     ASSERT_EQ(study.ratios.size(), 1u);
     EXPECT_EQ(study.measures[0].summary->mean, 8);
-    EXPECT_DOUBLE_EQ(*study.measures[0].summary->deviation, std::sqrt(2.0 / 3));
-    EXPECT_DOUBLE_EQ(*study.measures[0].summary->variation, std::sqrt(2.0 / 3) / 8);
+    EXPECT_DOUBLE_EQ(*study.measures[0].summary->standard_deviation, std::sqrt(2.0 / 3));
+    EXPECT_DOUBLE_EQ(*study.measures[0].summary->coefficient_of_variation, std::sqrt(2.0 / 3) / 8);
     EXPECT_EQ(study.measures[0].unit, "mm");
     const RatioRow& ratio = study.ratios[0];
     EXPECT_EQ(ratio.numerator, 1u) << "the larger over the smaller";
@@ -75,7 +75,7 @@ TEST(Proportions, RowsByHand) {
     EXPECT_DOUBLE_EQ(ratio.row.summary->mean, (20.0 / 8 + 2 + 3 + 25.0 / 8) / 4);
     EXPECT_EQ(ratio.row.summary->count, 4u);
     const auto inside = [](const Interval& interval, double value) { return interval.low <= value && value <= interval.high; };
-    EXPECT_TRUE(inside(*ratio.row.variation_interval, *ratio.row.summary->variation));
+    EXPECT_TRUE(inside(*ratio.row.variation_interval, *ratio.row.summary->coefficient_of_variation));
     EXPECT_NE(ratio.fixedness, Fixedness::fixed) << "with two measures there is nothing to compare with";
 }
 
@@ -149,7 +149,7 @@ TEST(Proportions, ScaledCopiesVaryWithTheSize) {
     const ProportionStudy study = study_proportions(make_measures(options).table, quick());
     for (const RatioRow& ratio : study.ratios) {
         EXPECT_EQ(ratio.fixedness, Fixedness::with_size) << ratio.row.name;
-        EXPECT_LT(*ratio.row.summary->variation, 0.06);
+        EXPECT_LT(*ratio.row.summary->coefficient_of_variation, 0.06);
     }
     EXPECT_NEAR(*study.size_deviation, 0.2, 0.08);
     for (const MeasureRow& row : study.measures) EXPECT_NEAR(*row.own_deviation, 0.03 / std::sqrt(2.0), 0.012);
@@ -224,14 +224,14 @@ TEST(Proportions, HandlesSingleAndIdenticalObjects) {
     ASSERT_EQ(single_object.ratios.size(), 3u);
     for (const RatioRow& ratio : single_object.ratios) {
         EXPECT_EQ(ratio.fixedness, Fixedness::unknown);
-        EXPECT_FALSE(ratio.row.summary->deviation);
+        EXPECT_FALSE(ratio.row.summary->standard_deviation);
         EXPECT_FALSE(ratio.row.variation_interval);
     }
     EXPECT_FALSE(single_object.notes.empty());
     const std::vector<std::vector<double>> same(10, {1, 2, 3, 5});
     const ProportionStudy identical = study_proportions(table_of({"a", "b", "c", "d"}, same), quick());
     for (const RatioRow& ratio : identical.ratios) {
-        EXPECT_EQ(*ratio.row.summary->deviation, 0);
+        EXPECT_EQ(*ratio.row.summary->standard_deviation, 0);
         EXPECT_EQ(ratio.fixedness, Fixedness::unknown) << "nothing varies: nothing can be more stable";
         EXPECT_EQ(ratio.p_others, 1);
         EXPECT_EQ(ratio.p_pairing, 1);
@@ -272,7 +272,7 @@ TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
     EXPECT_EQ(study.measures[1].summary->count, 38U);
     const auto finite = [](const MeasureRow& row) {
         const Summary& s = *row.summary;
-        return std::isfinite(s.mean) && std::isfinite(*s.deviation) && std::isfinite(*s.variation) &&
+        return std::isfinite(s.mean) && std::isfinite(*s.standard_deviation) && std::isfinite(*s.coefficient_of_variation) &&
                std::isfinite(row.variation_interval->low) && std::isfinite(row.variation_interval->high) &&
                std::isfinite(row.deviation_interval->high);
     };

@@ -204,7 +204,7 @@ TEST(TechniqueStudy, UninformativeClassifiersGiveNoAnswers) {
         else
             for (const TechniqueAnswer& each : study.answers) {
                 EXPECT_TRUE(each.answer.empty());
-                EXPECT_TRUE(each.unlike || each.certainty == "not told apart") << each.certainty;
+                EXPECT_TRUE(each.outlier || each.certainty == "not told apart") << each.certainty;
             }
     }
     EXPECT_LE(reported, 1);
@@ -219,7 +219,7 @@ TEST(TechniqueStudy, NoAnswerIsMoreCertainThanTheClassifier) {
     int stable = 0;
     for (const TechniqueAnswer& each : study.answers) {
         EXPECT_NE(each.certainty, "clear");
-        EXPECT_EQ(each.certainty == "undecided", !each.unlike && each.agreement < 0.5);
+        EXPECT_EQ(each.certainty == "undecided", !each.outlier && each.agreement < 0.5);
         EXPECT_EQ(each.answer.empty(), each.certainty == "undecided" || each.certainty == "unlike");
         if (each.agreement >= 0.95 && !each.answer.empty()) ++stable;
     }
@@ -243,16 +243,16 @@ TEST(TechniqueStudy, OutOfClassObjectsAreNotAnswered) {
     objects.push_back(far);
     const TechniqueStudy study = study_technique(objects);
     for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(study.answers[i].answer, study.answers[i].label);
-    EXPECT_FALSE(study.answers[40].unlike);
-    ASSERT_TRUE(study.answers[41].unlike);
-    EXPECT_EQ(study.answers[41].unlike->descriptor, "marks");
+    EXPECT_FALSE(study.answers[40].outlier);
+    ASSERT_TRUE(study.answers[41].outlier);
+    EXPECT_EQ(study.answers[41].outlier->descriptor, "marks");
     EXPECT_EQ(study.answers[41].certainty, "unlike");
     EXPECT_TRUE(study.answers[41].answer.empty());
     EXPECT_NE(study.answers[41].words.find("unlike the labelled objects"), std::string::npos) << study.answers[41].words;
     EXPECT_NE(study.answers[41].words.find("marks"), std::string::npos);
     TechniqueStudyOptions lenient;
     lenient.min_outlier_distance = 1e6;
-    EXPECT_FALSE(study_technique(objects, lenient).answers[41].unlike);
+    EXPECT_FALSE(study_technique(objects, lenient).answers[41].outlier);
 }
 
 TEST(TechniqueStudy, FewInClassObjectsAreCalledOutOfClass) {
@@ -261,7 +261,7 @@ TEST(TechniqueStudy, FewInClassObjectsAreCalledOutOfClass) {
         for (std::uint64_t seed = 1; seed <= 5; ++seed)
             for (const TechniqueAnswer& each : study_technique(drawn(count, 2, true, seed)).answers) {
                 ++classified;
-                unlike += each.unlike ? 1 : 0;
+                unlike += each.outlier ? 1 : 0;
             }
     EXPECT_LT(unlike, 0.01 * classified);
 }

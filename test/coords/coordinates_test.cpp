@@ -193,7 +193,7 @@ TEST(Coordinates, AdditionalKindsCanBeRegistered) {
     EXPECT_GT(certificate.linear, 0.1);
     EXPECT_EQ(*certificate.lagrange, 0);
     EXPECT_GT(*certificate.edges, 0.1);
-    EXPECT_EQ(certificate.carriers_max, 1U);
+    EXPECT_EQ(certificate.dominant_weights_max, 1U);
     EXPECT_FALSE(certificate.holds());
 }
 
@@ -234,8 +234,8 @@ TEST(Influence, OfAndOn) {
     EXPECT_EQ(influence_of(c, 2), (std::vector<double>{-0.25, 0.7, 0}));
     EXPECT_EQ(influence_on(c, {0, 2}), (std::vector<double>{1, 0.75, 0}));
     EXPECT_EQ(influence_on(c, {0, 2}, InfluenceMeasure::sum), (std::vector<double>{1.5, 0.75, -0.25}));
-    EXPECT_EQ(carriers(c.vertex), (std::vector<Index>{3, 3, 1}));
-    EXPECT_EQ(carriers(c.vertex, 0.8), (std::vector<Index>{2, 2, 1}));
+    EXPECT_EQ(dominant_weight_counts(c.vertex), (std::vector<Index>{3, 3, 1}));
+    EXPECT_EQ(dominant_weight_counts(c.vertex, 0.8), (std::vector<Index>{2, 2, 1}));
     EXPECT_TRUE(contains(problem([&] { return influence_of(c, 3); }), "no cage vertex 3"));
     EXPECT_TRUE(contains(problem([&] { return influence_on(c, {7}); }), "point 7"));
     EXPECT_TRUE(contains(problem([&] { return influence_on(c, {}); }), "none"));

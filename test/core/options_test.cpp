@@ -22,7 +22,7 @@ struct Sample {
     Colour colour = Colour::red;
     std::string where;
 
-    void list_options(OptionList& list) {
+    void declare_options(OptionList& list) {
         list("on", on, "a switch");
         list("count", count, "how many", Range{1, 10});
         list("seed", seed, "of chance", Range{0, 1e15});
@@ -42,7 +42,7 @@ struct Sample {
 
 std::string refused(Sample& sample, const std::string& name, const std::vector<std::string>& words) {
     OptionList list;
-    sample.list_options(list);
+    sample.declare_options(list);
     try {
         list.find(name)->set(words);
     } catch (const Error& error) {
@@ -110,7 +110,7 @@ TEST(Options, AmountsWithAUnitOrADecimalCommaExplainTheFormat) {
 TEST(Options, StructsAreCheckedAndListed) {
     Sample sample;
     EXPECT_NO_THROW(check_options(sample, "here"));
-    const auto listed_options = list_options(sample);
+    const auto listed_options = declare_options(sample);
     ASSERT_EQ(listed_options.size(), 11U);
     EXPECT_EQ(listed_options[0], (std::pair<std::string, std::string>{"on", "true"}));
     EXPECT_EQ(listed_options[3].second, "0.5");

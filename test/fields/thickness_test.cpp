@@ -67,6 +67,17 @@ TEST(Thickness, OfAWall) {
     EXPECT_GT(summary.min, 0.09);
 }
 
+TEST(Thickness, EndsAtTheFirstOfSeveralWalls) {
+    TriangleSoup walls = to_soup(shell(5, 1, 0.99));
+    const TriangleSoup inner = to_soup(shell(5, 0.985, 0.975));
+    const Index first = static_cast<Index>(walls.points.size());
+    walls.points.insert(walls.points.end(), inner.points.begin(), inner.points.end());
+    for (const auto& [a, b, c] : inner.triangles) walls.triangles.push_back({a + first, b + first, c + first});
+    ThicknessOptions options;
+    options.cone = 5;
+    for (const double t : thickness(build_mesh(walls), options)) ASSERT_NEAR(t, 0.01, 0.001);
+}
+
 TEST(Thickness, OpenFlatEmpty) {
     const Mesh flat = build_mesh(test::grid(4, 4, false, false, [](double u, double v) {
         return std::array<double, 3>{u, v, 0};

@@ -167,7 +167,7 @@ TEST(ReplaceOutputs, LeavesInputs) {
     const Scratch scratch;
     write_outputs(scratch.path(), {{"a.ply", "1"}, {"b.ply", "2"}});
     {
-        const KeptFiles protection({scratch.path() / "." / "a.ply"});
+        const ProtectedInputs protection({scratch.path() / "." / "a.ply"});
         write_outputs(scratch.path(), {{"c.ply", "3"}});
     }
     EXPECT_TRUE(std::filesystem::exists(scratch / "a.ply"));

@@ -222,11 +222,11 @@ TEST(Merge, NamesEachKindOfConflict) {
     EXPECT_EQ(conflict_fields(merged),
               (std::vector<std::string>{id + " tag", id + " geometry", id + " attribute 4",
                                         removed_id + " removed by one, changed by the other", "900 both added"}));
-    EXPECT_FALSE(merged.settled({}));
+    EXPECT_FALSE(merged.is_resolved({}));
     MergeOptions options;
     options.prefer = MergeOptions::Side::theirs;
     const MergedAnnotations settled = merge_annotations(base, ours, theirs, options);
-    EXPECT_TRUE(settled.settled(options));
+    EXPECT_TRUE(settled.is_resolved(options));
     const Annotation* lid = settled.set.find(find(ours, "crown").id);
     EXPECT_EQ(lid->tag, "lid");
     EXPECT_EQ(lid->colour, (std::array<int, 3>{1, 1, 1})) << "what one side alone changed is kept";

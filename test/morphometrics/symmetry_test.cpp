@@ -64,17 +64,17 @@ TEST(Symmetry, DirectionalAsymmetryAndErrorAreTested) {
     EXPECT_LE(*some.shape.row("side").p, 0.01);
     EXPECT_LE(*some.shape.row("individual:side").p, 0.01) << "fluctuating asymmetry exceeds the error";
     EXPECT_EQ(some.shape.row("individual").error, "individual:side");
-    EXPECT_EQ(some.shape.row("individual").freedom, 14);
-    EXPECT_EQ(some.shape.row("side").freedom, 1);
-    EXPECT_EQ(some.shape.row("individual:side").freedom, 14);
-    EXPECT_EQ(some.shape.row("residuals").freedom, 30);
+    EXPECT_EQ(some.shape.row("individual").degrees_of_freedom, 14);
+    EXPECT_EQ(some.shape.row("side").degrees_of_freedom, 1);
+    EXPECT_EQ(some.shape.row("individual:side").degrees_of_freedom, 14);
+    EXPECT_EQ(some.shape.row("residuals").degrees_of_freedom, 30);
     double sum = 0;
-    for (const char* term : {"individual", "side", "individual:side", "residuals"}) sum += some.shape.row(term).squares;
-    EXPECT_NEAR(sum, some.shape.row("total").squares, 1e-10);
+    for (const char* term : {"individual", "side", "individual:side", "residuals"}) sum += some.shape.row(term).sum_of_squares;
+    EXPECT_NEAR(sum, some.shape.row("total").sum_of_squares, 1e-10);
     ASSERT_TRUE(some.replicate);
     EXPECT_GT(some.replicate->repeatability, 0.8);
     // Squares of sides: two observations of each measurement, each half the difference from the mean.
-    EXPECT_NEAR(some.shape.row("side").squares, 60 * (some.directional - some.mean).squaredNorm(), 1e-10);
+    EXPECT_NEAR(some.shape.row("side").sum_of_squares, 60 * (some.directional - some.mean).squaredNorm(), 1e-10);
 }
 
 TEST(Symmetry, MatchingPairsAreCompared) {

@@ -352,10 +352,10 @@ TEST_F(EveryOperation, GivesTheSameBytesFromObjectsInMemory) {
 TEST(Pages, AreThoseOfTheTable) {
     const Path folder = Path(OSTRAKA_SOURCE_DIR) / "doc/commands";
     std::set<std::string> expected;
-    for (const std::string& word : command_pages()) {
+    for (const std::string& word : command_page_names()) {
         expected.insert(word + ".md");
         ASSERT_TRUE(file_exists(folder / (word + ".md"))) << word << ": run 'ostraka operations --pages doc/commands'";
-        EXPECT_EQ(read_file(folder / (word + ".md")), commands_page(word)) << "run 'ostraka operations --pages doc/commands'";
+        EXPECT_EQ(read_file(folder / (word + ".md")), command_page(word)) << "run 'ostraka operations --pages doc/commands'";
     }
     for (const std::string& file : files_in(folder)) EXPECT_TRUE(expected.contains(file)) << file << " is no page of the table";
 }
@@ -580,8 +580,9 @@ TEST(Calls, WriteNoPartOfACancelledCollection) {
 TEST(Reports, KnowTheirColumns) {
     ReportLayout layout;
     layout.values(fields::number("size", "size"));
-    layout.table("rows", fields::integer("id", "id"), fields::number("area"), fields::people("remarks"), fields::people("area"));
-    layout.people_table("seen", {"what", "count"});
+    layout.table("rows", fields::integer("id", "id"), fields::number("area"), fields::text_only("remarks"),
+                 fields::text_only("area"));
+    layout.text_table("seen", {"what", "count"});
     Report report({"test", {}, {}}, layout);
     report("size", 1.5)("size", std::optional<double>());
     report.row("rows")("id", 7)("area", std::numeric_limits<double>::infinity()).shown("remarks", "odd").shown("area", "none");

@@ -85,7 +85,7 @@ TEST(Reassembly, TwoObjectsInOneBox) {
     EXPECT_NE(result.group[0], result.group[1]) << "unrelated fragments stay apart";
     EXPECT_LT(box.error(result, 2, 0), 0.1) << "of a diagonal of 9";
     EXPECT_LT(box.error(result, 2, 4), 0.1);
-    for (const std::string& text : result.alone) EXPECT_TRUE(text.empty());
+    for (const std::string& text : result.reasons_not_joined) EXPECT_TRUE(text.empty());
     std::set<std::pair<std::size_t, std::size_t>> tree;
     for (const FragmentJoin& join : result.joins) {
         EXPECT_EQ(result.group[join.first], result.group[join.second]);
@@ -123,7 +123,8 @@ TEST(Reassembly, WithManyFragmentsOnlyPromisingPairsAreTried) {
     ASSERT_EQ(result.groups(), 1);
     EXPECT_EQ(result.group[0], result.group[2]);
     EXPECT_EQ(result.group[0], result.group[4]);
-    for (const std::size_t bar : {1, 3}) EXPECT_NE(result.alone[bar].find("smooth"), std::string::npos) << result.alone[bar];
+    for (const std::size_t bar : {1, 3})
+        EXPECT_NE(result.reasons_not_joined[bar].find("smooth"), std::string::npos) << result.reasons_not_joined[bar];
     EXPECT_LT(box.error(result, 2, 0), 0.1) << "of a diagonal of 9";
     EXPECT_LT(box.error(result, 2, 4), 0.1);
 }
@@ -134,7 +135,7 @@ TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     std::vector<PairResult> pairs;
     std::size_t tried = 0;
     PairMemory memory;
-    memory.keep = [&](const PairResult& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
+    memory.store = [&](const PairResult& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
     const int before = threads();
     set_threads(1);
     const Reassembly single_threaded = reassemble(three, quick(), memory);
@@ -143,7 +144,7 @@ TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     set_threads(before);
     same(single_threaded, parallel);
     EXPECT_EQ(tried, 3u);
-    memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairResult> {
+    memory.load = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairResult> {
         for (const PairResult& pair : pairs)
             if (pair.first == i && pair.second == j) return pair;
         return {};
@@ -168,10 +169,10 @@ TEST(Reassembly, UnjoinableFragmentsStayAloneWithAReason) {
     EXPECT_EQ(result.groups(), 0);
     EXPECT_EQ(result.pairs_tried, 0u);
     EXPECT_TRUE(result.joins.empty());
-    EXPECT_NE(result.alone[0].find("no other"), std::string::npos) << result.alone[0];
-    EXPECT_NE(result.alone[1].find("fracture"), std::string::npos) << result.alone[1];
-    EXPECT_NE(result.alone[2].find("0 faces"), std::string::npos) << result.alone[2];
-    EXPECT_NE(result.alone[3].find("4 faces"), std::string::npos) << result.alone[3];
+    EXPECT_NE(result.reasons_not_joined[0].find("no other"), std::string::npos) << result.reasons_not_joined[0];
+    EXPECT_NE(result.reasons_not_joined[1].find("fracture"), std::string::npos) << result.reasons_not_joined[1];
+    EXPECT_NE(result.reasons_not_joined[2].find("0 faces"), std::string::npos) << result.reasons_not_joined[2];
+    EXPECT_NE(result.reasons_not_joined[3].find("4 faces"), std::string::npos) << result.reasons_not_joined[3];
     ReassemblyOptions options;
     options.min_join = 2;
     EXPECT_THROW(reassemble(fragments, options), Error);

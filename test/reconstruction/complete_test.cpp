@@ -110,7 +110,7 @@ TEST(Complete, PiecesWithHolesAndSeveralFragmentsThatOverlap) {
     EXPECT_EQ(object.joined[0], half.mesh.number_of_faces());
     EXPECT_GT(object.joined[1], 0U);
     EXPECT_LT(object.joined[1], front.mesh.number_of_faces());
-    EXPECT_NEAR(object.lying[0], 1, 1e-12);
+    EXPECT_NEAR(object.on_template[0], 1, 1e-12);
     EXPECT_EQ(object.shared[0], 0);
     EXPECT_NEAR(object.shared[1], 0.5, 0.1);
     EXPECT_NEAR(surface_area(object.mesh), surface_area(ring), 1e-6 * surface_area(ring));

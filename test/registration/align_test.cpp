@@ -26,7 +26,7 @@ TEST(Align, FindsTheMotionOfAMovedSurface) {
     EXPECT_LT(test::rotation_between(alignment.motion.rotation, truth.rotation), 0.1);
     EXPECT_LT(alignment.distance, 2e-3);
     EXPECT_GT(alignment.overlap, 0.9);
-    EXPECT_TRUE(alignment.settled);
+    EXPECT_TRUE(alignment.converged);
 }
 
 TEST(Align, MeshesOfOneMouldAreNearerThanThoseOfTwo) {

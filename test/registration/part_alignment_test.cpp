@@ -55,7 +55,7 @@ TEST(PartAlignment, ConvergesFromNearby) {
         const Motion truth = piece.pose.after(away.inverse());
         const Motion start = nudge(6, Vector3d(0.05, -0.05, 0.03)).after(truth);
         const PartAlignment alignment = align_part(part, {}, search, start);
-        EXPECT_TRUE(alignment.settled);
+        EXPECT_TRUE(alignment.converged);
         EXPECT_LT(degrees_between(alignment.pose, truth), 1e-3 + 1e-6 * far);
         EXPECT_LT(alignment.residual, 1e-4);
         EXPECT_GT(alignment.overlap, 0.99);

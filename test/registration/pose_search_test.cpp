@@ -136,8 +136,8 @@ TEST(PoseSearch, ReportsTheSlippableMotionsOfABall) {
     const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
     EXPECT_EQ(result.slippable.kind, SlippableKind::sphere);
     EXPECT_LT((result.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
-    EXPECT_EQ(result.ways.size(), 3u);
-    for (const SlippableRange& range : result.ways) {
+    EXPECT_EQ(result.slippable_ranges.size(), 3u);
+    for (const SlippableRange& range : result.slippable_ranges) {
         EXPECT_TRUE(range.rotates);
         EXPECT_GT(range.maximum - range.minimum, 6);  // all around
     }

@@ -121,7 +121,7 @@ TEST(SlippableMotionsTest, AreThoseOfTheSurface) {
 
 TEST(SlippableMotionsTest, WaysStayInTheGroup) {
     const SlippableMotions sphere = motions_of(cloud(on_sphere), tilted(1));
-    const auto ways = sphere.ways(1, 1, 4);
+    const auto ways = sphere.sampled_motions(1, 1, 4);
     EXPECT_EQ(ways.size(), 6u);
     for (const auto& way : ways)
         for (const auto& step : way) {

@@ -127,7 +127,7 @@ TEST(Containment, EqualsBruteForceOnRandomSelections) {
         const Mesh mesh = build_mesh(seed % 3 == 0 ? patch(6, 5) : seed % 3 == 1 ? octahedron_sphere(2) : torus(10, 7));
         const AnnotationSet set = random_set(mesh, seed, 70);
         const std::size_t n = set.annotations.size();
-        const Topology computed = topology({mesh, set});
+        const AnnotationTopology computed = topology({mesh, set});
         std::vector<std::set<std::size_t>> above(n);
         for (std::size_t a = 0; a < n; ++a)
             for (std::size_t b = 0; b < n; ++b) {
@@ -192,7 +192,7 @@ TEST(Containment, EqualSelectionsAndTheRoot) {
     AnnotationSet set;
     set.annotations = {region(1, all), region(9, all), region(4, {3}), region(2, {3}), region(5, {})};
     set.annotations[1].all = true;  // the object itself, although its id is the higher one
-    const Topology computed = topology({mesh, set});
+    const AnnotationTopology computed = topology({mesh, set});
     EXPECT_EQ(computed.order.parent, (std::vector<std::optional<std::size_t>>{1, {}, 3, 0, {}}));
     EXPECT_EQ(computed.order.equal, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}}));
     EXPECT_TRUE(computed.order.containers[4].empty()) << "nothing is said of an empty selection";
@@ -221,7 +221,7 @@ TEST(Adjacency, NestedIsNotAdjacentAndACornerIsNotEnough) {
     set.unit = "mm";
     set.annotations = {region(0, cells({{0, 0}, {1, 0}, {0, 1}})), region(1, cells({{0, 0}})), region(2, cells({{2, 0}})),
                        region(3, cells({{1, 1}, {2, 1}}))};
-    const Topology computed = topology({mesh, set});
+    const AnnotationTopology computed = topology({mesh, set});
     std::vector<std::tuple<std::size_t, std::size_t, double>> pairs;
     for (const auto& pair : computed.adjacent) pairs.emplace_back(pair.a, pair.b, pair.length);
     EXPECT_EQ(pairs, (std::vector<std::tuple<std::size_t, std::size_t, double>>{{0, 2, 1.0}, {0, 3, 2.0}, {2, 3, 1.0}}));
@@ -254,7 +254,7 @@ TEST(Topology, EmptyMeshesSetsAndSingleFaces) {
     TriangleSoup triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}}};
     AnnotationSet set;
     set.annotations = {region(0, {0}), points(1, {0}), points(2, {3}), line(3, {{0, 1}})};
-    const Topology computed = topology({build_mesh(triangle), set});
+    const AnnotationTopology computed = topology({build_mesh(triangle), set});
     EXPECT_EQ(computed.order.direct[1], (std::vector<std::size_t>{3}));
     EXPECT_EQ(computed.order.direct[3], (std::vector<std::size_t>{0}));
     EXPECT_TRUE(computed.order.direct[2].empty()) << "a vertex without faces lies in no region";
@@ -266,9 +266,9 @@ TEST(Topology, DoesNotDependOnThreads) {
     const Mesh mesh = build_mesh(torus(40, 30));
     const AnnotationSet set = random_set(mesh, 5, 150);
     set_threads(1);
-    const Topology single_threaded = topology({mesh, set});
+    const AnnotationTopology single_threaded = topology({mesh, set});
     set_threads(4);
-    const Topology four = topology({mesh, set});
+    const AnnotationTopology four = topology({mesh, set});
     set_threads(0);
     EXPECT_EQ(single_threaded.order.direct, four.order.direct);
     ASSERT_EQ(single_threaded.adjacent.size(), four.adjacent.size());
@@ -283,7 +283,7 @@ TEST(Topology, ManyOverlappingRegionsAreBounded) {
     std::vector<Index> even, odd;
     for (Index f = 0; f < faces; ++f) (f % 2 == 0 ? even : odd).push_back(f);
     for (int i = 0; i < 400; ++i) set.annotations.push_back(region(i, i % 2 == 0 ? even : odd));
-    const Topology computed = topology({mesh, set});
+    const AnnotationTopology computed = topology({mesh, set});
     EXPECT_EQ(computed.adjacent.size(), 200U * 200U);
     EXPECT_EQ(computed.adjacent.front().edges, computed.adjacent.back().edges);
     EXPECT_EQ(relationships_of(computed, set, 0, 100).size(), 100U + 2U + 100U);  // containment, equal selections, adjacency

@@ -209,7 +209,7 @@ TEST(SelectCommand, UpdatesObjectsInMemory) {
         values.AddMember("sphere", sphere, values.GetAllocator());
         call.set(values);
         const Report report = call.run(context);
-        EXPECT_TRUE(report.noted().empty()) << "the recipe alone gives it";
+        EXPECT_TRUE(report.notes().empty()) << "the recipe alone gives it";
         EXPECT_EQ(report.result()["id"].GetInt(), count - 1);
         set = call.object("output");
         recipe = call.object("recipe");

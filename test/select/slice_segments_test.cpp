@@ -73,7 +73,7 @@ TEST(SliceSegments, RegionsPartitionTheMesh) {
     for (const Annotation& region : set.annotations) {
         for (const Index face : region.faces) {
             ++covered[face];
-            const SliceSegment& segment = segments.segments[static_cast<std::size_t>(region.id)];
+            const SliceRun& segment = segments.segments[static_cast<std::size_t>(region.id)];
             EXPECT_GE(centroid(mesh, Face(face)).z(), segment.low - 1e-9);
             EXPECT_LE(centroid(mesh, Face(face)).z(), segment.high + 1e-9);
         }

@@ -129,8 +129,8 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     ASSERT_EQ(list.size(), 1u);
     const ConstraintReach& coarse = list[0];
     EXPECT_FALSE(coarse.reached);
-    EXPECT_GT(coarse.left, coarse.tolerance);
-    EXPECT_LT(coarse.left, coarse.asked) << "solving makes it better";
+    EXPECT_GT(coarse.remaining_distance, coarse.tolerance);
+    EXPECT_LT(coarse.remaining_distance, coarse.distance_after_edit) << "solving makes it better";
     EXPECT_LE(coarse.rank, std::min<std::size_t>(coarse.rows, object.cage.number_of_vertices()));
     ASSERT_TRUE(coarse.lacking);
     EXPECT_TRUE(std::find(flowers.begin(), flowers.end(), *coarse.lacking) != flowers.end());
@@ -138,7 +138,7 @@ TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
     // A cage made for the constraints leaves a smaller deviation, and is valid.
     const ConstraintCage adapted = make_cage_for_constraints({object.synthetic.mesh, object.set}, graph, {.vertices = 150});
     ASSERT_EQ(adapted.reach.size(), 1u);
-    EXPECT_LT(adapted.reach[0].left, 0.8 * coarse.left);
+    EXPECT_LT(adapted.reach[0].remaining_distance, 0.8 * coarse.remaining_distance);
     EXPECT_LE(adapted.made.cage.number_of_vertices(), 300u);
     EXPECT_TRUE(check_cage(adapted.made.cage, object.synthetic.mesh).outside.empty());
     // Seated parts are put back as rigid copies: no cage has to reproduce them.
@@ -153,7 +153,8 @@ TEST(CageReach, EvaluatesTheGivenEdit) {
     ASSERT_EQ(far.size(), 1u);
     ASSERT_EQ(still.size(), 1u);
     EXPECT_TRUE(still[0].reached) << "what moves as a whole keeps its shape: " << describe(still[0], object.set);
-    EXPECT_GT(far[0].left, 2 * cage_reach(object.handles(), graph)[0].left) << "four times as strong an edit";
+    EXPECT_GT(far[0].remaining_distance, 2 * cage_reach(object.handles(), graph)[0].remaining_distance)
+        << "four times as strong an edit";
 }
 
 TEST(CageReach, WithoutConstraintsIsEmpty) {

@@ -163,7 +163,7 @@ TEST(DeformVerdict, LevelsStayAsAtRest) {
     add_constraints(words, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 1U);
     EXPECT_EQ(graph.relationships[0].annotations.size(), 4U);
-    const DeformResult result = deform(chair.space(), graph, edit_of(words, chair.set), "e");
+    const DeformResult result = deform(chair.space(), graph, parse_edit(words, chair.set), "e");
     EXPECT_TRUE(result.acceptable) << (result.objections.empty() ? "" : result.objections.front());
     const Mesh now = with_points(chair.synthetic.mesh, result.points);
     for (const char* leg : {"front left leg", "rear right leg"})
@@ -199,14 +199,14 @@ TEST(EditWords, StepsAndConstraints) {
     words.raise = {"seat=3,-x"};
     words.rotate = {"left arm=-5,z"};
     words.keep = {"seat thickness", "back"};
-    const std::vector<EditStep> steps = edit_of(words, chair.set).steps;
+    const std::vector<EditStep> steps = parse_edit(words, chair.set).steps;
     ASSERT_EQ(steps.size(), 3U);
     EXPECT_EQ(std::get<EditStep::Translate>(steps[1].operation).by.x(), -3);
     RelationGraph graph;
     EXPECT_THROW(add_constraints(words, chair.set, graph), Error) << "the seat has no such measure yet";
     graph.relationships.clear();
-    take_measures(words, chair.synthetic.mesh, chair.set);
-    take_measures(words, chair.synthetic.mesh, chair.set);
+    add_missing_measures(words, chair.synthetic.mesh, chair.set);
+    add_missing_measures(words, chair.synthetic.mesh, chair.set);
     const auto& attributes = chair.tagged("seat").attributes;
     EXPECT_EQ(std::count_if(attributes.begin(), attributes.end(),
                             [](const Attribute& attribute) { return attribute.name == "thickness"; }),
@@ -220,7 +220,7 @@ TEST(EditWords, StepsAndConstraints) {
         (wrong.*list).emplace_back(text);
         EXPECT_THROW(
             {
-                static_cast<void>(edit_of(wrong, chair.set));
+                static_cast<void>(parse_edit(wrong, chair.set));
                 add_constraints(wrong, chair.set, graph);
             },
             Error);
@@ -239,11 +239,11 @@ TEST(EditWords, StepsAndConstraints) {
     counted.stretch = {"part 0=1.2,up"};
     chair.tagged("seat").tag = "part 0";
     graph.relationships.clear();
-    take_measures(counted, chair.synthetic.mesh, chair.set);
+    add_missing_measures(counted, chair.synthetic.mesh, chair.set);
     add_constraints(counted, chair.set, graph);
     ASSERT_EQ(graph.relationships.size(), 1U);
     EXPECT_NE(graph.relationships[0].constraint.find("\"thickness\""), std::string::npos) << graph.relationships[0].constraint;
-    EXPECT_EQ(std::get<EditStep::Stretch>(edit_of(counted, chair.set).steps[0].operation).factor, 1.2);
+    EXPECT_EQ(std::get<EditStep::Stretch>(parse_edit(counted, chair.set).steps[0].operation).factor, 1.2);
     chair.set.up.reset();
     refused(&EditWords::stretch, "back=1.2");
 }

@@ -181,10 +181,10 @@ TEST(Classify, ObjectsOffTheTemplateAreNotMembers) {
     ASSERT_TRUE(bent.most_off);
     EXPECT_GT(*bent.most_off, 0.25);
     EXPECT_LE(*bent.most_off, 0.5) << "more than half of both is no member, whatever members do";
-    EXPECT_TRUE(compare_with(bent, object).off.empty());
+    EXPECT_TRUE(compare_with(bent, object).fit_problem.empty());
     ClassifyOptions strict;
     strict.strict = true;
-    EXPECT_FALSE(compare_with(bent, object, strict).off.empty());
+    EXPECT_FALSE(compare_with(bent, object, strict).fit_problem.empty());
 }
 
 TEST(Classify, OutOfClassObjectsMakeTheAnswerCautious) {

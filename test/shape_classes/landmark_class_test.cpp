@@ -75,13 +75,13 @@ TEST(LandmarkClass, IsLearntAndQueriedWithoutASurface) {
 
     // Unusual files are named, and an unreadable one does not stop the others.
     LearntMember object = read_landmark_member(scratch / "good.mrk.json", read_landmark_template(scratch / "good.mrk.json"));
-    EXPECT_TRUE(compare_with(box, object).odd.empty());
+    EXPECT_TRUE(compare_with(box, object).unusual_findings.empty());
     for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(10 * p.x(), 10 * p.y(), 10 * p.z());
-    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
-    EXPECT_NE(compare_with(box, object).odd[0].find("times as large"), std::string::npos);
+    ASSERT_EQ(compare_with(box, object).unusual_findings.size(), 1U);
+    EXPECT_NE(compare_with(box, object).unusual_findings[0].find("times as large"), std::string::npos);
     for (::ostraka::Point& p : object.fit.points) p = ::ostraka::Point(-p.x() / 10, p.y() / 10, p.z() / 10);
-    ASSERT_EQ(compare_with(box, object).odd.size(), 1U);
-    EXPECT_NE(compare_with(box, object).odd[0].find("mirror image"), std::string::npos);
+    ASSERT_EQ(compare_with(box, object).unusual_findings.size(), 1U);
+    EXPECT_NE(compare_with(box, object).unusual_findings[0].find("mirror image"), std::string::npos);
     write_box(scratch / "short.mrk.json", 2, {}, 0, 7);
     const auto several = run_command(ask + quoted(scratch / "short.mrk.json") + " " + quoted(scratch / "good.mrk.json"));
     EXPECT_EQ(several.code, 3);

@@ -147,7 +147,7 @@ TEST(Parts, ThePartWithTheLargestDeviationIsNamed) {
     const ShapeClass learnt = class_of(template_tower, members);
     const ClassAnswer bad = ask_class(learnt, template_tower.known(), member_of(template_tower, "bad", 1, 2.5, 1));
     ASSERT_EQ(bad.verdict, Membership::other);
-    const QuantityCheck& first = bad.checks[bad.against.front()];
+    const QuantityCheck& first = bad.checks[bad.rejecting_checks.front()];
     EXPECT_EQ(first.quantity.kind, QuantityKind::part);
     EXPECT_NE(first.worst.find("of part "), std::string::npos) << first.worst;
     EXPECT_NE(bad.reasons().front().find("times the members' mean"), std::string::npos) << bad.reasons().front();

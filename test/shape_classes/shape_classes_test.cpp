@@ -158,14 +158,14 @@ TEST(Classify, NamesThePlantedProportion) {
     const Tower template_tower = tower();
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const ClassAnswer good = ask_class(learnt, template_tower.known(), member_of(template_tower, "good", 1, 1.02, 1.01));
-    EXPECT_EQ(good.verdict, Membership::member) << (good.against.empty() ? "" : good.reasons().front());
+    EXPECT_EQ(good.verdict, Membership::member) << (good.rejecting_checks.empty() ? "" : good.reasons().front());
     const ClassAnswer bad = ask_class(learnt, template_tower.known(), member_of(template_tower, "bad", 1, 1.6, 1, far_away()));
     ASSERT_EQ(bad.verdict, Membership::other);
-    const QuantityCheck& first = bad.checks[bad.against.front()];
+    const QuantityCheck& first = bad.checks[bad.rejecting_checks.front()];
     EXPECT_EQ(first.quantity.kind, QuantityKind::proportion);
     EXPECT_EQ(first.quantity.id, 7);
     EXPECT_NEAR(*first.quantity.value, 1.6, 1e-9);
-    EXPECT_NEAR(first.off, 1.6 - *first.high, 1e-9);
+    EXPECT_NEAR(first.distance_from_range, 1.6 - *first.high, 1e-9);
     EXPECT_NE(bad.reasons().front().find("proportion 7"), std::string::npos);
     const Classification decided = decide("bad", {bad});
     EXPECT_EQ(decided.verdict, Membership::other);
@@ -272,7 +272,7 @@ TEST(Classify, WithoutConstraintsGeometryDecidesWithANote) {
               learnt.notes.end());
     const ClassAnswer bad = ask_class(learnt, template_tower.known(), member_of(template_tower, "bad", 1, 4, 1));
     ASSERT_EQ(bad.verdict, Membership::other);
-    for (const std::size_t i : bad.against)
+    for (const std::size_t i : bad.rejecting_checks)
         EXPECT_TRUE(bad.checks[i].quantity.kind == QuantityKind::geometry || bad.checks[i].quantity.kind == QuantityKind::part);
 }
 
@@ -397,7 +397,7 @@ TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
         WholeObject object{{mesh, {}}, "sample"};
-        EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).against.empty(), true);
+        EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).rejecting_checks.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);
     // Repeated, the result is the same to the bit; another seed gives others.

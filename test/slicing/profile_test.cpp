@@ -55,7 +55,7 @@ TEST(Profile, OfARevolvedPotWithAHandle) {
     const Mesh pot = build_mesh(
         joined(bowl(ring, 2, 1), moved(octahedron_sphere(3), 0.8, {2 + 7.5 * std::cos(1.0), 1 + 7.5 * std::sin(1.0), 4})));
     const Profile profile = find_profile(pot, slice_frame({2, 1, 0}, {0, 0, 1}));
-    EXPECT_TRUE(profile.turned);
+    EXPECT_TRUE(profile.is_revolved);
     EXPECT_NEAR(profile.low, 0, 1e-12);
     EXPECT_NEAR(profile.high, 6, 1e-12);
     EXPECT_NEAR(profile.rim_diameter, 14, 0.05);
@@ -105,7 +105,7 @@ TEST(Profile, OfPartsThatProtrudeAboveAndBesideTheWall) {
     const SliceFrame axis = slice_frame({2, 1, 0}, {0, 0, 1});
     const Profile basket = find_profile(build_mesh(joined(bowl(ring, 2, 1), arch)), axis);
     EXPECT_NEAR(basket.high, 11.4, 0.01);
-    ASSERT_TRUE(basket.turned);
+    ASSERT_TRUE(basket.is_revolved);
     EXPECT_NEAR(std::remainder(basket.view_angle - turn, M_PI), 0, 0.1);
     EXPECT_FALSE(basket.hides);
     // On both sides of the axis, as far as it reaches.
@@ -115,8 +115,8 @@ TEST(Profile, OfPartsThatProtrudeAboveAndBesideTheWall) {
             if (p.y() > 6.5 && p.y() < 7.5) left = std::min(left, p.x()), right = std::max(right, p.x());
     EXPECT_NEAR(right, 5.38, 0.1);
     EXPECT_NEAR(left, -5.38, 0.1);
-    EXPECT_NEAR(basket.reach_at(4.5), 7, 0.1);
-    EXPECT_EQ(basket.reach_at(12), 0);
+    EXPECT_NEAR(basket.extent_at(4.5), 7, 0.1);
+    EXPECT_EQ(basket.extent_at(12), 0);
     // Two knobs at a right angle: the view along one hides it.
     TriangleSoup knobs =
         joined(moved(octahedron_sphere(3), 0.8, {2 + 7.5, 1, 4}), moved(octahedron_sphere(3), 0.7, {2, 1 + 7.5, 4}));

@@ -43,7 +43,7 @@ TEST(SliceSoundness, ShellsThatCrossHaveNoAreas) {
             const Slice slice = cut(mesh, 0.1 * scale);
             ASSERT_EQ(slice.contours.size(), 2U);
             EXPECT_EQ(slice.completeness.crossing, 2);
-            EXPECT_EQ(slice.completeness.turned, 0);
+            EXPECT_EQ(slice.completeness.reversed_contours, 0);
             EXPECT_GT(slice.completeness.doubtful, 0.1);
             EXPECT_FALSE(slice.completeness.has_areas());
             EXPECT_TRUE(slice.completeness.complete());
@@ -98,7 +98,7 @@ TEST(SliceSoundness, CrossingThroughVerticesAndWithoutThem) {
     EXPECT_FALSE(cut(walls({round, round}), 0.5).completeness.has_areas());
     const Slice sheet = cut(walls({round, reversed(round)}), 0.5);
     EXPECT_EQ(sheet.completeness.crossing, 0);
-    EXPECT_EQ(sheet.completeness.turned, 0);
+    EXPECT_EQ(sheet.completeness.reversed_contours, 0);
 }
 
 TEST(SliceSoundness, TouchingContoursDoNotCross) {
@@ -113,7 +113,7 @@ TEST(SliceSoundness, TouchingContoursDoNotCross) {
                   reversed(rectangle(2, 2, {1, 0})), reversed(refined(rectangle(2, 2, {1, 0.1}), 3)), rectangle(2, 9, {3, 0})}) {
                 const Slice slice = cut(walls({placed(outer), placed(other)}), 0.5);
                 EXPECT_EQ(slice.completeness.crossing, 0);
-                EXPECT_EQ(slice.completeness.turned, 0);
+                EXPECT_EQ(slice.completeness.reversed_contours, 0);
                 EXPECT_EQ(slice.completeness.doubtful, 0);
             }
         }
@@ -141,7 +141,7 @@ TEST(SliceSoundness, NestedShellsAreOrientedByTheirNesting) {
         const SliceStack stack = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), {0.1, 0.7});
         const Slice& slice = stack.slices[0];
         EXPECT_EQ(stack.reversed, expected.reversed);
-        EXPECT_EQ(slice.completeness.turned, expected.turned);
+        EXPECT_EQ(slice.completeness.reversed_contours, expected.turned);
         EXPECT_EQ(slice.completeness.crossing, 0);
         ASSERT_EQ(slice.contours.size(), 2U);
         EXPECT_FALSE(slice.contours[0].hole);
@@ -156,9 +156,9 @@ TEST(SliceSoundness, NestedShellsAreOrientedByTheirNesting) {
     // A body next to another, inside out: its area is the same.
     const Mesh pair = build_mesh(joined(big, inside_out(moved(small, 1, {4, 0, 0}))));
     EXPECT_NEAR(area(cut(pair, 0.1)), outer + inner, 1e-12);
-    EXPECT_EQ(cut(pair, 0.1).completeness.turned, 1);
+    EXPECT_EQ(cut(pair, 0.1).completeness.reversed_contours, 1);
     // Open meshes are not checked, since parts may be missing.
-    EXPECT_EQ(cut(walls({reversed(rectangle(2, 2))}), 0.5).completeness.turned, 0);
+    EXPECT_EQ(cut(walls({reversed(rectangle(2, 2))}), 0.5).completeness.reversed_contours, 0);
     EXPECT_TRUE(std::isnan(area(cut(walls({reversed(rectangle(2, 2))}), 0.5))));
 }
 
@@ -173,7 +173,7 @@ TEST(SliceSoundness, TheSameBitsForAnyNumberOfThreads) {
     set_threads(0);
     for (std::size_t i = 0; i < heights.size(); ++i) {
         EXPECT_EQ(sequential.slices[i].completeness.doubtful, parallel.slices[i].completeness.doubtful);
-        EXPECT_EQ(sequential.slices[i].completeness.turned, parallel.slices[i].completeness.turned);
+        EXPECT_EQ(sequential.slices[i].completeness.reversed_contours, parallel.slices[i].completeness.reversed_contours);
         ASSERT_EQ(sequential.slices[i].contours.size(), parallel.slices[i].contours.size());
         for (std::size_t c = 0; c < sequential.slices[i].contours.size(); ++c)
             EXPECT_EQ(sequential.slices[i].contours[c].points, parallel.slices[i].contours[c].points);
@@ -230,9 +230,9 @@ TEST(ClaySoundness, CrossingShellsAreNotCountedTwice) {
         EXPECT_NEAR(other.maximum, reference.maximum, 1e-12);
         EXPECT_NEAR(other.minimum, reference.minimum, 1e-12);
         EXPECT_NEAR(other.envelope, reference.envelope, 1e-12);
-        EXPECT_TRUE(other.reversed || other.turned > 0);
+        EXPECT_TRUE(other.reversed || other.reversed_slices > 0);
     }
     EXPECT_FALSE(reference.reversed);
-    EXPECT_EQ(reference.turned, 0);
+    EXPECT_EQ(reference.reversed_slices, 0);
     EXPECT_EQ(reference.crossing, 0);
 }

@@ -280,8 +280,8 @@ TEST(DeviationInterval, HasTheValuesUnit) {
         EXPECT_NEAR(deviation_interval(scaled, false)->high / std::abs(unit), absolute->high, 1e-9);
         EXPECT_NEAR(deviation_interval(scaled, true)->low, relative->low, 1e-9);
     }
-    EXPECT_LT(absolute->low, *summarise(values).deviation);
-    EXPECT_GT(absolute->high, *summarise(values).deviation);
+    EXPECT_LT(absolute->low, *summarise(values).standard_deviation);
+    EXPECT_GT(absolute->high, *summarise(values).standard_deviation);
     const auto wider = deviation_interval(values, false, 0.99);
     EXPECT_LT(wider->low, absolute->low);
     EXPECT_GT(wider->high, absolute->high);

@@ -253,7 +253,7 @@ TEST(Population, ObjectsDoNotDependOnTheirNumberAndFollowTheLevel) {
     const auto many = draw_population(options);
     options.objects = 5;
     const auto few = draw_population(options);
-    for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(list_options(many[i]), list_options(few[i]));
+    for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(declare_options(many[i]), declare_options(few[i]));
     const StatuetteLevel level = statuette_level(2);
     for (const bool wheel : {true, false}) {
         double sum = 0, squares = 0;

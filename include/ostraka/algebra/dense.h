@@ -27,7 +27,7 @@ public:
     /// Unit columns, in the order of the eigenvalues.
     [[nodiscard]] const Matrix& eigenvectors() const { return vectors_; }
     /// False if the iteration did not converge, for example because an entry is not finite.
-    [[nodiscard]] bool found() const { return found_; }
+    [[nodiscard]] bool succeeded() const { return found_; }
 
 private:
     friend SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd&, const Eigen::MatrixXd&);
@@ -57,7 +57,7 @@ public:
     [[nodiscard]] const Eigen::Vector3d& singularValues() const { return values_; }
     // NOLINTEND(readability-identifier-naming)
     /// False if an entry is not finite.
-    [[nodiscard]] bool found() const { return found_; }
+    [[nodiscard]] bool succeeded() const { return found_; }
 
 private:
     Eigen::Matrix3d u_, v_;
@@ -113,7 +113,7 @@ public:
 
     void compute(const Eigen::MatrixXd& a);  ///< factorises `a`
     /// False if the matrix is not positive definite.
-    [[nodiscard]] bool found() const;
+    [[nodiscard]] bool succeeded() const;
     /// Estimate of the reciprocal condition number.
     [[nodiscard]] double rcond() const;
     [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;    ///< solution of A x = b

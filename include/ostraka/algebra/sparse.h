@@ -14,7 +14,7 @@ public:
     ~SparseLdlt();
 
     /// False if a pivot is zero.
-    [[nodiscard]] bool found() const;
+    [[nodiscard]] bool succeeded() const;
     /// Solves A x = b. The arguments and the solution have one row per row of the matrix and one column per right-hand side.
     [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 

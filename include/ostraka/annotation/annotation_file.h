@@ -12,7 +12,7 @@ namespace ostraka {
 struct ReadAnnotationsOptions {
     bool force_mesh = false;  ///< true: accept a file made for another mesh; indices and edges are still checked
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads the annotations of `mesh` from a file of this toolkit, of the thesis (no members "format" and "mesh") or of the

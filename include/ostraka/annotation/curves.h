@@ -70,8 +70,8 @@ struct CutMesh : AnnotatedMesh {
 /// plus O(k log k) per face with k nodes; if two outlines intersect, also linear in the sizes of both.
 CutMesh cut_along_curves(AnnotatedMeshView object, const std::vector<SurfaceCurve>& more = {});
 
-/// Read-only access to an annotated mesh whose annotations all follow edges. The view is the given mesh if no annotation is free,
-/// otherwise the mesh cut along the free curves. The constructor's argument must outlive this object.
+/// Read-only access to an annotated mesh whose annotations all follow edges. The view is the given mesh if no annotation has free
+/// curves, otherwise the mesh cut along the free curves. The constructor's argument must outlive this object.
 class EdgeAlignedAnnotations {
 public:
     explicit EdgeAlignedAnnotations(AnnotatedMeshView given) : given_(given) {

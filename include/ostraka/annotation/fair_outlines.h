@@ -14,7 +14,7 @@ struct FairOptions {
     double distance = 0;  ///< maximum deviation in the mesh's unit; 0: mean edge length of the mesh or, if larger, of the curve
     bool let_area_change = false;  ///< true: fairing may change the areas of regions
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Changes that fairing made to one annotation.

@@ -25,7 +25,7 @@ struct AxisOptions {
     int smoothing = 2;         ///< rotation: number of rounds in which normals are averaged over neighbours
     std::uint64_t seed = 1;    ///< rotation: random seed
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A number that describes the axis; lengths are in the mesh's unit.

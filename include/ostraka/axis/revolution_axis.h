@@ -14,7 +14,7 @@ struct RevolutionAxisOptions {
     double out_of_round = 0.005;  ///< typical deviation of such vessels from roundness, as a share of the radius; 0: round
     double max_interval = 0.1;    ///< widest interval of a diameter that counts as determined, as a share of the diameter
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A diameter with its 95 % interval, in the mesh's unit.

@@ -23,7 +23,7 @@ struct CageOptions {
     /// follow: the cage keeps the handles of the mesh; fill: the cage has no handles
     enum class Genus { follow, fill } genus = Genus::follow;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Plane of symmetry of a cage.

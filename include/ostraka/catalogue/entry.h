@@ -136,7 +136,7 @@ struct CatalogueOptions {
     bool section_right = false;  ///< the drawing has the section on the right: the outside view fills its left half
     int pixels = 900;            ///< pixels along the longer side of the main picture
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Makes the entry of an object. Vessels and sherds are placed upright about their axis of revolution (`catalogue_axis`): the rim

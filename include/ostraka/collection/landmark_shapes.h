@@ -12,8 +12,8 @@ namespace ostraka {
 /// How landmark files are read.
 struct LandmarkReading {
     SpecimenOptions specimens;
-    int curve_points = 0;                 ///< resamples each curve to this number of points at equal distances; 0: as in the file
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int curve_points = 0;  ///< resamples each curve to this number of points at equal distances; 0: as in the file
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads the landmarks of every object: from its landmark file, which may hold several specimens; otherwise from the point

@@ -57,7 +57,7 @@ struct SyntheticMeasuresOptions {
     double missing = 0;      ///< fraction of missing values
     std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A synthetic table of measures with its true groups.

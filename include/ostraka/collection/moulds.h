@@ -27,7 +27,7 @@ struct CompareOptions {
     ConsistentOptions consistent;  ///< selection of geometrically consistent matches
     AlignOptions align;            ///< registration of two heads
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Features and surface samples of a head, computed once for all comparisons.
@@ -80,7 +80,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
                                       const ObjectParts& parts = ObjectParts());
 
 /// Names of the similarities: "matches", "consistent", "registration", "combined".
-std::vector<std::string> mould_similarities();
+std::vector<std::string> mould_similarity_names();
 
 /// Distances between heads, in [0, 1], symmetric, 0 on the diagonal. Similarities that are counts c (matches, consistent): d_ij =
 /// 1 - c_ij / c_ii (thesis, 3.3.1), averaged over d_ij and d_ji. "registration": r / (r + m), where r is the registration
@@ -96,7 +96,7 @@ struct GroupOptions {
     int expected_size = 0;  ///< expected number of heads per mould, for knn; 0: square root of the number of heads
     int dimensions = 3;     ///< number of dimensions of the spectral embedding
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Groups of heads.

@@ -17,7 +17,7 @@ struct PartOptions {
     /// Part that the toolkit detects by shape, for objects without annotations.
     enum class Proposal { none, tube, top, segment } proposed = Proposal::none;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The part of an object that a study examines.

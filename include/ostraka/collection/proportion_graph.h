@@ -14,7 +14,7 @@ struct ProposalOptions {
     double weight = 1;    ///< weight of the proposed constraints
     bool hard = false;    ///< true: propose hard constraints
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Constraints proposed from the fixed proportions of a collection.

@@ -21,7 +21,7 @@ struct ProportionOptions {
     double confidence = 0.95;  ///< confidence level of intervals
     std::uint64_t seed = 1;    ///< random seed
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Statistics of one measure or ratio: a row of Table 3.1 of the thesis, with confidence intervals.

@@ -20,7 +20,7 @@ struct TechniqueOptions {
     double min_turn = 0.8;         ///< open outlines that cover a smaller fraction of the full turn are not used
     int min_slices = 20;           ///< min number of usable slices per object
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// One slice of the body. Lengths are relative to the radius of the circle fitted to its outline. Unknown values are NaN.

@@ -42,7 +42,7 @@ struct TechniqueStudyOptions {
     double min_outlier_distance = 6;
     std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Validation of one classifier on the labelled objects.
@@ -94,10 +94,10 @@ struct TechniqueOutlier {
 struct TechniqueAnswer {
     std::string name, label;  ///< name of the object; its known technique (empty: unknown)
     std::string answer;       ///< label or group given by the study; empty if there is no answer
-    /// "clear", "likely" or "doubtful"; for no answer "undecided", "unlike" or "not told apart"; empty: unknown.
+    /// "clear", "likely" or "doubtful"; without an answer "undecided", "unlike" or "not told apart"; empty: unknown.
     std::string certainty;
     /// Descriptor that shows that the object is out-of-class; none if the object is not out-of-class.
-    std::optional<TechniqueOutlier> unlike;
+    std::optional<TechniqueOutlier> outlier;
     bool positive = false;  ///< true: the answer is the positive class
     /// Score of the classifier, in standard deviations of the labelled objects' scores; at least 0 for the positive class.
     double score = 0;

@@ -20,7 +20,7 @@ struct Comparison {
     /// Unit of `tolerance`: "absolute" (the unit of the values), "diagonal" (of the mesh), "largest" (value of the array) or
     /// "value" (each expected value).
     std::string scale = "absolute";
-    std::vector<std::string> freedoms;  ///< properties of a mesh that may differ: "vertex order", "triangulation"
+    std::vector<std::string> permitted_differences;  ///< properties of a mesh that may differ: "vertex order", "triangulation"
     /// For annotations: the mesh to which the annotations belong, as an input file or the name of an output.
     std::string mesh;
     /// For method "values": names of the members to compare, or of the members to ignore.

@@ -32,9 +32,9 @@ struct CoordinateCertificate {
     double negative_sum = 0;          ///< largest sum of the absolute values of a point's negative weights
     /// For each point, the smallest number of weights whose absolute values make up 95 % of the sum over all weights; mean over
     /// the points.
-    double carriers_mean = 0;
-    /// As `carriers_mean`, but the maximum over the points.
-    Index carriers_max = 0;
+    double dominant_weights_mean = 0;
+    /// As `dominant_weights_mean`, but the maximum over the points.
+    Index dominant_weights_max = 0;
 
     /// True if the weights can be used for deformation: `partition` is at most 1e-10 and `linear` at most 1e-9.
     [[nodiscard]] bool holds() const { return partition <= 1e-10 && linear <= 1e-9; }

@@ -56,7 +56,7 @@ struct CoordinateOptions {
     /// distance; relative to the inner cage's diagonal.
     double fade = 0.15;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A kind of cage coordinates that can be computed by name.

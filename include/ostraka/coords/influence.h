@@ -21,6 +21,6 @@ std::vector<double> influence_of(const Coordinates& coordinates, Index cage_vert
 
 /// For each point (row), the smallest number of weights whose absolute values add up to the fraction `share` of the row's sum of
 /// absolute values.
-std::vector<Index> carriers(const WeightMatrix& weights, double share = 0.95);
+std::vector<Index> dominant_weight_counts(const WeightMatrix& weights, double share = 0.95);
 
 }  // namespace ostraka

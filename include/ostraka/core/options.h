@@ -2,7 +2,7 @@
 // derived from this list.
 //
 // An options struct has a member
-//     void list_options(OptionList& list);
+//     void declare_options(OptionList& list);
 // which lists its fields:
 //     list("max-distance", max_distance, "maximum distance of a correspondence", Range{0, 1}, "share of the box diagonal");
 //     list("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
@@ -170,11 +170,11 @@ private:
     std::string group_;
 };
 
-/// The option list of an options struct, filled by its member `list_options`.
+/// The option list of an options struct, filled by its member `declare_options`.
 template <class Options>
 OptionList options_of(const Options& options) {
     OptionList result;
-    const_cast<Options&>(options).list_options(result);
+    const_cast<Options&>(options).declare_options(result);
     return result;
 }
 
@@ -186,7 +186,7 @@ void check_options(const Options& options, const std::string& where) {
 
 /// Names and values as text, for provenance.
 template <class Options>
-std::vector<std::pair<std::string, std::string>> list_options(const Options& options) {
+std::vector<std::pair<std::string, std::string>> declare_options(const Options& options) {
     return options_of(options).values();
 }
 
@@ -206,7 +206,7 @@ void set_option(Options& options, const std::string& name, const std::string& wo
 template <class Options>
 std::string options_text(const Options& options) {
     std::string text;
-    for (const auto& [name, value] : list_options(options)) text += name + "=" + value + "\n";
+    for (const auto& [name, value] : declare_options(options)) text += name + "=" + value + "\n";
     return text;
 }
 

@@ -14,7 +14,7 @@ struct CurvatureOptions {
     /// vertex.
     double scale = 0;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Curvature of a mesh, one value per vertex; NaN where undefined (border vertices, isolated vertices, faces without area).

@@ -15,7 +15,7 @@ struct ThicknessOptions {
     /// Radius over which normals are averaged for the cone's axis, as a fraction of the diagonal of the mesh's bounding box.
     double scale = 0.01;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The shape diameter (Shapira, Shamir and Cohen-Or 2008) of each face in the mesh's unit. Rays in a cone around the inward

@@ -28,7 +28,7 @@ struct CatalogueStyle {
     bool sheet = false;  ///< several objects a page, all at one scale, instead of one page for each
     std::string title;   ///< title of the catalogue
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
     /// True if drawings have the section on the right.
     [[nodiscard]] bool section_right() const;
 };

@@ -48,12 +48,12 @@ public:
     /// The WriteScope of this thread; null if there is none.
     static const WriteScope* current();
     /// Sets the scope of this thread (null: none) during the lifetime of this object.
-    class Within {
+    class ScopeGuard {
     public:
-        explicit Within(const WriteScope* scope);
-        ~Within();
-        Within(const Within&) = delete;
-        Within& operator=(const Within&) = delete;
+        explicit ScopeGuard(const WriteScope* scope);
+        ~ScopeGuard();
+        ScopeGuard(const ScopeGuard&) = delete;
+        ScopeGuard& operator=(const ScopeGuard&) = delete;
 
     private:
         const WriteScope* outer_;

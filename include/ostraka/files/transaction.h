@@ -22,12 +22,12 @@ private:
 
 /// Protects input files of this run: during the lifetime of this object, transactions committed on this thread do not remove
 /// these files, even if an earlier run wrote them into a folder of `replace_outputs`.
-class KeptFiles {
+class ProtectedInputs {
 public:
-    explicit KeptFiles(std::vector<Path> files);
-    ~KeptFiles();
-    KeptFiles(const KeptFiles&) = delete;
-    KeptFiles& operator=(const KeptFiles&) = delete;
+    explicit ProtectedInputs(std::vector<Path> files);
+    ~ProtectedInputs();
+    ProtectedInputs(const ProtectedInputs&) = delete;
+    ProtectedInputs& operator=(const ProtectedInputs&) = delete;
 
 private:
     std::vector<Path> outer_;

@@ -16,13 +16,13 @@ struct FacetGraph {
     std::vector<Vector> normals;
     std::vector<double> areas;  ///< area of each patch
     /// For each patch: 1 minus the mean cosine of the angles between the normals of its faces and the normal of the patch.
-    std::vector<double> ruffle;
+    std::vector<double> normal_deviation;
     /// A pair of adjacent patches.
     struct Contact {
-        Index a = 0, b = 0;     ///< indices of the patches, a < b
-        double length = 0;      ///< total length of the edges between the two patches
-        double turn = 0;        ///< dihedral angle in radians; positive where convex
-        Point middle{0, 0, 0};  ///< middle of the common boundary
+        Index a = 0, b = 0;         ///< indices of the patches, a < b
+        double length = 0;          ///< total length of the edges between the two patches
+        double dihedral_angle = 0;  ///< dihedral angle in radians; positive where convex
+        Point middle{0, 0, 0};      ///< middle of the common boundary
     };
     std::vector<Contact> contacts;  ///< pairs of adjacent patches, sorted by a, then by b
     double area = 0;                ///< area of the surface
@@ -45,8 +45,8 @@ struct Walls {
     /// for parallel sides.
     std::vector<double> opposite;
     std::vector<Index> behind;  ///< for each patch: the patch hit by its middle ray; no_index: none
-    double typical = 0;         ///< median `depth` over the area that has an opposite side (a wall); 0: no wall
-    double share = 0;           ///< fraction of the area where `depth` is close to `typical`
+    double thickness = 0;       ///< median `depth` over the area that has an opposite side (a wall); 0: no wall
+    double share = 0;           ///< fraction of the area where `depth` is close to `thickness`
 };
 /// Casts rays from each patch into the solid.
 Walls measure_walls(const Mesh& mesh, const FacetGraph& graph);

@@ -18,7 +18,7 @@ struct FacetOptions {
     /// Weight of the smoothness term (neighbouring faces get equal classes) relative to the data term (features of each face).
     double coherence = 0.3;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A connected component of faces of the same facet class.

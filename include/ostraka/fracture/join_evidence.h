@@ -23,7 +23,7 @@ struct JoinEvidence {
     double bending = 0;  ///< root mean square deviation of the contact area from a plane
     /// Degree to which contact area and rim determine the relative pose: smallest eigenvalue of the normal equations divided by
     /// the mean eigenvalue (Gelfand et al. 2003); 0 if the fragments can slide.
-    double grip = 0;
+    double stability = 0;
     /// Mean over the contact area of the cosine between the normal of one fracture surface and the reversed normal of the
     /// other.
     double facing = 0;
@@ -35,8 +35,8 @@ struct JoinEvidence {
     double rim_step = 0;  ///< root mean square offset between the two intact surfaces along `rim`
     /// Area of both fragments that lies inside the other fragment by more than the tolerance, divided by the contact area.
     double penetration = 0;
-    double depth = 0;   ///< largest depth of a point of one fragment inside the other fragment
-    double widths = 0;  ///< absolute logarithm of the ratio of the widths of the two fracture surfaces
+    double depth = 0;            ///< largest depth of a point of one fragment inside the other fragment
+    double width_log_ratio = 0;  ///< absolute logarithm of the ratio of the widths of the two fracture surfaces
     // The next members compare the intact surfaces of both fragments beside the rims; wear changes these surfaces less than the
     // fracture surfaces. The comparison is made along the part of the rim where the fragments are close.
     double side_turn = 1;  ///< root mean square sine of the angle between the normals of the two intact surfaces

@@ -27,7 +27,7 @@ struct PairOptions {
     double min_confidence = 0.5;  ///< min confidence of an answer; below it the pair is reported as undecided
     int candidates = 5;           ///< max number of candidates reported
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Data for matching a fragment's fracture, precomputed once: samples of the fracture and of the intact surface, frames along the

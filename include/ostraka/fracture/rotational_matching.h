@@ -20,7 +20,7 @@ struct RotationMatchOptions {
     double hold = 0.5;       ///< weight of the distance from the template relative to the distance between fractures
     double min_joint = 0.5;  ///< min confidence of a joint; joints of lower confidence are reported as undecided
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A sherd registered to the template vessel, except for an unknown rotation about the axis of the vessel.

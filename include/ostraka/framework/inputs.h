@@ -41,7 +41,7 @@ public:
     /// The i-th annotation set, which must belong to `mesh`. Remarks of the annotation reader become notes of the report. Throws
     /// Error (input) as read_annotations does.
     [[nodiscard]] const AnnotationSet& on(const Mesh& mesh, std::size_t i = 0) const;
-    void list_options(OptionList& options) override;
+    void declare_options(OptionList& options) override;
 
     ReadAnnotationsOptions reading;  ///< options of the annotation reader
 };
@@ -78,7 +78,7 @@ class TemplateInput : public Slot {
 public:
     const Template& operator*() const;
     const Template* operator->() const { return &**this; }
-    void list_options(OptionList& operation_options) override;
+    void declare_options(OptionList& operation_options) override;
 
     TemplateOptions options;  ///< options of the template reader
 };

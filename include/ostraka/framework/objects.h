@@ -48,7 +48,7 @@ enum class Kind {
 };
 std::string to_string(Kind kind);
 /// File extensions of a kind, lower case; empty if any extension is allowed.
-std::vector<std::string> endings_of(Kind kind);
+std::vector<std::string> extensions_of(Kind kind);
 
 /// A shared, immutable object in memory, with its name and the checksum of its source.
 class Object {
@@ -99,7 +99,7 @@ private:
 struct Source {
     Path file;               ///< empty for an object in memory
     Object object;           ///< empty for a file
-    bool in_place = false;   ///< true: an output that replaces the file of the input that it updates
+    bool in_place = false;   ///< true: the output overwrites the input's file
     std::string label = {};  ///< NAME, if the file was given as NAME=FILE; else empty
     /// File name, or name of the object.
     [[nodiscard]] std::string name() const { return object.name.empty() ? file.string() : object.name; }
@@ -163,7 +163,7 @@ public:
     Context* context = nullptr;
 
     /// Adds the slot's own options to the options of the operation, such as --force-mesh for annotations.
-    virtual void list_options(OptionList& /*options*/) {}
+    virtual void declare_options(OptionList& /*options*/) {}
     /// Throws Error (usage) if a file name is invalid for this kind of slot. The context calls `check` before any work starts.
     virtual void check() const {}
     /// True if the i-th source is a folder that receives several files.
@@ -174,7 +174,7 @@ public:
 protected:
     /// Adds the slot's own options to `options`; an option that another slot has already added under the same name is shared with
     /// that slot.
-    void describe_shared(OptionList& options, const OptionList& slot_options);
+    void declare_shared(OptionList& options, const OptionList& slot_options);
     /// Copies the values of shared options into the slot's own options; to be called before the slot's options are used.
     void take_shared() const;
 

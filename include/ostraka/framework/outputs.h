@@ -24,13 +24,13 @@ public:
     void write(Mesh mesh, MeshExtras extras = {}, WriteOptions options = {}) const;
     /// Writes triangles of any topology, with the provenance as the file's comment.
     void write(TriangleSoup soup, MeshExtras extras, WriteOptions options = {}) const;
-    /// Writes one of several meshes of this output: `ending` is inserted before the file's extension. In memory each of these
-    /// meshes is a separate object.
-    void write_part(const std::string& ending, Mesh mesh, MeshExtras extras = {}) const;
-    /// File name of the mesh written with this ending; empty if the output stays in memory.
-    [[nodiscard]] std::string part_file(const std::string& ending) const;
+    /// Writes one of several meshes of this output: `suffix` is appended to the file's stem, before its extension. In memory each
+    /// of these meshes is a separate object.
+    void write_part(const std::string& suffix, Mesh mesh, MeshExtras extras = {}) const;
+    /// File name of the mesh written with this suffix; empty if the output stays in memory.
+    [[nodiscard]] std::string part_file(const std::string& suffix) const;
     void check() const override;
-    void list_options(OptionList& options) override;
+    void declare_options(OptionList& options) override;
 
     /// Declares the option --ascii, which selects text or binary encoding.
     MeshOutput& with_ascii_option() { return encoded_ = true, *this; }

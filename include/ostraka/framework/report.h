@@ -26,9 +26,9 @@ enum class FieldType { boolean, integer, number, text, numbers, texts, any };
 
 /// Declares a value of a report, or a column of one of its tables.
 struct Field {
-    std::string key;                   ///< JSON key ('.' separates nested members); empty: the field is shown to people only
+    std::string key;                   ///< JSON key ('.' separates nested members); empty: the field is shown in texts only
     FieldType type = FieldType::text;  ///< type of the values
-    std::string title = {};            ///< title for people; empty: the field is shown to programs only
+    std::string title = {};            ///< title in texts; empty: the field is in the JSON only
     std::string unit = {};  ///< unit of the values; "length", "length^2", ... are replaced by the unit of Report::set_unit
 };
 
@@ -49,8 +49,8 @@ inline Field texts(std::string key, std::string title = {}) { return {std::move(
 inline Field any(std::string key, std::string title = {}, std::string unit = {}) {
     return {std::move(key), FieldType::any, std::move(title), std::move(unit)};
 }
-/// A column that is shown to people only, not in the JSON; an empty cell of a number column is shown as "-".
-inline Field people(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
+/// A column that is shown in texts only, not in the JSON; an empty cell of a number column is shown as "-".
+inline Field text_only(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
     return {{}, type, std::move(title), std::move(unit)};
 }
 }  // namespace fields
@@ -59,9 +59,9 @@ inline Field people(std::string title, FieldType type = FieldType::text, std::st
 struct ReportLayout {
     std::vector<Field> value_fields;  ///< the single values
     struct Table {
-        std::string key;  ///< JSON key of the array of rows; empty: the table is shown to people only
+        std::string key;  ///< JSON key of the array of rows; empty: the table is shown in texts only
         std::vector<Field> columns;
-        std::string title = {};  ///< heading line for people; empty: none
+        std::string title = {};  ///< heading line in texts; empty: none
     };
     std::deque<Table> tables;  ///< the declared tables
     /// Name of the JSON schema (doc/schema) of the whole result; empty: only declared fields are allowed.
@@ -79,17 +79,17 @@ struct ReportLayout {
     }
     /// Declares a table.
     void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
-    /// Declares a table that is shown to people only; `title` is also the name of the table in calls of Report::row.
-    void people_table(std::string title, std::initializer_list<const char*> columns) {
+    /// Declares a table that is shown in texts only; `title` is also the name of the table in calls of Report::row.
+    void text_table(std::string title, std::initializer_list<const char*> columns) {
         tables.push_back({{}, {}, std::move(title)});
-        for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
+        for (const char* column : columns) tables.back().columns.push_back(fields::text_only(column));
     }
 
     /// JSON schema (draft 4) of the member "result" of a report.
     [[nodiscard]] JsonValue to_schema(JsonAllocator& allocator) const;
 };
 
-/// Text of a cell for people; numbers are written with five significant digits.
+/// Text of a cell; numbers are written with five significant digits.
 struct ReportText {
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
     ReportText(std::string value) : text(std::move(value)) {}
@@ -124,7 +124,7 @@ public:
 
     /// True if there is no value.
     [[nodiscard]] bool absent() const { return std::holds_alternative<std::monostate>(value_); }
-    /// The value as text for people; empty for JSON structures.
+    /// The value as text; empty for JSON structures.
     [[nodiscard]] std::string text() const;
     /// The value as JSON for programs; may be called once.
     JsonValue json(JsonAllocator& allocator);
@@ -148,7 +148,7 @@ public:
     /// Sets the unit of length shown in column titles.
     void set_unit(const std::string& unit) { unit_ = unit; }
 
-    /// Sets the value of a declared field; `shown`: text for people, if different from the default text of the value.
+    /// Sets the value of a declared field; `shown`: text that is shown, if different from the default text of the value.
     Report& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
     /// Sets the values of all members of `object`, which follows the schema of the report.
     void values(const JsonValue& object);
@@ -156,9 +156,9 @@ public:
     /// A row of a table, filled cell by cell. Cells that are absent or not filled are omitted from the JSON.
     class Row {
     public:
-        /// Sets the cell of a column; `shown`: text for people, if different from the default text.
+        /// Sets the cell of a column; `shown`: text that is shown, if different from the default text.
         Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-        /// Sets the text that is shown to people in a cell. The column is given by its title (columns for people only) or by
+        /// Sets the text that is shown in a cell. The column is given by its title (columns of texts only) or by
         /// its key (if the value is absent).
         Row& shown(std::string_view title_or_key, ReportText text);
 
@@ -169,16 +169,16 @@ public:
         std::size_t table_, row_;
     };
     Row row(const std::string& table);  ///< adds an empty row to a table
-    /// Adds a complete row, one cell per column, to a table that is shown to people only (not in the JSON).
+    /// Adds a complete row, one cell per column, to a table that is shown in texts only (not in the JSON).
     void row(const std::string& table, std::initializer_list<ReportText> cells);
-    /// Adds a table that has no rows; `shown`: true if its header is shown to people.
+    /// Adds a table that has no rows; `shown`: true if texts show its header.
     void empty_table(const std::string& table, bool shown = true);
 
-    /// Adds a value that is shown to people only (not in the JSON), below the previous values.
-    void people(const std::string& title, const std::string& text);
-    /// Adds a table for people only, which the operation also writes to files.
+    /// Adds a value that is shown in texts only (not in the JSON), below the previous values.
+    void text_only(const std::string& title, const std::string& text);
+    /// Adds a table for texts only, which the operation also writes to files.
     void table(const TextTable& table);
-    /// Adds a line of text for people; values, tables and lines are shown in the order in which they were added.
+    /// Adds a line of text; values, tables and lines are shown in the order in which they were added.
     void line(std::string text);
     /// Adds a note to the result; notes are printed on standard error and are in the JSON as result.notes.
     void note(std::string text);
@@ -198,7 +198,7 @@ public:
 
     [[nodiscard]] bool holds() const { return holds_; }                             ///< false after answer_no()
     [[nodiscard]] const JsonValue& result() const { return result_; }               ///< the values and tables as JSON
-    [[nodiscard]] const std::vector<std::string>& noted() const { return notes_; }  ///< notes added so far
+    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }  ///< notes added so far
     [[nodiscard]] const ReportLayout& layout() const { return layout_; }
     [[nodiscard]] const Provenance& provenance() const { return provenance_; }
     void set_provenance(Provenance provenance) { provenance_ = std::move(provenance); }
@@ -208,7 +208,7 @@ public:
     /// The report as JSON: {"format": "ostraka-report", "command", "result", "provenance", "run"}.
     [[nodiscard]] Json to_json() const;
     [[nodiscard]] std::string to_text(ReportFormat format) const;  ///< the report in the given format
-    /// Durations of the run, for people: "read 0.1 s, triangulate 0.05 s"; empty if there are none.
+    /// Durations of the run as text: "read 0.1 s, triangulate 0.05 s"; empty if there are none.
     [[nodiscard]] std::string times() const;
 
 private:
@@ -216,12 +216,12 @@ private:
         std::size_t layout = 0;
         /// Key -> index of the column; -1 for columns that only programs see.
         std::map<std::string, int, std::less<>> places;
-        /// Key (or title of a column for people only) -> index of the column shown to people.
+        /// Key (or title of a column of texts only) -> index of the column in texts.
         std::map<std::string, int, std::less<>> shown;
         std::vector<std::string> empty;  ///< texts of the cells of a row before it is filled
         std::vector<std::vector<std::string>> rows;
     };
-    /// A block of text for people: a line, a value (title and text), or a table.
+    /// A block of text: a line, a value (title and text), or a table.
     struct Block {
         enum class Kind { line, value, table, text_table } kind = Kind::line;
         std::string title, text;
@@ -244,7 +244,7 @@ private:
     bool holds_ = true;
 };
 
-/// A number as text for people, with `digits` significant digits.
+/// A number as text, with `digits` significant digits.
 std::string number(double value, int digits = 5);
 
 }  // namespace ostraka

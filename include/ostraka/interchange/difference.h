@@ -44,7 +44,7 @@ struct MergeOptions {
     /// conflict.
     bool renumber = false;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of `merge_annotations`.
@@ -54,7 +54,7 @@ struct MergedAnnotations {
     std::vector<Conflict> conflicts;  ///< all conflicts, including conflicts resolved by `prefer`
     std::vector<std::string> notes;   ///< messages about new ids and about regions merged face by face
     /// True if there is no conflict left to resolve.
-    [[nodiscard]] bool settled(const MergeOptions& options) const {
+    [[nodiscard]] bool is_resolved(const MergeOptions& options) const {
         return conflicts.empty() || options.prefer != MergeOptions::Side::none;
     }
 };

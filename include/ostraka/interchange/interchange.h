@@ -20,7 +20,7 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes 
 struct ExportOptions {
     LandmarkFileOptions landmarks;  ///< options for the landmark formats
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of `export_annotations`.
@@ -40,7 +40,7 @@ struct ImportOptions {
     LandmarkFileOptions landmarks;  ///< options for the landmark formats
     PlaceOptions place;             ///< options for placing points on the mesh
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads annotations from the `bytes` of a file and places them on the mesh. `onto`: existing set of annotations. A table of

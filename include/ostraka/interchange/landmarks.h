@@ -50,7 +50,7 @@ struct LandmarkFileOptions {
     AnatomicalSpace mesh_space = AnatomicalSpace::lps;  ///< space of the mesh's coordinates
     std::string specimen;  ///< specimen to read from a TPS file: its ID, or its number in the file, from 1
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads landmarks. x and y are negated if the file declares LPS or RAS and the mesh uses the other coordinate system. Points
@@ -80,7 +80,7 @@ struct PlaceOptions {
     /// True: points beyond the tolerance are skipped with a note; false: points beyond the tolerance are an error.
     bool skip_far = false;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Position of an imported annotation on the mesh.

@@ -36,7 +36,7 @@ struct LandmarkSpecimens {
 struct SpecimenOptions {
     /// True: a landmark with a negative coordinate is missing, as digitising programs mark it.
     bool negative_missing = false;
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The named points of a set as one specimen without a name; points of curves become landmarks `CURVE 1`, `CURVE 2`, ...

@@ -13,7 +13,7 @@ namespace ostraka {
 /// a cavity, whatever its orientation.
 struct SolidBodies {
     std::size_t closed = 0;           ///< number of closed, consistently oriented components
-    std::size_t cavities = 0;         ///< number of these that bound a cavity
+    std::size_t cavities = 0;         ///< number of components that bound a cavity
     std::size_t turned_cavities = 0;  ///< number of cavities that are oriented outwards, as if they were bodies
     std::size_t inside_out = 0;       ///< number of bodies that are oriented inwards
     std::size_t repeated = 0;         ///< number of components that are there twice, point by point; they count once

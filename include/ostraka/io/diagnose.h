@@ -17,7 +17,7 @@ struct DiagnoseOptions {
     /// True: do not search for self-intersections, which is the most expensive check; the list of defects then does not include
     /// them.
     bool skip_self_intersections = false;
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A closed path of border edges.

@@ -91,7 +91,7 @@ void append(std::string& bytes, T value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Content of a data URI (RFC 2397), in base64 or percent-encoded; nullopt if the text is no data URI or cannot be decoded.
+/// Content of a data URI (RFC 2397), in base64 or percent-encoded; nullopt if the text is not a data URI or cannot be decoded.
 std::optional<std::string> content_of_data_uri(std::string_view uri);
 
 /// A parsed glTF file; every access is checked against the sizes in the file. Throws Error (input) with the file and the JSON

@@ -38,9 +38,9 @@ private:
     const Appearance& appearance_;
     std::vector<Index> used_;
     std::string where_;
-    std::vector<Json> rests_;              ///< what the file said of each used material
-    std::vector<SharedImage> images_;      ///< images to write
-    std::map<Index, int> place_of_image_;  ///< of an image of the appearance in `images_`; -1: not written
+    std::vector<Json> unread_material_json_;  ///< what the file said of each used material
+    std::vector<SharedImage> images_;         ///< images to write
+    std::map<Index, int> place_of_image_;     ///< of an image of the appearance in `images_`; -1: not written
     std::vector<std::string> notes_;
     JsonValue textures_{rapidjson::kArrayType}, samplers_{rapidjson::kArrayType};
     std::map<std::pair<int, int>, int> texture_of_;  ///< (image, sampler) -> texture

@@ -19,7 +19,7 @@ struct PlyVertexColumn {
 };
 
 /// The vertices of a PLY file.
-struct PlyVertexColumns {
+struct PlyVertexProperties {
     std::size_t vertices = 0;              ///< number of vertices
     bool has_faces = false;                ///< true: the file has faces or triangle strips; `columns` is then empty
     std::vector<PlyVertexColumn> columns;  ///< the properties except lists, in the order of the file
@@ -28,6 +28,6 @@ struct PlyVertexColumns {
 
 /// Reads the vertices of the PLY file with the content `bytes`; numbers may be infinite or NaN. Throws Error (input) with the
 /// line or byte if the header or the vertex data are damaged. Memory is bounded by the size of the file.
-PlyVertexColumns read_ply_vertex_columns(const std::string& bytes, const std::string& file);
+PlyVertexProperties read_ply_vertex_properties(const std::string& bytes, const std::string& file);
 
 }  // namespace ostraka

@@ -29,7 +29,7 @@ struct RepairOptions {
     bool wrap = false;                       ///< true: replace the surface by a watertight wrap
     double wrap_alpha = 0.02;                ///< the wrap enters openings wider than this fraction of the diagonal
     double wrap_offset = 0.002;              ///< distance of the wrap from the surface, as a fraction of the diagonal
-    void list_options(OptionList& list);     ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< adds every member to a list of options
 };
 
 /// The changes made by one repair step.

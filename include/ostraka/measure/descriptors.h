@@ -19,7 +19,7 @@ struct Quantity {
     /// Exponent of the unit of length: 1 length, 2 area, -1 curvature; 0 if the quantity is dimensionless or its unit is in
     /// `unit`.
     int power = 0;
-    std::string unit;  ///< unit of quantities that are no power of a length, e.g. "rad"; else empty
+    std::string unit;  ///< unit of quantities that are not a power of a length, e.g. "rad"; else empty
 };
 
 /// The unit of a quantity if lengths are in `unit`: for example "mm^2" or "1/mm"; empty if `unit` is empty.
@@ -39,7 +39,7 @@ struct DescriptorOptions {
     CurvatureOptions curvature_options;  ///< used if `curvature` is true
     ThicknessOptions thickness_options;  ///< used if `thickness` is true
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Computes quantities of annotations on one mesh. The mesh must outlive this object. Fields on the whole mesh (curvature,
@@ -53,7 +53,7 @@ public:
 
     /// Announces the annotations for which quantities will be computed. The mesh is then cut along the curves of all free
     /// annotations of the set at once.
-    void expect(const AnnotationSet& set);
+    void prepare(const AnnotationSet& set);
 
     /// Computes the quantity of this name; none if the name is unknown or not defined for annotations of this type. Names for
     /// regions: area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid

@@ -44,7 +44,7 @@ struct ColourMeasures {
     double lightness_low = 0, lightness_high = 0;  ///< lightness below which 10 % and 90 % of the area lie
 };
 /// Colours of a region, by area: about `samples` samples on grids of its faces, at least one in each; free regions are cut along
-/// their outlines. Throws Error (input) for an annotation that is no region, and for a region without area.
+/// their outlines. Throws Error (input) for an annotation that is not a region, and for a region without area.
 ColourMeasures measure_colour(AnnotatedMeshView object, const Annotation& region, const MeshExtras& extras,
                               const std::string& where, std::size_t samples = 20000);
 

@@ -22,8 +22,8 @@ enum class SlidingCriterion {
 
 struct SlidingOptions {
     SlidingCriterion criterion = SlidingCriterion::bending_energy;
-    int iterations = 30;                  ///< max number of alternations of sliding and superimposition
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int iterations = 30;                     ///< max number of alternations of sliding and superimposition
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A point on the surface of a specimen, with the unit normal of the surface there.

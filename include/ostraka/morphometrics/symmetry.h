@@ -22,7 +22,7 @@ struct SymmetryAnalysis {
     std::vector<std::string> individuals;    ///< names of the individuals, in the order of the specimens
     std::vector<Landmarks> symmetric;        ///< for each individual, its symmetric shape
     std::vector<Landmarks> asymmetric;       ///< for each individual, the mean plus its difference of sides, halved
-    Landmarks directional;                   ///< mean plus the mean of these differences: directional asymmetry
+    Landmarks directional;                   ///< mean plus the mean of the left-right differences: directional asymmetry
     std::vector<double> asymmetry;           ///< for each individual, norm of the difference of its sides, halved
     std::vector<double> fluctuating;         ///< the same after the directional asymmetry is subtracted
     double symmetric_share = 0;              ///< share of the variation of individuals and their sides that is symmetric

@@ -7,9 +7,9 @@ namespace ostraka {
 
 /// Markdown page on all operations whose names begin with `first_word` ("mesh"), or on the single operation with this name
 /// ("slice"): inputs, reports, and options with ranges, defaults and units.
-std::string commands_page(const std::string& first_word);
+std::string command_page(const std::string& first_word);
 /// First words of all operation names, in the order of the table of operations; there is one Markdown page for each first word.
-std::vector<std::string> command_pages();
+std::vector<std::string> command_page_names();
 
 /// Usage line of an operation with its positional arguments in the given order: "ostraka mesh convert INPUT OUTPUT [options]".
 std::string usage_of(const Call& call, const std::vector<std::string>& order);

@@ -13,7 +13,7 @@ namespace ostraka {
 struct PoissonOptions {
     double edge = 0.7;        ///< max circumradius of the triangles, in multiples of the point spacing
     double deviation = 0.25;  ///< max distance between the triangles and the Poisson surface, in multiples of the point spacing
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The Poisson surface of oriented points: the level set of the function whose gradient fits the normals best (Kazhdan, Bolitho,

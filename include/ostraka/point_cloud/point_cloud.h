@@ -40,7 +40,7 @@ struct CloudOptions {
     double longest = 8;      ///< max edge length of the surface, in multiples of the point spacing
     double close_holes = 1;  ///< max size of a hole that is filled, as a share of the bounding box diagonal
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Estimates a unit normal for each point: the direction from a quadric through the point's neighbours (jets; Cazals and Pouget
@@ -57,7 +57,7 @@ struct CloudSurface {
     /// For each vertex, index of its point in the cloud; no_index: the vertex is not a point of the cloud.
     std::vector<Index> sources;
     std::size_t border_loops = 0;    ///< number of border loops of the surface that were not filled
-    double border_length = 0;        ///< total length of these border loops
+    double border_length = 0;        ///< total length of the unfilled border loops
     std::vector<std::string> notes;  ///< messages about the reconstruction
 };
 

@@ -17,7 +17,7 @@ struct ReassemblyOptions {
     int partners = 24;
     int min_faces = 100;  ///< fragments with fewer faces are not matched, because their fracture surfaces show no relief
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// All candidate poses of a pair of fragments.
@@ -31,7 +31,7 @@ struct PairResult {
 struct FragmentJoin {
     std::size_t first = 0, second = 0;  ///< indices of the two fragments
     Motion pose;                        ///< maps the second fragment onto the first, as placed in the group
-    double pair = 0;                    ///< probability of the join, computed from the two fragments alone
+    double pair_probability = 0;        ///< probability of the join, computed from the two fragments alone
     double confidence = 0;              ///< probability of the join, computed with the evidence of all fragments of the group
     std::size_t loops = 0;              ///< number of loops that this join closes together with two joins of a third fragment
     JoinEvidence evidence;              ///< features of the join, for the poses in the group
@@ -42,18 +42,18 @@ struct FragmentJoin {
 /// A pose that is likely when only the two fragments are considered, but was rejected.
 struct RejectedJoin {
     std::size_t first = 0, second = 0;  ///< indices of the two fragments
-    double pair = 0;                    ///< probability of the pose, computed from the two fragments alone
+    double pair_probability = 0;        ///< probability of the pose, computed from the two fragments alone
     std::string reason;                 ///< why the pose was rejected, as text
 };
 
 /// Groups of joined fragments with their poses.
 struct Reassembly {
-    std::vector<Motion> poses;         ///< for each fragment, the motion into the frame of the largest fragment of its group
-    std::vector<int> group;            ///< for each fragment, the index of its group (largest group first); -1: not joined
-    std::vector<std::string> alone;    ///< for each fragment, why it is not joined; empty if it is joined
-    std::vector<FragmentJoin> joins;   ///< ordered by group, then by descending confidence
-    std::vector<RejectedJoin> undone;  ///< likely poses that were rejected
-    std::size_t pairs_tried = 0;       ///< number of pairs of fragments that were registered
+    std::vector<Motion> poses;  ///< for each fragment, the motion into the frame of the largest fragment of its group
+    std::vector<int> group;     ///< for each fragment, the index of its group (largest group first); -1: not joined
+    std::vector<std::string> reasons_not_joined;  ///< for each fragment, why it is not joined; empty if it is joined
+    std::vector<FragmentJoin> joins;              ///< ordered by group, then by descending confidence
+    std::vector<RejectedJoin> rejected;           ///< likely poses that were rejected
+    std::size_t pairs_tried = 0;                  ///< number of pairs of fragments that were registered
     /// Number of pairs that were skipped because their fractures are dissimilar; pairs are skipped only if there are many
     /// fragments.
     std::size_t pairs_left = 0;
@@ -63,9 +63,9 @@ struct Reassembly {
 /// Cache of pair results. The functions are called from several threads, one call at a time.
 struct PairMemory {
     /// Returns the stored result for two fragments (by index) and these options; empty: the pair must be registered.
-    std::function<std::optional<PairResult>(std::size_t, std::size_t, const PairOptions&)> recall;
+    std::function<std::optional<PairResult>(std::size_t, std::size_t, const PairOptions&)> load;
     /// Stores the result of a pair.
-    std::function<void(const PairResult&, const PairOptions&)> keep;
+    std::function<void(const PairResult&, const PairOptions&)> store;
 };
 
 /// Reassembles fragments. Each pair of fragments contributes all its candidate poses, not only the most likely one. If the

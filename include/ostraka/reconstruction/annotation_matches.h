@@ -14,13 +14,13 @@ namespace ostraka {
 struct AnnotationMatchOptions {
     double min_score = 0.4;  ///< min score of a match, 0 to 1
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// An annotation of a fragment and its counterpart on the template.
 struct AnnotationMatch {
-    int of_fragment = 0, of_template = 0;  ///< annotation ids
-    double score = 0;                      ///< agreement of the two annotations, 0 to 1
+    int fragment_annotation = 0, template_annotation = 0;  ///< annotation ids
+    double score = 0;                                      ///< agreement of the two annotations, 0 to 1
     /// Terms of the score, each 0 to 1: agreement of attributes, of the tags of the containers, of position under the pose, and
     /// of extent.
     double attributes = 1, containers = 1, place = 1, extent = 1;
@@ -29,8 +29,8 @@ struct AnnotationMatch {
 
 /// A match stated by the user: names the counterpart of a fragment's annotation, or states that there is none.
 struct StatedMatch {
-    int of_fragment = 0;             ///< id of the fragment's annotation
-    std::optional<int> of_template;  ///< id of the template's annotation; empty: no counterpart
+    int fragment_annotation = 0;             ///< id of the fragment's annotation
+    std::optional<int> template_annotation;  ///< id of the template's annotation; empty: no counterpart
 };
 
 /// Matches annotations of the same type and tag. Several annotations with one tag (two eyes) are distinguished by their

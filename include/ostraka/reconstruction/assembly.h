@@ -17,7 +17,7 @@ struct AssemblyNames {
 JsonValue assembly_to_json(const Reconstruction& result, const AssemblyNames& names, JsonAllocator& allocator);
 
 /// Matches stated by the user ("stated": true) in an assembly file for the fragment of this name. `file` names the assembly in
-/// errors. Throws Error (input), with the JSON pointer, for a file that is no assembly, two entries with the same fragment
+/// errors. Throws Error (input), with the JSON pointer, for a file that is not an assembly, two entries with the same fragment
 /// name, a stated match that names no annotation of the fragment, and two stated matches for one annotation.
 std::vector<StatedMatch> stated_matches(const JsonValue& assembly, const std::string& fragment,
                                         const std::string& file = "assembly");

@@ -23,11 +23,11 @@ struct CompleteOptions {
     /// diagonal.
     double blend = 0.03;
     /// The confidence of a face is halved with every such distance from the observed faces (share of the template's diagonal).
-    double halving = 0.1;
+    double confidence_half_distance = 0.1;
     bool join = true;         ///< true: use the fragments' triangles where possible; false: use only the template's triangles
     double min_piece = 0.01;  ///< min area of a piece of a fragment that is used, as a share of the fragment's area
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reason why the triangles of a fragment could not be used.
@@ -48,13 +48,13 @@ struct CompletedObject {
     std::vector<Index> template_face;
     /// Distance of the face's centroid from the nearest observed face; 0 if observed, -1 if no face is observed.
     std::vector<double> distance;
-    std::vector<double> confidence;     ///< 1 if observed, halved with every `halving` of distance
+    std::vector<double> confidence;     ///< 1 if observed, halved with every `confidence_half_distance` of distance
     std::vector<CompletionNote> notes;  ///< fragments whose triangles could not be used
     // For each fragment:
     std::vector<std::size_t> joined;  ///< number of faces of `mesh` that come from the fragment
     /// Share of the fragment's outer area that lies on the fitted template within the tolerance; 0 if the fragment has no outer
     /// area.
-    std::vector<double> lying;
+    std::vector<double> on_template;
     std::vector<double> shared;  ///< share of the fragment's outer area that an earlier fragment covers too
 };
 

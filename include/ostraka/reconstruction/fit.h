@@ -27,10 +27,10 @@ struct NonRigidOptions {
     int steps = 3;       ///< max iterations of matching and solving per level
     /// In the first level, the deformation decreases with this length into the unobserved part; a share of the template's
     /// diagonal.
-    double stay = 0.5;
+    double first_decay_length = 0.5;
     /// In later levels, the deformation decreases with this length into the unobserved part; in multiples of the level's
     /// smoothing length.
-    double fade = 3;
+    double later_decay_lengths = 3;
     double search_radius = 0.1;        ///< max distance of a match in the first level, as a share of the template's diagonal
     double last_search_radius = 0.02;  ///< max distance of a match in the last level, as a share of the template's diagonal
     double angle = 60;                 ///< max angle between the normals of a match, degrees
@@ -42,7 +42,7 @@ struct NonRigidOptions {
     double correspondences = 1;        ///< weight of outlines and landmarks of matched annotations
     bool outlines = true;  ///< true: lines and outlines of matched annotations are matched by the position along the curve
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment registered to the template, with matches of its annotations.
@@ -105,16 +105,16 @@ private:
 /// p_i|^2 + s^4 |Delta x_i - R_i Delta r_i|^2). The terms are the three costs of equation 5.2: distance from the match q_i,
 /// distance from the previous position p_i, and change of the Laplacian of the template r. The areas A_i make the result
 /// independent of the resolution. s is the smoothing length of the level; R_i is the rotation of the neighbourhood of vertex i.
-/// In the first level p is the template and t is `stay` (as a length). In later levels p is the result of the previous level
-/// and t = `fade` s, so that the change made by a level, including the noise at a fragment's border, is confined to the
-/// neighbourhood of the observed surface. The match of a vertex is the closest point with a compatible normal on the fragments'
-/// outer facets, never at a border, within the counterpart of the smallest matched annotation that contains the vertex. With
-/// `sliding` a vertex is attracted to the tangent plane of its match instead of the point; on the common border of two
-/// annotations it is attracted to the common border of their counterparts. The Laplacians are scaled with the observed change
-/// of size around the vertex. If a fragment has the same faces as the template (a deformed copy), each vertex is matched to the
-/// same vertex of the fragment. Levels whose smoothing length is large compared to the edges of a mesh of 4000 vertices are
-/// solved on such a simplified mesh (quadric error simplification); its deformation is then transferred to the template, which
-/// takes up the remaining deformation. `scaled`: the template, scaled to the common scale of the placement.
+/// In the first level p is the template and t is `first_decay_length` (as a length). In later levels p is the result of the
+/// previous level and t = `later_decay_lengths` s, so that the change made by a level, including the noise at a fragment's
+/// border, is confined to the neighbourhood of the observed surface. The match of a vertex is the closest point with a compatible
+/// normal on the fragments' outer facets, never at a border, within the counterpart of the smallest matched annotation that
+/// contains the vertex. With `sliding` a vertex is attracted to the tangent plane of its match instead of the point; on the
+/// common border of two annotations it is attracted to the common border of their counterparts. The Laplacians are scaled with
+/// the observed change of size around the vertex. If a fragment has the same faces as the template (a deformed copy), each vertex
+/// is matched to the same vertex of the fragment. Levels whose smoothing length is large compared to the edges of a mesh of 4000
+/// vertices are solved on such a simplified mesh (quadric error simplification); its deformation is then transferred to the
+/// template, which takes up the remaining deformation. `scaled`: the template, scaled to the common scale of the placement.
 NonRigidFit fit_template(AnnotatedMeshView scaled, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options = {});
 

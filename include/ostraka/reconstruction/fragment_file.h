@@ -17,7 +17,7 @@ struct FragmentFileOptions {
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A fragment that was read, with the source of its data.

@@ -32,7 +32,7 @@ struct PlacementOptions {
     double unit_ratio = 3;
     double collinear = 0.03;  ///< landmarks are collinear if their second principal extent is at most this share of the first
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Distance of one landmark of a placed fragment from the template's landmark.

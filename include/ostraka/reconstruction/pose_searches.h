@@ -39,7 +39,7 @@ public:
 
 private:
     struct StoredSearch {
-        std::string fragment;  ///< name of the fragment, for people who read the file
+        std::string fragment;  ///< name of the fragment, for readers of the file
         PoseSearchResult result;
     };
     struct TemplateSearch;

@@ -32,11 +32,11 @@ struct ReconstructOptions {
     /// Max residual of a fragment's landmarks, as a share of the landmarks' spread; a fragment with a larger residual is
     /// rejected.
     double residual = 0.25;
-    double lying = 50;    ///< min share of a fragment's outer surface that lies on the fitted template, per cent
+    double min_on_template = 50;  ///< min share of a fragment's outer surface that lies on the fitted template, per cent
     double overlap = 20;  ///< max share of a fragment's outer surface that lies where another fragment is observed, per cent
     bool restore = true;  ///< true: deform the unobserved part so that the constraints are satisfied
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Kinds of evidence against a common object, ordered from causes to effects.

@@ -17,7 +17,7 @@ struct SearchOptions {
     Search search = Search::automatic;
     PoseSearchOptions poses;  ///< options of each pose search
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Searches the poses of fragments with fewer than three landmarks (of all fragments, with "always") on the template and writes

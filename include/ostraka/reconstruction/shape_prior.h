@@ -31,7 +31,7 @@ struct PriorOptions {
     double search_radius = 0.1;  ///< max distance of a match, as a share of the template's diagonal
     double angle = 60;           ///< max angle between the normals of a match, degrees
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of `fit_prior`: the most probable shape of the class, given the fragments.

@@ -23,7 +23,7 @@ struct VertexAssignmentOptions {
     /// One-to-one: cost of leaving a vertex without a counterpart, as a share of the sum of the weights.
     double unassigned = 1;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Counterparts of the vertices of a template's part.

@@ -19,7 +19,7 @@ struct AlignOptions {
     int samples = 1000;   ///< number of points on each surface
     int iterations = 60;  ///< max number of iterations
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Precomputed data of a surface for `align`: points evenly spread over the surface, and a search tree for the nearest vertex.
@@ -44,9 +44,9 @@ struct Alignment {
     Motion motion;  ///< maps the first surface onto the second
     /// Root mean square distance of the kept pairs, in both directions, as a share of the mean size of the surfaces.
     double distance = 0;
-    double overlap = 0;    ///< share of the samples of both surfaces that have a pair
-    int iterations = 0;    ///< number of iterations
-    bool settled = false;  ///< true: the iteration converged, that is the last step did not change the motion
+    double overlap = 0;      ///< share of the samples of both surfaces that have a pair
+    int iterations = 0;      ///< number of iterations
+    bool converged = false;  ///< true: the iteration converged, that is the last step did not change the motion
 };
 
 /// Registers surface `a` to surface `b` by trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni

@@ -12,7 +12,7 @@ struct ConsistentOptions {
     double angle = 30;        ///< max angle between the normals of a moved feature and its match, degrees
     double shrinkage = 0;     ///< max relative difference in size between the surfaces; 0: rigid motion
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of `consistent_matches`.

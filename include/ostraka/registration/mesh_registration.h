@@ -18,7 +18,7 @@ struct MeshRegistrationOptions {
     double tolerance = 0;
     int samples = 4000;  ///< number of points on both meshes together for registration, and on each mesh for evaluation
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Whether two meshes show the same object.

@@ -21,7 +21,7 @@ struct SiftOptions {
     /// Further peaks in the histogram of directions yield features if their height is at least this share of the highest peak.
     double second_direction = 0.8;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A salient point with a direction in its tangent plane. A salient point with several directions yields several features.
@@ -60,7 +60,7 @@ struct FeatureMatch {
 };
 struct MatchOptions {
     double ratio = 0.8;  ///< max ratio of the smallest angle between descriptors to the second smallest; 1 accepts every match
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 /// For each feature of `a`, the feature of `b` whose descriptor has the smallest angle with its descriptor, if the match passes
 /// the ratio test.

@@ -19,7 +19,7 @@ struct PartAlignmentOptions {
     int samples = 3000;          ///< number of points of the part, evenly spread, that are registered to the whole
     int iterations = 60;         ///< max number of iterations
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A point of the part and the corresponding point of the whole.
@@ -30,11 +30,11 @@ struct Anchor {
 
 /// Result of `align_part`.
 struct PartAlignment {
-    Motion pose;           ///< rigid motion from the part onto the whole
-    double residual = 0;   ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
-    double overlap = 0;    ///< share of the samples that have a pair
-    int iterations = 0;    ///< number of iterations
-    bool settled = false;  ///< true: the iteration converged, that is the last step did not change the pose
+    Motion pose;             ///< rigid motion from the part onto the whole
+    double residual = 0;     ///< root mean square point-to-plane distance of the kept pairs, in the unit of the coordinates
+    double overlap = 0;      ///< share of the samples that have a pair
+    int iterations = 0;      ///< number of iterations
+    bool converged = false;  ///< true: the iteration converged, that is the last step did not change the pose
 };
 
 /// Registers a part to the whole by trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992),

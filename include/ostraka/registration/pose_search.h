@@ -23,7 +23,7 @@ struct PoseSearchOptions {
     int candidates = 10;          ///< number of poses that are refined on the whole's own faces
     std::uint64_t seed = 1;       ///< random seed
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A pose of the part on the whole.
@@ -53,11 +53,11 @@ struct PoseSearchResult {
     std::vector<PoseCandidate> candidates;  ///< poses, best first, pairwise distinct
     /// Margin of the best pose over the second: logarithm of the ratio of the shares of the part that do not lie on the whole.
     double margin = 0;
-    double confidence = 0;             ///< confidence, 0 to 1, that the best pose is correct up to the motions in `slippable`
-    bool decided = false;              ///< true: the confidence is sufficient
-    std::string reason;                ///< reason why the pose is undecided; empty if it is decided
-    SlippableMotions slippable;        ///< slippable motions of the best pose, on the scaled whole
-    std::vector<SlippableRange> ways;  ///< for each slippable motion, the range in which the part can be moved
+    double confidence = 0;       ///< confidence, 0 to 1, that the best pose is correct up to the motions in `slippable`
+    bool decided = false;        ///< true: the confidence is sufficient
+    std::string reason;          ///< reason why the pose is undecided; empty if it is decided
+    SlippableMotions slippable;  ///< slippable motions of the best pose, on the scaled whole
+    std::vector<SlippableRange> slippable_ranges;  ///< for each slippable motion, the range in which the part can be moved
 };
 
 /// Searches poses of parts on one whole; data of the whole are precomputed.

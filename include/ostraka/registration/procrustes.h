@@ -30,7 +30,7 @@ struct ProcrustesOptions {
     /// True: rotations are about the z axis only, for two-dimensional landmarks (z is 0), which a half turn in space would
     /// mirror.
     bool planar = false;
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The rotation and translation, and with `scaling` the scale, that map `from` to `to` with the least sum of squared distances,

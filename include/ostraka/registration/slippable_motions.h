@@ -38,7 +38,7 @@ struct SlippableMotions {
     };
     /// Samples motions of the group: for each of its independent motions, `steps` motions from -1 to 1 times `radians`
     /// (rotations) or `length` (translations).
-    [[nodiscard]] std::vector<std::vector<Step>> ways(double radians, double length, int steps) const;
+    [[nodiscard]] std::vector<std::vector<Step>> sampled_motions(double radians, double length, int steps) const;
     /// True if a motion belongs to the group, up to a rotation by `angle` and a displacement of the point `around` by `length`.
     [[nodiscard]] bool contains(const Motion& motion, const Eigen::Vector3d& around, double angle, double length) const;
 };

@@ -14,7 +14,7 @@ struct RelationOptions {
     double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
     double ratio = 10;       ///< tolerance of the relative difference of areas, shapes and attribute values, per cent
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 enum class Verdict { holds, fails, unknown };  ///< whether a relationship holds; unknown: cannot be determined

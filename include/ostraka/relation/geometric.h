@@ -18,8 +18,8 @@ public:
     explicit RelationMeter(AnnotatedMeshView object, const RelationOptions& options = {});
     ~RelationMeter();
 
-    /// Measures one relationship of a geometric type except containment, equal selections and adjacency. Tolerances stated in the
-    /// relationship override the tolerances of the options. doc/relations.md describes what each type measures.
+    /// Measures one relationship of any geometric type other than containment, equal selections and adjacency. Tolerances stated
+    /// in the relationship override the tolerances of the options. doc/relations.md describes what each type measures.
     RelationCheck measure(const Relationship& relationship);
 
     /// All geometric relationships that hold between annotations of the set, without the annotation of the whole object;

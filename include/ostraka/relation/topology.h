@@ -26,7 +26,7 @@ struct AdjacentPair {
 };
 
 /// Containment and adjacency of annotations.
-struct Topology {
+struct AnnotationTopology {
     ContainmentOrder order;              ///< containment of the annotations
     std::vector<AdjacentPair> adjacent;  ///< pairs in ascending order of their indices
 };
@@ -34,11 +34,11 @@ struct Topology {
 /// Computes containment and adjacency of the annotations. Faces that belong to the same set of regions are processed together.
 /// Time: O(size of the mesh + faces x depth) for the grouping, plus O(sets x depth x annotations / 64). Throws Error (input)
 /// for more than 30000 annotations.
-Topology topology(AnnotatedMeshView object);
+AnnotationTopology topology(AnnotatedMeshView object);
 
 /// The relationships of a topology: containment (transitive reduction), equal selections, and adjacency with the shared length.
 /// Ids count up from `first_id`. Returns at most `max_per_kind` relationships of containment and as many of adjacency.
-std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
+std::vector<Relationship> relationships_of(const AnnotationTopology& topology, const AnnotationSet& set, int first_id,
                                            std::size_t max_per_kind = std::numeric_limits<std::size_t>::max());
 
 /// An entry of the containment tree. The tree lists annotations below their parents, depth first, with children in the order of

@@ -16,7 +16,7 @@ struct RefineOptions {
     /// Scheme of refinement: determines which edges are split and where the new vertices lie.
     enum class Scheme { midpoint, loop, longest_edge } scheme = Scheme::midpoint;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RefineResult {

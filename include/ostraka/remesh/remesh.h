@@ -14,7 +14,7 @@ struct RemeshOptions {
     /// Edges whose face normals differ by more than this angle (degrees) are preserved as features; 0: no edge is a feature.
     double feature_angle = 0;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 struct RemeshResult {

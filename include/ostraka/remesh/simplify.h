@@ -27,7 +27,7 @@ struct SimplifyOptions {
     bool keep_border = false;
     double seam_drift = 0.001;  ///< max distance of the seams of the texture from where they were, as a share of the diagonal
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Edges and vertices of annotations: outlines and poly-lines as edges, annotated points as vertices.

@@ -46,7 +46,7 @@ struct RenderOptions {
     bool no_legend = false;            ///< true: omit the legend and the colour bar
     std::optional<ColourScale> scale;  ///< colour scale of values, shown as a colour bar beside the picture; empty: no colour bar
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The factor from lengths of the object to lengths on paper: "1:2" is 0.5, "3:1" is 3; 0 for an empty text. Throws Error (usage)

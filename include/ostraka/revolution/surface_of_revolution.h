@@ -22,7 +22,7 @@ struct RevolutionOptions {
     std::uint64_t vertices = 25000;  ///< approximate number of vertices of the template
     AxisOptions axis;                ///< options for estimating the axis of a sherd
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Which data of a sherd the template uses.

@@ -42,7 +42,7 @@ struct SegmentOptions {
     int clusters = 5;         ///< number of thickness levels
     double smoothing = 0.26;  ///< preference for short borders in concave places, 0 to 1
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Segments of similar thickness (Shapira, Shamir and Cohen-Or 2008, as CGAL implements the algorithm). `thickness` has one value

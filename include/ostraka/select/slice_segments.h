@@ -16,11 +16,11 @@ struct SliceSegmentOptions {
     bool size = false;          ///< also use the radius of the circle with the slice's area as a descriptor
     ClusterCountOptions count;  ///< criterion for the number of clusters
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A segment: consecutive slices of one cluster.
-struct SliceSegment {
+struct SliceRun {
     int cluster = 0;           ///< index of the cluster
     double low = 0, high = 0;  ///< heights above the lowest point, in the mesh's unit
     std::size_t slices = 0;    ///< number of slices
@@ -34,7 +34,7 @@ struct SliceSegments {
     std::vector<int> labels;               ///< for each slice, its cluster after short runs were merged and gaps filled
     ClusterCount count;                    ///< value of the criterion for each number of clusters
     int clusters = 0;                      ///< number of clusters: given or proposed, or the smaller number that k-means found
-    std::vector<SliceSegment> segments;    ///< from bottom to top
+    std::vector<SliceRun> segments;        ///< from bottom to top
     /// For each face, index of its segment: the segment of the slice nearest to the face's centroid.
     std::vector<std::int32_t> face_segments;
 };

@@ -21,18 +21,19 @@ struct ConstraintReach {
     /// If the rank equals the number of rows, the cage can realise all values of the rows; a remaining residual is then due to
     /// an edit that contradicts the constraint.
     std::size_t rows = 0, rank = 0;
-    /// Root mean square distance of the rows from their projection onto the constraint, after the edit (`asked`) and after the
-    /// solve over the cage vertices (`left`). Both are given for the group of rows (for example, the shape of one part) with
-    /// the largest distance relative to its tolerance.
-    double asked = 0, left = 0;
-    /// Max value of `left` with which the constraint is satisfied: the relative distance tolerance times the diagonal of the
-    /// group.
+    /// Root mean square distance of the rows from their projection onto the constraint, after the edit (`distance_after_edit`)
+    /// and after the solve over the cage vertices (`remaining_distance`). Both are given for the group of rows (for example, the
+    /// shape of one part) with the largest distance relative to its tolerance.
+    double distance_after_edit = 0, remaining_distance = 0;
+    /// Max value of `remaining_distance` with which the constraint is satisfied: the relative distance tolerance times the
+    /// diagonal of the group.
     double tolerance = 0;
     std::optional<int> lacking;  ///< id of the annotation to which the group belongs; empty: several annotations
     /// Whether the quantities that the constraint prescribes are within their tolerances after the solve.
     Verdict verdict = Verdict::unknown;
     std::vector<Deviation> deviations;  ///< deviations of the quantities that the constraint prescribes, after the solve
-    bool reached = false;  ///< true: the rank equals the number of rows, or the constraint holds and `left` is within `tolerance`
+    bool reached = false;  ///< true: the rank equals the number of rows, or the constraint holds and `remaining_distance` is
+                           ///< within `tolerance`
 };
 
 /// Solves for each constraint of the graph separately, as a hard constraint, over the vertices of the cage, after each step of

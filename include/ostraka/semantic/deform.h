@@ -34,7 +34,7 @@ struct DeformOptions {
     /// constraints. 0: conflicts are not searched.
     int conflicts = 8;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Tolerances for the result of a deformation, which are tighter than the tolerances for relations of scans, since deviations of

@@ -40,7 +40,7 @@ struct EditStep {
     /// A cage vertex is selected if its weight at a selected mesh vertex is at least this threshold: a number, a rule
     /// (influence_threshold), or per_point (only the cage vertices with the largest weight at each mesh vertex). Empty: 0.4, or
     /// a lower threshold if a mesh vertex would have no handle.
-    enum class Rule { auto_mesh, auto_cage, per_point };
+    enum class Rule { cover_mesh, cover_cage, per_point };
     std::optional<std::variant<double, Rule>> threshold = {};
     bool rule_within_selection = false;  ///< true: the rule considers the selected vertices only; false: all vertices of the mesh
     /// Level of the nested cages in which handles are selected (0: the outermost cage); empty: the innermost cage that contains
@@ -103,7 +103,7 @@ struct EditState {
     std::vector<bool> touched;
     std::vector<Index> selected;  ///< indices of the handles selected by this step
     /// For each vertex of the mesh: true if this or an earlier step referred to it by annotation or index.
-    std::vector<bool> named;
+    std::vector<bool> is_referenced;
     bool by_handles = false;  ///< true: this or an earlier step selected vertices of the cage directly
     double threshold = 0;     ///< min influence with which cage vertices were selected; 0 if no threshold was used
 };

@@ -29,7 +29,7 @@ struct MemberFitOptions {
         fit.last_search_radius = 0.05;
     }
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// An object that is not a fragment; it may have no annotations.

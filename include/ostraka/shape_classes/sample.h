@@ -16,7 +16,7 @@ struct SampleOptions {
     double edit = 0.2;  ///< standard deviation of the logarithm of the factor by which a part is stretched (method edits)
     int attempts = 20;  ///< max number of draws per member
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A drawn member.

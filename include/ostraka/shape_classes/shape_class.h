@@ -26,7 +26,7 @@ struct LearnOptions {
     /// At most this share of out-of-class objects is accepted by at least one of the classes that are queried together.
     double accept = 0.05;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The values of one quantity on the members, and the range accepted for other objects.

@@ -11,7 +11,7 @@ struct ModeOptions {
     int maximum = 1000;     ///< max number of modes
     double variance = 1.0;  ///< the first modes are kept that together explain this share of the variance
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Mean shape and modes of variation.

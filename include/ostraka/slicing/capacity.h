@@ -21,7 +21,7 @@ struct CapacityOptions {
     std::optional<double> noise;
     double wall_error = 0;  ///< standard deviation of an offset that the whole inner wall has in common, in the mesh's unit
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A requested level of the liquid.

@@ -14,7 +14,7 @@ struct ClayOptions {
     /// Min wall thickness where the inside is not visible, in the mesh's unit; 0: derived from the visible walls.
     double wall = 0;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Volumes in the cubed unit of the mesh. NaN: unknown.
@@ -39,8 +39,8 @@ struct ClayVolume {
     /// Number of slices whose contours cross, so that areas are undefined; for `maximum` the smaller of the sum of all contours
     /// and of their convex hull is used; for `minimum` the area of such slices is zero.
     int crossing = 0;
-    int turned = 0;         ///< number of slices with contours whose orientation was reversed
-    bool reversed = false;  ///< true: the given mesh was closed and inside out, and its orientation was reversed
+    int reversed_slices = 0;  ///< number of slices with contours whose orientation was reversed
+    bool reversed = false;    ///< true: the given mesh was closed and inside out, and its orientation was reversed
 };
 
 /// Sums the areas of slices, which are the mid-planes of layers of equal height. In a slice whose cavity is visible, the area

@@ -23,7 +23,7 @@ struct Profile {
     std::vector<Edge> edges;  ///< points where the outer profile of a surface of revolution bends by more than 25 degrees
     /// True: the object is a surface of revolution. The criterion: at least half of 24 slices are closed and deviate from their
     /// fitted circle by less than 0.05 of the radius in the mean (relative roundness).
-    bool turned = false;
+    bool is_revolved = false;
     /// Number of the 24 slices whose open contours are longer than their closed contours; the roundness of open contours is
     /// unknown.
     int open = 0;
@@ -43,7 +43,7 @@ struct Profile {
     bool hides = false;
 
     /// The value of `extent` at a height: the maximum of the neighbouring samples; 0 outside the height range.
-    [[nodiscard]] double reach_at(double height) const;
+    [[nodiscard]] double extent_at(double height) const;
 };
 
 /// Profile of a vessel. `axis` has its normal along the object's axis and its origin on the axis. The section is taken at `angle`

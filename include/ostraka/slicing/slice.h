@@ -49,7 +49,7 @@ struct Contour {
     double gap = 0;            ///< distance between the ends of an open contour
     bool crosses = false;      ///< true: a closed contour that intersects another closed contour or itself
     /// True: a closed contour that was reversed because its orientation contradicted its nesting (a wrongly oriented shell).
-    bool turned = false;
+    bool reversed = false;
 };
 
 /// Areas are reliable if intersecting contours affect at most this share of the outer contours' area. Small folds, as in scans,
@@ -72,7 +72,8 @@ struct Completeness {
     double share_at_most = 1;
     /// Number of closed contours that intersect other contours or themselves, because the mesh intersects itself.
     int crossing = 0;
-    int turned = 0;  ///< number of closed contours that were reversed because their orientation contradicted their nesting
+    int reversed_contours =
+        0;  ///< number of closed contours that were reversed because their orientation contradicted their nesting
     /// Upper bound of the error of the area due to intersecting contours, divided by the area of the outer contours.
     double doubtful = 0;
 

@@ -46,7 +46,7 @@ Straightness straightness(const std::vector<Point>& barycentres, const std::vect
 struct ThicknessHomogeneity {
     static constexpr double absent = std::numeric_limits<double>::quiet_NaN();  ///< value of absent results (NaN)
     std::size_t slices = 0;                                                     ///< number of slices that qualify
-    std::size_t beside = 0;  ///< number of slices excluded because they have further contours, as of handles
+    std::size_t beside = 0;  ///< number of slices excluded because they have further contours, for example those of handles
     double mean = absent;    ///< median of the slices' mean wall thickness, in the mesh's unit
     /// Median over the slices of the coefficient of variation (standard deviation / mean) of the thickness around the slice.
     double within = absent;
@@ -67,7 +67,7 @@ struct TubeOptions {
     double similarity = 0.1;  ///< max root mean square distance of a cluster's slices from the centre of the cluster
     std::uint64_t seed = 1;   ///< random seed of the clustering
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The tubular part of an object.

@@ -77,7 +77,7 @@ struct NamedDescriptor {
     const char* unit;  ///< "length", "area", or empty for a dimensionless value
     double value;      ///< NaN: absent
 };
-/// All descriptors of a slice, in the order of the table.
+/// All descriptors of a slice, in the order in which SliceDescriptors declares them.
 std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& descriptors);
 
 /// Computes the descriptors of a slice. Time: linear in the number of segments, except for sorting (hull) and searching

@@ -16,7 +16,7 @@ struct HardOptions {
     /// Max distance of a row of a satisfied hard constraint from its projection, as a share of the diagonal of the points.
     double tolerance = 1e-6;
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of a solve with hard constraints.

@@ -24,7 +24,7 @@ struct SolveOptions {
     double residual = 0;
     int window = 5;  ///< number of previous steps used by Anderson acceleration; 0: no acceleration
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The reason why a solve stopped.

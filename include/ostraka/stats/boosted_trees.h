@@ -24,15 +24,15 @@ struct FeatureTable {
 };
 
 struct BoostOptions {
-    int trees = 150;                      ///< number of trees
-    int depth = 5;                        ///< max number of decisions from root to leaf
-    double rate = 0.1;                    ///< learning rate: factor applied to each tree's output
-    double leaf_weight = 50;              ///< min sum of sample weights in a leaf
-    double ridge = 20;                    ///< L2 regularisation of the leaf values
-    double row_share = 0.5;               ///< share of the samples drawn for each tree, 0 to 1
-    double column_share = 0.4;            ///< share of the features drawn for each tree, 0 to 1
-    std::uint64_t seed = 1;               ///< random seed
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int trees = 150;                         ///< number of trees
+    int depth = 5;                           ///< max number of decisions from root to leaf
+    double rate = 0.1;                       ///< learning rate: factor applied to each tree's output
+    double leaf_weight = 50;                 ///< min sum of sample weights in a leaf
+    double ridge = 20;                       ///< L2 regularisation of the leaf values
+    double row_share = 0.5;                  ///< share of the samples drawn for each tree, 0 to 1
+    double column_share = 0.4;               ///< share of the features drawn for each tree, 0 to 1
+    std::uint64_t seed = 1;                  ///< random seed
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A sum of decision trees that estimates the log odds of the positive class.

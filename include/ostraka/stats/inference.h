@@ -37,10 +37,10 @@ struct Interval {
 std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, double confidence = 0.95);
 
 struct StabilityOptions {
-    int resamples = 100;                  ///< number of resamples
-    double share = 0.8;                   ///< share of the samples in a resample, drawn without replacement
-    std::uint64_t seed = 1;               ///< random seed
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int resamples = 100;                     ///< number of resamples
+    double share = 0.8;                      ///< share of the samples in a resample, drawn without replacement
+    std::uint64_t seed = 1;                  ///< random seed
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Stability of a cluster when subsamples are clustered.

@@ -10,11 +10,11 @@
 namespace ostraka {
 
 struct KMeansOptions {
-    int clusters = 3;                     ///< number of clusters
-    int restarts = 20;                    ///< number of initialisations; the result of lowest cost is kept
-    int iterations = 300;                 ///< max number of iterations per initialisation
-    std::uint64_t seed = 1;               ///< random seed
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int clusters = 3;                        ///< number of clusters
+    int restarts = 20;                       ///< number of initialisations; the result of lowest cost is kept
+    int iterations = 300;                    ///< max number of iterations per initialisation
+    std::uint64_t seed = 1;                  ///< random seed
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Result of k-means clustering.
@@ -50,9 +50,9 @@ struct ClusterCountOptions {
     int max_clusters = 10;  ///< max number of clusters that is tried
     /// Criterion that proposes the number of clusters.
     enum class Criterion { silhouette, gap } criterion = Criterion::silhouette;
-    int references = 50;                  ///< gap statistic: number of reference data sets
-    KMeansOptions k_means = {};           ///< options of k-means; the number of clusters is ignored
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int references = 50;                     ///< gap statistic: number of reference data sets
+    KMeansOptions k_means = {};              ///< options of k-means; the number of clusters is ignored
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Criteria for each number of clusters, and the proposed numbers.

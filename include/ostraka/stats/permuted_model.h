@@ -28,8 +28,8 @@ struct ModelTerm {
 };
 
 /// Reads a model such as "log(size) + species * site": terms are joined by +; a:b is an interaction, a*b stands for a + b + a:b.
-/// Main effects come before interactions, otherwise the order is kept. Throws Error (usage), with the
-/// names of all variables, for a name that is no variable.
+/// Main effects come before interactions, otherwise the order is kept. Throws Error (usage)
+/// for an unknown variable name; the message lists all variables.
 std::vector<ModelTerm> parse_model(const std::string& text, const std::vector<ModelVariable>& variables);
 
 /// The names that a model uses, in the order of the text.
@@ -44,21 +44,21 @@ enum class SumsOfSquares {
 
 struct PermutationOptions {
     SumsOfSquares type = SumsOfSquares::sequential;
-    int permutations = 999;               ///< number of permutations; 0: no tests
-    std::uint64_t seed = 1;               ///< random seed
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int permutations = 999;                  ///< number of permutations; 0: no tests
+    std::uint64_t seed = 1;                  ///< random seed
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A row of an analysis of variance.
 struct AnovaRow {
-    std::string term;            ///< name of the term; "residuals" and "total" at the end
-    int freedom = 0;             ///< degrees of freedom, of samples; not multiplied by the number of coordinates
-    double squares = 0;          ///< sum of squared distances
-    std::optional<double> mean;  ///< squares / freedom
-    double share = 0;            ///< squares / total squares
-    std::optional<double> f;     ///< mean square divided by the mean square of the error term
-    std::optional<double> z, p;  ///< effect size and p-value of the permutation test of F
-    std::string error = {};      ///< name of the error term of F; empty: no F
+    std::string term;                   ///< name of the term; "residuals" and "total" at the end
+    int degrees_of_freedom = 0;         ///< degrees of freedom, of samples; not multiplied by the number of coordinates
+    double sum_of_squares = 0;          ///< sum of squared distances
+    std::optional<double> mean_square;  ///< sum_of_squares / degrees_of_freedom
+    double r_squared = 0;               ///< sum_of_squares / sum of squares of the total
+    std::optional<double> f;            ///< mean square divided by the mean square of the error term
+    std::optional<double> z, p;         ///< effect size and p-value of the permutation test of F
+    std::string error = {};             ///< name of the error term of F; empty: no F
 };
 
 /// An analysis of variance: one row for each term, then residuals and total.

@@ -67,10 +67,10 @@ struct Threshold {
 Threshold best_threshold(const std::vector<double>& values, const std::vector<bool>& truth, Side side = Side::above);
 
 struct CrossValidationOptions {
-    int folds = 10;                       ///< number of folds
-    int repeats = 10;                     ///< number of repeats with other random folds
-    std::uint64_t seed = 1;               ///< random seed
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    int folds = 10;                          ///< number of folds
+    int repeats = 10;                        ///< number of repeats with other random folds
+    std::uint64_t seed = 1;                  ///< random seed
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Scores of a cross-validation.

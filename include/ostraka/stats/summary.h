@@ -31,8 +31,8 @@ double quantile(const std::vector<double>& values, const std::vector<double>& we
 struct Summary {
     std::size_t count = 0;
     double mean = 0, min = 0, max = 0, median = 0;
-    std::optional<double> deviation;  ///< standard deviation with divisor count - 1; empty for a single value
-    std::optional<double> variation;  ///< coefficient of variation, deviation / |mean|; empty if the mean is 0
+    std::optional<double> standard_deviation;        ///< with divisor count - 1; empty for a single value
+    std::optional<double> coefficient_of_variation;  ///< standard_deviation / |mean|; empty if the mean is 0
 };
 
 /// Statistics of a sample. Throws Error (input), naming `where`, if there is no value or a value is not finite.

@@ -17,7 +17,7 @@ struct FragmentOptions {
     bool moved = true;   ///< true: apply a random rigid motion to the fragment
     std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A generated fragment with its ground truth.

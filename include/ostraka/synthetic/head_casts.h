@@ -26,7 +26,7 @@ struct CastOptions {
     std::uint64_t vertices = 10000;  ///< target number of vertices
     std::uint64_t seed = 1;          ///< random seed
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A cast with its random parameters.
@@ -51,7 +51,7 @@ struct MouldPopulationOptions {
     double difference = 1;   ///< variation between the archetypes of the moulds, see ArchetypeOptions
     std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Specification of one head of a population, before it is generated.

@@ -48,7 +48,7 @@ struct ArchetypeOptions {
     double difference = 1;   ///< variation between archetypes; 1: standard deviation of proportions of about 8 %
     std::uint64_t seed = 1;  ///< random seed
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 /// Generates the shape of a random archetype.
 HeadShape head_archetype(const ArchetypeOptions& options);

@@ -15,7 +15,7 @@ struct MakeOptions {
     std::uint64_t seed = 1;  ///< random seed; rotates and shifts the lattice, so that seeds give independent meshes of one object
     double noise = 0;        ///< max displacement of a vertex along its normal, as a share of the mean edge length
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Mesh of a synthetic object with its part labels.

@@ -38,7 +38,7 @@ struct StatuetteParameters {
     std::uint64_t seed = 1;          ///< random seed of wave phases, noise, holes and mesh lattice
     std::uint64_t vertices = 10000;  ///< target number of vertices
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// A named landmark on the surface.
@@ -94,7 +94,7 @@ struct PopulationOptions {
     int holes = 0;              ///< max number of patches that are missing in a scan
     double size_spread = 0.07;  ///< standard deviation of the logarithm of each size
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Parameters of every statuette of a population; the parameters of statuette i do not depend on the number of statuettes.
@@ -116,7 +116,7 @@ struct ProportionedOptions {
     static constexpr std::array<const char*, 4> size_names{"total height", "base diameter", "arm length", "head height"};
     /// True if this size is in fixed proportion to other sizes.
     [[nodiscard]] bool is_fixed(const std::string& size) const;
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Parameters of a population whose sizes have the medians of Table 3.1 of the thesis; the parameters of statuette i do not

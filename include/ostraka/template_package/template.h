@@ -36,7 +36,7 @@ struct TemplateOptions {
     bool allow_outside = false;  ///< true: parts may lie outside the template's folder
     bool force_mesh = false;     ///< true: accept annotations made for another mesh if their indices and edges exist in this mesh
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Reads the JSON file of a template without opening its parts. Throws Error (input) with the file, the JSON pointer and the

@@ -32,7 +32,7 @@ struct AtlasOptions {
     double cone = 40;     ///< largest angle between the normals of a chart and its axis that charts grow to, in degrees
 
     /// Adds every member but `texel` to a list of options.
-    void list_options(OptionList& list);
+    void declare_options(OptionList& list);
 };
 
 /// An atlas of a mesh.

@@ -27,13 +27,13 @@ struct BakeOptions {
     enum class Missing { fill, grey } missing = Missing::fill;  ///< what texels without source show: their neighbourhood, grey
     int gutter = 4;                    ///< width in texels around charts that shows the nearest texel of a chart
     int occlusion_rays = 64;           ///< number of rays per sample
-    double occlusion_distance = 0.25;  ///< length of these rays, as a fraction of the source's box diagonal
+    double occlusion_distance = 0.25;  ///< length of the occlusion rays, as a fraction of the source's box diagonal
     double curvature_scale = 0;        ///< scale of CurvatureOptions
     /// Value shown by white (and its negative by black) for curvature and relief; 0: the absolute value that 99 % of the samples
     /// do not exceed.
     double range = 0;
 
-    void list_options(OptionList& list);  ///< adds every member to a list of options
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// How many samples found the source, and how far away it was.

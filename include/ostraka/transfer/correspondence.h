@@ -20,7 +20,7 @@ struct CorrespondenceOptions {
     enum class Corner { projection, source } vertex = Corner::projection;
     /// Cosine of `max_angle`.
     [[nodiscard]] double min_cosine() const { return std::cos(max_angle * pi / 180); }
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The method by which a corresponding point was found.

@@ -10,11 +10,11 @@
 namespace ostraka {
 
 struct SurvivalOptions {
-    TransferOptions transfer;             ///< options for the transfer to each resolution
-    double ratio = 0.7;                   ///< number of vertices of each resolution relative to the previous one
-    double area_error = 0.25;             ///< a region survives only if its area changes by at most this relative amount
-    std::uint64_t min_vertices = 20;      ///< min number of vertices tried
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    TransferOptions transfer;                ///< options for the transfer to each resolution
+    double ratio = 0.7;                      ///< number of vertices of each resolution relative to the previous one
+    double area_error = 0.25;                ///< a region survives only if its area changes by at most this relative amount
+    std::uint64_t min_vertices = 20;         ///< min number of vertices tried
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// The resolution down to which an annotation survives.

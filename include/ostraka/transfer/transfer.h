@@ -28,10 +28,10 @@ struct TransferOptions {
     /// partition the surface become free, and other annotations keep their representation; kept: all annotations keep their
     /// representation; free: all become free; edges: all become paths of edges of the target.
     enum class Outlines { partitions, kept, free, edges } outlines = Outlines::partitions;
-    bool refine = false;                  ///< true: insert vertices on the target so that outlines are exact
-    bool overlap = true;                  ///< true: measure the overlap with the source region
-    bool force = false;                   ///< true: continue although the meshes differ in size or position
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    bool refine = false;                     ///< true: insert vertices on the target so that outlines are exact
+    bool overlap = true;                     ///< true: measure the overlap with the source region
+    bool force = false;                      ///< true: continue although the meshes differ in size or position
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Outcome of the transfer of an annotation: kept, reduced to a line or point, or lost.

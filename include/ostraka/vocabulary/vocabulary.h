@@ -170,7 +170,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 struct CheckVocabularyOptions {
     bool strict = false;  ///< true: quantities that are not in the vocabulary are defects
 
-    void list_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
+    void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };
 
 /// Checks the tags and attributes of annotations. Defects: a tag that names no concept or several concepts, a qualitative

@@ -39,7 +39,7 @@ JsonValue to_json(const SessionState& state, JsonAllocator& allocator);  ///< JS
 /// A step of a session.
 struct SessionStep {
     std::string name;       ///< name of the step, such as "s012"; for an operation also the name of its folder in "steps"
-    std::string title;      ///< description for people
+    std::string title;      ///< description as text
     std::string operation;  ///< name of the operation; empty for a choice, which writes no file
     Json with, keep;        ///< inputs and options (with), and outputs with their file names (keep), as in study files
     std::map<std::string, std::string> sha256;  ///< SHA-256 of each output, by name

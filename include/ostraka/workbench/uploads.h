@@ -34,7 +34,7 @@ public:
     explicit Uploads(const Path& session, const UploadLimits& limits = {});
 
     /// Announces files that are sent together, and makes their folder. Returns its name, such as "u001". Throws Error (usage) for
-    /// names that are no plain relative paths or are given twice; Error (input) if the files are too many or too large; Error
+    /// names that are not plain relative paths or are given twice; Error (input) if the files are too many or too large; Error
     /// (failure) if the disk has not enough space.
     std::string announce(const std::vector<AnnouncedFile>& files);
 

@@ -29,7 +29,7 @@ std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<
 
 /// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: returns the path to
 /// write for a file name. Returns the names of the files written.
-std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
-                                         const std::function<Path(const std::string&)>& write);
+std::vector<std::string> write_study_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
+                                            const std::function<Path(const std::string&)>& write);
 
 }  // namespace ostraka

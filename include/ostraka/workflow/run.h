@@ -9,8 +9,8 @@ namespace ostraka {
 struct RunStudyOptions {
     /// Names of the steps to run; the steps on which they depend are run too. Empty: all steps.
     std::vector<std::string> only = {};
-    bool dry_run = false;  ///< true: report what would run, without running it
-    bool again = false;    ///< true: run all instances, ignoring the results of previous runs
+    bool dry_run = false;    ///< true: report what would run, without running it
+    bool rerun_all = false;  ///< true: run all instances, ignoring the results of previous runs
     /// Shard to run: a share of the final instances (those that no other instance needs), with their dependencies.
     Share share = {};
     Path program_folder = {};  ///< folder of the programs

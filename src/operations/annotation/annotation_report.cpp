@@ -32,7 +32,7 @@ void declare_annotations(ReportLayout& layout) {
     layout.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"), integer("elements", "elements"),
                  integer("patches", "patches"), integer("outlines", "outlines"), number("area", "area", "length^2"),
                  number("perimeter", "", "length"), number("length", "", "length"),
-                 people("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
+                 text_only("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
 }
 
 void report_annotations(Context& context, Report& report, AnnotatedMeshView object) {

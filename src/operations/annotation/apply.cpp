@@ -25,19 +25,19 @@ struct AnnotationApply final : Operation {
         p.order({"mesh", "recipe", "output"});
         p.order({"mesh", "output"});
         p.options("from-ply-labels", mesh_labels, "use the labels of the mesh file itself instead of a recipe or label file");
-        p.options(
-            "from", source,
-            "source of the labels in the mesh file: label (the property of this name, or the only one that speaks of labels), "
-            "values:NAME (whole numbers of a property, such as a scalar field of CloudCompare), group or object (OBJ), "
-            "material, colour (of the faces, or else of the vertices)",
-            Words{label_sources(), "values:NAME", {}});
+        p.options("from", source,
+                  "source of the labels in the mesh file: label (the property of this name, or the only one whose name suggests "
+                  "labels), "
+                  "values:NAME (whole numbers of a property, such as a scalar field of CloudCompare), group or object (OBJ), "
+                  "material, colour (of the faces, or else of the vertices)",
+                  Words{label_sources(), "values:NAME", {}});
         p.input_option("names", Kind::text, names,
                        "JSON file with the names of the labels, such as {\"0\": \"seat\", \"1\": \"back\"}; other labels are "
                        "named 'part N'");
         p.input_option("edit", Kind::annotations, edited, "existing annotations, to which the steps of the recipe apply");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) in which all tags and attributes must be defined");
-        words.list_options(p.options);
+        words.declare_options(p.options);
         pictures.declare(p);
         declare_annotations(p.report);
     }

@@ -15,10 +15,10 @@ struct AnnotationCheck final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
-        reading.list_options(p.options);
+        reading.declare_options(p.options);
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) in which all tags and attributes must be defined");
-        words.list_options(p.options);
+        words.declare_options(p.options);
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("graph", Kind::graph, graph,
                        "relationships to which the rules refer (.graph.json); if left out, containment and adjacency are "

@@ -17,7 +17,7 @@ struct AnnotationCreases final : Operation {
         p.options("of", of, "ridges and hollows of the shape, or edges of what is painted (colour)", Choices{"shape", "colour"});
         p.options("regions", regions, "write the creases as regions instead of lines");
         p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options.group("With --of colour");
         p.options("contrast", edges.contrast, "difference of the colours of both sides (CIELAB) that each line exceeds somewhere",
                   Range{0.1, 200});
@@ -57,7 +57,7 @@ struct AnnotationCreases final : Operation {
         report.line(
             fmt::format("strength: mean response of the crease filter along the line, in robust standard deviations of its "
                         "response over the surface (--weak {}, --strong {})",
-                        number(options.weak), number(options.strong)));
+                        number(options.lower_threshold), number(options.upper_threshold)));
         output.write(std::move(set), surface, mesh.file());
     }
 

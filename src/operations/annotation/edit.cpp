@@ -41,7 +41,7 @@ std::array<int, 3> named_colour(const std::string& text) {
 
 struct AnnotationEditing final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.input_option("edits", Kind::edit, edits_file, "list of edits (JSON, doc/schema/annotation-edits.schema.json)");
         p.options("annotation", annotation, "annotation to edit: its id, or its tag if no other annotation has the same tag");

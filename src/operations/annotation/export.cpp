@@ -12,10 +12,10 @@ namespace {
 
 struct AnnotationExport final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.output("output", Kind::text, output, "file to write, in the format of another tool");
-        describe_format(p, format);
-        options.list_options(p.options);
+        declare_format(p, format);
+        options.declare_options(p.options);
         p.report.values(text("format"), integer("annotations"), integer("bytes"), text("sha256"));
     }
 

@@ -22,7 +22,7 @@ struct AnnotationFacets final : Operation {
                         "file to write (.npy, or text): for each face, its probability of being fracture surface, computed from "
                         "the features of the face alone");
         p.options("unit", unit, "unit of the mesh's coordinates for a new file, e.g. mm");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
         p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),
                        number("confidence", "confidence"));

@@ -74,7 +74,7 @@ struct AnnotationFind final : Operation {
             "vocabulary", Kind::vocabulary, vocabulary,
             "vocabulary (.vocabulary.json, .ttl, .rdf): a word of the query also finds its translations and narrower concepts");
         p.report.values(text("query"), integer("objects"), integer("annotated"), integer("found"));
-        p.report.table("matches", text("object", "object"), text("mesh"), any("annotations"), people("annotations"));
+        p.report.table("matches", text("object", "object"), text("mesh"), any("annotations"), text_only("annotations"));
         p.report.table("failed", text("name"), text("problem"));
     }
 

@@ -19,12 +19,12 @@ struct AnnotationImport final : Operation {
                 "file to read, in the format of another tool; also a copy of the mesh with labels, such as scalar fields of "
                 "CloudCompare (.ply, .obj), or an array of labels (.npy)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        describe_format(p, format);
+        declare_format(p, format);
         p.input_option("onto", Kind::annotations, onto,
                        "annotations to which the annotations or attributes in the file are added");
         p.options("from", source, "source of the labels in a copy of the mesh (see annotation apply)",
                   Words{label_sources(), "values:NAME", {}});
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),
                        number("toSurface", "to surface", "length"), number("toVertex", "to vertex", "length"));

@@ -9,7 +9,7 @@ namespace {
 
 struct AnnotationInfer final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.input("vocabulary", Kind::vocabulary, vocabulary, "vocabulary with rules (.vocabulary.json, .ttl, .rdf)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.report.table("inferred", integer("annotation", "id"), text("tag", "tag"), text("attribute", "attribute"),

@@ -8,7 +8,7 @@
 namespace ostraka {
 
 /// Declares --format.
-inline void describe_format(Parameters& p, std::optional<std::string>& format) {
+inline void declare_format(Parameters& p, std::optional<std::string>& format) {
     p.options("format", format, "format of the file; needed if the file's extension does not determine the format",
               Choices(interchange_formats()));
 }

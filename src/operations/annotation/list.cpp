@@ -8,7 +8,7 @@ namespace {
 
 struct AnnotationList final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         declare_annotations(p.report);
     }
 

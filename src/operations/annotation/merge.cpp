@@ -18,7 +18,7 @@ struct AnnotationMerge final : Operation {
         p.input("ours", Kind::annotations, ours, "first changed set of annotations (.ant.json)");
         p.input("theirs", Kind::annotations, theirs, "second changed set of annotations (.ant.json)");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(boolean("merged"), integer("annotations"));
         p.report.table("conflicts", integer("id", "id"), text("tag", "tag"), text("field", "conflict"), text("base", "base"),
                        text("ours", "ours"), text("theirs", "theirs"));
@@ -27,7 +27,7 @@ struct AnnotationMerge final : Operation {
     void run(Context&, Report& report) override {
         const Mesh& surface = mesh->mesh;
         const MergedAnnotations merged = merge_annotations(base.on(surface), ours.on(surface), theirs.on(surface), options);
-        const bool resolved = merged.settled(options);
+        const bool resolved = merged.is_resolved(options);
         report.notes(merged.notes);
         report("merged", resolved)("annotations", merged.set.annotations.size());
         report.empty_table("conflicts", false);

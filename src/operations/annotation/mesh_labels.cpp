@@ -67,23 +67,23 @@ MeshLabels named_values(const MeshFile& file, const std::string& name, const std
                names.empty() ? "it has no values of vertices or faces at all" : "it has " + joined(names));
 }
 
-/// The label property, or the only property of whole numbers with a name that speaks of labels.
+/// The label property, or the only property of whole numbers whose name suggests labels.
 MeshLabels usual_labels(const MeshFile& file, const std::string& where) {
     if (!file.extras.face_labels.empty()) return {file.extras.face_labels, {}, ""};
     if (!file.extras.vertex_labels.empty()) return {face_labels_from_vertices(file.mesh, file.extras.vertex_labels), {}, ""};
-    std::vector<Column> speaking;
+    std::vector<Column> candidates;
     for (const Column& column : columns_of(file)) {
         const std::string name = lower_case(column.values->name);
         static constexpr const char* words[]{"label", "segment", "class", "cluster", "part"};
-        const bool speaks = std::any_of(std::begin(words), std::end(words),
-                                        [&](const char* word) { return name.find(word) != std::string::npos; });
-        if (speaks && whole_numbers(column.values->values)) speaking.push_back(column);
+        const bool suggests_labels = std::any_of(std::begin(words), std::end(words),
+                                                 [&](const char* word) { return name.find(word) != std::string::npos; });
+        if (suggests_labels && whole_numbers(column.values->values)) candidates.push_back(column);
     }
-    if (speaking.size() == 1) return from_column(file, speaking.front(), where);
+    if (candidates.size() == 1) return from_column(file, candidates.front(), where);
     const auto name_of_column = [](const Column& column) { return "values:" + printable(column.values->name, 60); };
-    if (!speaking.empty())
-        fail_input(where, fmt::format("has {} properties of labels", speaking.size()),
-                   fmt::format("name one with --from: {}", joined(speaking, ", ", name_of_column)));
+    if (!candidates.empty())
+        fail_input(where, fmt::format("has {} properties of labels", candidates.size()),
+                   fmt::format("name one with --from: {}", joined(candidates, ", ", name_of_column)));
     const auto columns = columns_of(file);
     fail_input(
         where, "has no labels",

@@ -19,7 +19,7 @@ const std::vector<std::string>& label_sources();
 
 /// Labels of the faces of a mesh file. `source`: "label" (the label property), "group", "object" (of an OBJ file), "material",
 /// "colour" (one label per colour of the faces, or else of the vertices), "values:NAME" (whole numbers of a property), or empty:
-/// the label property, or else the only property of whole numbers whose name speaks of labels, segments, classes, clusters or
+/// the label property, or else the only property of whole numbers whose name suggests labels, segments, classes, clusters or
 /// parts. Labels of vertices become those of faces by majority. `path`: the file; empty for an object in memory. Throws Error
 /// (input), naming `where`, if there are none.
 MeshLabels labels_from(const MeshFile& file, const Path& path, const std::string& source, const std::string& where);

@@ -25,7 +25,7 @@ struct AnnotationRemap final : Operation {
         p.input_option("face-map", Kind::index_map, face_map,
                        "index map (JSON): for each face before the change, its index afterwards; without this map, faces are "
                        "mapped by their corners");
-        reading.list_options(p.options);
+        reading.declare_options(p.options);
         pictures.declare(p);
         declare_annotations(p.report);
         p.report.values(integer("labels", "labels written"));

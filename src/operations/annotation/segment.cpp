@@ -16,8 +16,8 @@ struct AnnotationSegment final : Operation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.output_option("labels-out", Kind::labels, labels_out,
                         "label file to write: for each face, the number of its segment, one number per line");
-        options.list_options(p.options);
-        thickness_options.list_options(p.options);
+        options.declare_options(p.options);
+        thickness_options.declare_options(p.options);
         p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),
                        number("area", "area", "length^2"));
     }

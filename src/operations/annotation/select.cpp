@@ -21,15 +21,16 @@ struct AnnotationSelect final : Operation {
         p.output_option("recipe", Kind::recipe, recipe,
                         "write the recipe to this file, and leave the recipe of --record unchanged")
             .updates(record);
-        step.list_options(p.options);
+        step.declare_options(p.options);
         p.options.group("New file");
         p.options("class", object_class, "class of the object (any text), stored in a new file");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm), stored in a new file");
 
         p.report.values(integer("id"), text("action"), text("tag"), text("type"), integer("elements"), integer("patches"),
                         number("area", "", "length^2"), number("length", "", "length"));
-        p.report.table("", people("id"), people("tag"), people("type"), people("elements"), people("patches"),
-                       people("area", FieldType::number, "length^2"), people("perimeter / length", FieldType::number, "length"));
+        p.report.table("", text_only("id"), text_only("tag"), text_only("type"), text_only("elements"), text_only("patches"),
+                       text_only("area", FieldType::number, "length^2"),
+                       text_only("perimeter / length", FieldType::number, "length"));
     }
 
     void check() const override { static_cast<void>(step.step({})); }

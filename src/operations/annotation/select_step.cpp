@@ -31,7 +31,7 @@ void check_threshold(const std::string& of) {
 
 }  // namespace
 
-void SelectStep::list_options(OptionList& list) {
+void SelectStep::declare_options(OptionList& list) {
     list("expression", expression, "selection as a JSON expression, in the syntax of recipes").positional();
     list.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
     list("all", all, "the whole mesh");

@@ -32,7 +32,7 @@ struct SelectStep {
     std::vector<int> colour;
     std::optional<int> id;
 
-    void list_options(OptionList& list);
+    void declare_options(OptionList& list);
     /// Returns the step to apply to this set. Throws Error (usage) if the options do not specify a valid step.
     [[nodiscard]] Json step(const AnnotationSet& set) const;
 };

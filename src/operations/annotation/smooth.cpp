@@ -15,7 +15,7 @@ struct AnnotationSmooth final : Operation {
         p.output("output", Kind::annotations, output,
                  "annotations to write (.ant.json), with outlines through the faces of the mesh");
         p.options("annotation", names, "ids or tags of the annotations to smooth; all annotations if left out").words();
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), number("length_before", "length before", "length"),
                        number("length_after", "after", "length"), number("area_before", "area before", "length^2"),
                        number("area_after", "after", "length^2"), number("moved", "moved", "length"), text("note", "note"));

@@ -11,7 +11,7 @@ struct AnnotationSurvival final : Operation {
     void declare(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "annotated mesh");
         p.input("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.table("annotations", integer("id", "id"), text("tag", "tag"), integer("vertices", "smallest number of vertices"),
                        text("end", "and below"));
     }

@@ -52,24 +52,24 @@ struct AnnotationTransfer final : Operation {
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target mesh with the inserted vertices");
         p.output_option("map", Kind::index_map, map,
                         "with --refine: JSON file to write: for each new face, the index of the old face");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options("register", registers, "first register the source onto the target; the two meshes may differ in unit and pose",
                   Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));
         Baking::declare_report(p.report);
         for (const char* direction : {"annotations", "back"})
-            p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
-                           text("outcome"), text("note"), number("sourceArea", "", "length^2"),
-                           number("targetArea", "", "length^2"), number("sourcePerimeter", "", "length"),
-                           number("targetPerimeter", "", "length"), number("distortion.A", "A %"), number("distortion.P", "P %"),
-                           number("distortion.P/A", "P/A %"), number("distortion.A/P", "A/P %"), number("distortion.C", "C %"),
-                           number("distortion.average", "mean %"), number("sourceLength", "", "length"),
-                           number("targetLength", "", "length"), number("hausdorff", "Hausdorff"), number("overlap", "overlap"),
-                           number("wrongSide"), people("by ray"), integer("correspondence.vertices"),
-                           integer("correspondence.byRay"), integer("correspondence.byClosestPoint"),
-                           integer("correspondence.withoutPlace"), integer("correspondence.relocated"),
-                           integer("correspondence.detours"), boolean("crossingsResolved"), boolean("voted"), people("remarks"));
+            p.report.table(
+                direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
+                text("outcome"), text("note"), number("sourceArea", "", "length^2"), number("targetArea", "", "length^2"),
+                number("sourcePerimeter", "", "length"), number("targetPerimeter", "", "length"), number("distortion.A", "A %"),
+                number("distortion.P", "P %"), number("distortion.P/A", "P/A %"), number("distortion.A/P", "A/P %"),
+                number("distortion.C", "C %"), number("distortion.average", "mean %"), number("sourceLength", "", "length"),
+                number("targetLength", "", "length"), number("hausdorff", "Hausdorff"), number("overlap", "overlap"),
+                number("wrongSide"), text_only("by ray"), integer("correspondence.vertices"), integer("correspondence.byRay"),
+                integer("correspondence.byClosestPoint"), integer("correspondence.withoutPlace"),
+                integer("correspondence.relocated"), integer("correspondence.detours"), boolean("crossingsResolved"),
+                boolean("voted"), text_only("remarks"));
     }
 
     void check() const override {

@@ -61,7 +61,7 @@ struct CageInfluence final : Operation {
             quantity =
                 fmt::format("{} on '{}'", by == InfluenceMeasure::max ? "largest weight" : "sum of the weights", chosen.tag);
         } else {
-            for (const Index count : carriers(coordinates.vertex)) values.push_back(count);
+            for (const Index count : dominant_weight_counts(coordinates.vertex)) values.push_back(count);
             quantity = "cage vertices that carry 95 %";
         }
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -90,7 +90,7 @@ struct CageInfluence final : Operation {
             texts.push_back(std::to_string(v));
         }
         report(threshold ? "above" : "strongest", chosen);
-        report.people(threshold ? "cage vertices above" : "strongest cage vertices", texts.empty() ? "none" : joined(texts));
+        report.text_only(threshold ? "cage vertices above" : "strongest cage vertices", texts.empty() ? "none" : joined(texts));
     }
 
     MeshInput mesh, cage;

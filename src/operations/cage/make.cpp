@@ -31,7 +31,7 @@ struct CageMake final : Operation {
                        "parts the cage is denser and closer to the mesh, with up to twice the vertices (exit code 3: a "
                        "constraint cannot be satisfied)");
         vocabulary.declare(p, "used to match tags of annotations with --parts");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options("levels", levels, "numbers of vertices, separated by commas, of nested cages, written as output-NUMBER",
                   Range{4, 1000000});
         p.options("together", one_file,
@@ -239,7 +239,8 @@ struct CageMake final : Operation {
                 if (annotation.tag == name || std::to_string(annotation.id) == name)
                     density_factors.emplace_back(annotation.id, factor[0]);
             if (density_factors.size() == before)
-                fail_usage(fmt::format("--detail names '{}', which is no annotation", printable(name, 60)), "use an id or a tag");
+                fail_usage(fmt::format("--detail names '{}', which is not an annotation", printable(name, 60)),
+                           "use an id or a tag");
         }
         return density_factors;
     }

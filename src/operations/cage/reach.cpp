@@ -17,8 +17,8 @@ void report_reach(Report& report, const std::vector<ConstraintReach>& reaches, c
         for (const int id : reach.annotations) parts.push_back(set.find(id)->tag);
         const Annotation* lacking = reach.lacking ? set.find(*reach.lacking) : nullptr;
         report.row("reach")("id", reach.id)("type", reach.type)("parts", parts)("rows", reach.rows)("rank", reach.rank)(
-            "asked", reach.asked)("left", reach.left)("tolerance", reach.tolerance)("lacking", lacking ? lacking->tag : "")(
-            "verdict", to_string(reach.verdict))("reached", reach.reached);
+            "asked", reach.distance_after_edit)("left", reach.remaining_distance)("tolerance", reach.tolerance)(
+            "lacking", lacking ? lacking->tag : "")("verdict", to_string(reach.verdict))("reached", reach.reached);
     }
 }
 

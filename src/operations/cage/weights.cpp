@@ -20,13 +20,13 @@ struct CageCoordinates final : Operation {
                   "kind of coordinates: mean-value; local, harmonic or positive-mean-value (inside the cage; never negative); "
                   "green (strictly inside; not for constraints)",
                   Choices(coordinate_kinds()));
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
                         integer("cageFaces", "cage faces"), any("certificate"),
                         number("storedShare", "", "fraction of all weights"),
                         number("amplification", "", "multiples of the motion of the cage"), integer("outside"),
                         integer("crossed"), integer("cageIntersections"), texts("objections"), boolean("holds", "verdict"));
-        p.report.people_table("", {"property", "value", "meaning"});
+        p.report.text_table("", {"property", "value", "meaning"});
     }
 
     void run(Context&, Report& report) override {
@@ -64,7 +64,7 @@ struct CageCoordinates final : Operation {
         row("points with one", percent(c.negative_rows), "of all");
         row("min, max", fmt::format("{}, {}", number(c.minimum), number(c.maximum)), "weight");
         row("negative sum", number(c.negative_sum), "largest of a point");
-        row("locality", fmt::format("{} mean, {} max", number(c.carriers_mean, 4), c.carriers_max),
+        row("locality", fmt::format("{} mean, {} max", number(c.dominant_weights_mean, 4), c.dominant_weights_max),
             "weights that carry 95 % at a point");
         if (coordinates.is_sparse()) row("stored", percent(coordinates.stored_share()), "of the weights; the others are zero");
         std::vector<std::string> phases;

@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-void Conformance::describe_kit(Parameters& p) {
+void Conformance::declare_kit(Parameters& p) {
     p.input_option("kit", Kind::folder, kit, "folder of the conformance kit (conformance.json); by default the installed kit");
     p.options("only", only, "names of the operations or cases to run; if left out, all are run").words();
     p.output_option("junit", Kind::report, junit, "write the results as JUnit XML");

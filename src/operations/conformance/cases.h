@@ -9,7 +9,7 @@ namespace ostraka {
 
 /// Base of the operations that run the cases of a kit: the kit, the selection of cases, and the report.
 struct Conformance : Operation {
-    void describe_kit(Parameters& p);
+    void declare_kit(Parameters& p);
     /// Reads the kit, and keeps the selected cases.
     [[nodiscard]] ConformanceKit read() const;
     /// Runs the cases, after recording them if `record`, and reports the results; `name`: the program, in the JUnit XML.

@@ -13,7 +13,7 @@ struct ConformanceRun final : Conformance {
     void declare(Parameters& p) override {
         p.options("command", command, "program to test and its first arguments, after --").positional().words();
         p.options("lines", lines, "start the program once, and send it each case as a line of JSON (doc/conformance.md)");
-        describe_kit(p);
+        declare_kit(p);
     }
 
     void check() const override {

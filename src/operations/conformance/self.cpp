@@ -13,7 +13,7 @@ struct ConformanceSelf final : Conformance {
     void declare(Parameters& p) override {
         p.options("record", record, "record the output of this command as the expected output, after a change of the kit")
             .unrecorded();
-        describe_kit(p);
+        declare_kit(p);
     }
 
     void run(Context&, Report& report) override {

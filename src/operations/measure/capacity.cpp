@@ -67,7 +67,7 @@ struct MeasureCapacity final : Operation {
                   "level of the liquid as a share of the height from the lowest point of the cavity to its overflow; repeatable",
                   Range{0, 1});
         p.options("unit", unit, "unit of the coordinates, such as mm; by default the unit of the annotations");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         up_error = p.options.find("up-error");
         declare_report(p.report);
     }

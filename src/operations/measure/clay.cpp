@@ -19,7 +19,7 @@ struct MeasureClay final : Operation {
             .optional();
         up.declare(p, "direction perpendicular to the slices; by default the upward direction of the annotations, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates, such as mm; by default the unit of the annotations");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         for (const Figure& figure : attribute_values({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));
     }
@@ -39,7 +39,7 @@ struct MeasureClay final : Operation {
         for (const Figure& figure : attribute_values(clay)) {
             const bool is_known = !std::isnan(figure.value);
             report(figure.name, is_known ? JsonValue(figure.value) : JsonValue());
-            report.people(figure.name, is_known ? number(figure.value) + unit_text(figure.unit) : "unknown");
+            report.text_only(figure.name, is_known ? number(figure.value) + unit_text(figure.unit) : "unknown");
         }
         report("unit", length_unit)("volume of the mesh", mesh_volume);
         report.line(sentence(clay, mesh_volume));
@@ -70,7 +70,7 @@ struct MeasureClay final : Operation {
                 {"slices with a cavity seen", double(clay.with_cavity), ""},
                 {"slices without an outline", double(clay.without_outline), ""},
                 {"slices whose contours cross", double(clay.crossing), ""},
-                {"slices read against their orientation", double(clay.reversed ? clay.slices : clay.turned), ""}};
+                {"slices read against their orientation", double(clay.reversed ? clay.slices : clay.reversed_slices), ""}};
     }
 
     [[nodiscard]] std::string unit_text(const std::string& measured_unit) const {
@@ -107,7 +107,7 @@ struct MeasureClay final : Operation {
         note_slices(clay.crossing,
                     "contours that cross, since parts of the mesh pass through each other: the maximum may count them twice, the "
                     "minimum does not count them (ostraka mesh repair --wrap makes one surface of them)");
-        note_slices(clay.turned,
+        note_slices(clay.reversed_slices,
                     "contours whose orientation contradicts their nesting, such as a cavity that is oriented outwards: their "
                     "nesting is used");
         if (clay.reversed) report.note("the mesh is inside out: its orientation is reversed (ostraka mesh repair corrects it)");

@@ -19,11 +19,11 @@ struct MeasureDescribe final : Operation {
             .many()
             .named();
         p.options("annotation", chosen, "id or tag of an annotation to describe; repeatable; all annotations if left out");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options("colours", colours,
                   "describe the colours of regions too: mean and spread in CIELAB, mean as sRGB, range of the lightness");
         p.report.table("annotations", integer("id"), text("tag"), any("quantities"));
-        p.report.people_table("", {"id", "tag", "quantity", "value", "unit"});
+        p.report.text_table("", {"id", "tag", "quantity", "value", "unit"});
     }
 
     void run(Context&, Report& report) override {
@@ -36,7 +36,7 @@ struct MeasureDescribe final : Operation {
         if (!object.annotations && chosen.empty())
             report.note("the whole object is described; --annotations FILE describes its parts");
         DescriptorSearch search(mesh, options);
-        search.expect(set);
+        search.prepare(set);
         report.empty_table("annotations");
         report.empty_table("");
         for (Annotation* annotation : selected(set)) {

@@ -44,8 +44,8 @@ struct MeasureMap final : Operation {
         p.options("annotation", annotation,
                   "id or tag of the annotation that gets the new attribute; the whole object if left out");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm), if the annotations do not state a unit");
-        options.curvature_options.list_options(p.options);
-        options.thickness_options.list_options(p.options);
+        options.curvature_options.declare_options(p.options);
+        options.thickness_options.declare_options(p.options);
         quantity_option = p.options.find("of");
         p.report.values(integer("values"), integer("without"));
         for (const char* figure : {"min", "5 %", "median", "mean", "95 %", "max"}) p.report.values(number(figure, figure));
@@ -84,7 +84,7 @@ struct MeasureMap final : Operation {
             fail_input(mesh.file(), fmt::format("has no {} anywhere", quantity_option->text()),
                        "check whether it is empty, or open on the side that the rays go to");
         const Statistics s = statistics(finite, std::vector<double>(finite.size(), 1), quantity_option->text());
-        report.people(quantity_option->text(), fmt::format("{} of {} values", finite.size(), values.size()));
+        report.text_only(quantity_option->text(), fmt::format("{} of {} values", finite.size(), values.size()));
         report("values", values.size())("without", values.size() - finite.size())("min", s.min)("5 %", s.percentile_5)(
             "median", s.median)("mean", s.mean)("95 %", s.percentile_95)("max", s.max);
         if (attribute) write_attribute(values, report);

@@ -14,8 +14,9 @@ struct MeasureRefresh final : Operation {
         annotations.help = "annotations of the mesh (.ant.json)";
         p.options("merge-pickings", merge, "merge measures with the same name into one measure with repeated pickings");
         for (const char* count : {"computed", "stale", "merged"}) p.report.values(integer(count));
-        p.report.table("measures", integer("annotation", "id"), people("tag"), text("name", "measure"), number("value", "value"),
-                       number("uncertainty", "uncertainty"), people("unit"), integer("pickings", "pickings"));
+        p.report.table("measures", integer("annotation", "id"), text_only("tag"), text("name", "measure"),
+                       number("value", "value"), number("uncertainty", "uncertainty"), text_only("unit"),
+                       integer("pickings", "pickings"));
     }
 
     void run(Context&, Report& report) override {

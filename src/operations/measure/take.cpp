@@ -26,7 +26,8 @@ struct MeasureTake final : Operation {
                   Range{0, largest_index});
         p.options("at", pin_positions, "pin as a point x,y,z, of which the nearest vertex is used; given once per pin");
         p.options("direction", direction,
-                  "direction of a bounding measure; without pins the whole annotation is measured along this direction",
+                  "direction of the extent that --tool bounding measures: of the points of --points or --at, without them of the "
+                  "whole annotation",
                   direction_words("--direction"));
         p.options("geodesic", geodesic, "course of a tape: along edges, or the exact shortest curve over the faces (exact)",
                   Choices{"edges", "exact"});

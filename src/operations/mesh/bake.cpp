@@ -18,9 +18,9 @@ struct MeshBake final : Operation {
         p.options("to", to, "destination of the colours: an image, or the vertices", Choices{"image", "vertices"});
         p.options("layout", layout, "texture coordinates of the image: a new atlas, or the target's own", Choices{"new", "own"});
         baking.list_texel(p.options);
-        baking.bake.list_options(p.options);
+        baking.bake.declare_options(p.options);
         p.options.group("Image");
-        baking.atlas.list_options(p.options);
+        baking.atlas.declare_options(p.options);
         p.options("format", baking.images.format, "format of the image", Choices{"png", "jpeg", "webp"});
         p.options("quality", baking.images.quality, "quality of JPEG and WebP", Range{1, 100});
         Baking::declare_report(p.report);

@@ -25,7 +25,7 @@ struct MeshBreak final : Operation {
                         "annotations of the fragment to write (.ant.json)");
         p.output_option("pose-out", Kind::pose, pose_out,
                         "JSON file to write: 4 x 4 matrix that moves the fragment back to its position on the object");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options("at", at, "centre of the fragment: coordinates x,y,z, or the tag of an annotation").required();
         p.report.values(integer("vertices"), integer("faces"), any("pose"));
     }

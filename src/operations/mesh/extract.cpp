@@ -14,7 +14,7 @@ namespace {
 
 struct MeshExtract final : AnnotatedMeshOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.output("output", Kind::mesh, output, "mesh of the part to write");
         p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
         vocabulary.declare(p, "used to match tags of annotations with --annotation and --without");

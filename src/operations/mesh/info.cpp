@@ -25,7 +25,7 @@ std::size_t count_degenerate(const PolygonSoup& soup) {
 struct MeshInfo final : Operation {
     void declare(Parameters& p) override {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         declare_diagnosis(p.report);
         p.report.values(integer("polygons"), integer("degenerate_polygons"), texts("holds"), number("crack_width"));
     }
@@ -55,7 +55,7 @@ struct MeshInfo final : Operation {
         rows.insert(rows.begin() + 2, {{"polygons", std::to_string(polygon_count)},
                                        {"polygons with fewer than three corners", std::to_string(degenerate)}});
         rows.insert(rows.end() - 1, {"holds", extras.empty() ? "nothing but the geometry" : joined(extras)});
-        for (const auto& [quantity, value] : rows) report.people(quantity, value);
+        for (const auto& [quantity, value] : rows) report.text_only(quantity, value);
         if (diagnosis.border_edges > 0) note_cracks(triangles.soup, diagnosis, report);
         if (!sound) report.answer_no();
     }

@@ -20,15 +20,15 @@ struct MeshMake final : Operation {
         p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one per line");
         p.order({"object", "output"});
         p.options("list", list_objects, "list the objects with their parts and labels, and make no mesh").unrecorded();
-        options.list_options(p.options);
+        options.declare_options(p.options);
 
         p.report.values(text("object"), text("class"), text("unit"), integer("vertices"), integer("faces"), integer("genus"),
                         number("area", "", "length^2"), number("meanEdgeLength", "", "length"));
         p.report.table("parts", integer("label", "label"), text("name", "part"), integer("faces", "faces"), integer("vertices"),
-                       number("area", "area", "length^2"), people("% of area", FieldType::number));
+                       number("area", "area", "length^2"), text_only("% of area", FieldType::number));
         p.report.table("objects", text("name"), text("class"), text("description"), text("unit"), integer("genus"),
                        integer("minimumVertices"), texts("parts"));
-        p.report.people_table("", {"object", "genus", "min vertices", "label", "part"});
+        p.report.text_table("", {"object", "genus", "min vertices", "label", "part"});
     }
 
     void check() const override {

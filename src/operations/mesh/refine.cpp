@@ -10,8 +10,8 @@ namespace {
 
 struct MeshRefine final : MeshResizeBound {
     void declare(Parameters& p) override {
-        describe_bound(p);
-        options.list_options(p.options);
+        declare_bound(p);
+        options.declare_options(p.options);
         p.report.values(integer("levels"), integer("bisections"));
     }
 

@@ -28,7 +28,7 @@ struct MeshRegister final : Operation {
         p.options("target-unit", target_unit,
                   "unit of the target's coordinates (any text, such as mm), for the moved annotations; by default their unit, "
                   "converted by the scale");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),
                         numbers("translation", "translation", "length"), number("rms", "rms", "length"),
@@ -83,9 +83,9 @@ private:
         report("rotationUncertainty", u.rotation / degree)("translationUncertainty", u.translation)("scaleUncertainty", u.scale)(
             "placementUncertainty", u.placement)("undetermined", u.undetermined);
         if (registration.verdict != RegistrationVerdict::aligned) return;
-        report.people("uncertainty", fmt::format("{} degrees, centre {}, scale {}, points {} (standard deviations)",
-                                                 number(u.rotation / degree, 2), number(u.translation, 2), number(u.scale, 2),
-                                                 number(u.placement, 2)));
+        report.text_only("uncertainty", fmt::format("{} degrees, centre {}, scale {}, points {} (standard deviations)",
+                                                    number(u.rotation / degree, 2), number(u.translation, 2), number(u.scale, 2),
+                                                    number(u.placement, 2)));
         if (u.undetermined > 0)
             report.note(fmt::format("{} of the motions {} not determined by the shape and not part of the uncertainty",
                                     u.undetermined, u.undetermined == 1 ? "is" : "are"));

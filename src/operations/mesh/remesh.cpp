@@ -13,8 +13,8 @@ namespace {
 
 struct MeshRemesh final : MeshResize {
     void declare(Parameters& p) override {
-        describe_meshes(p);
-        options.list_options(p.options);
+        declare_meshes(p);
+        options.declare_options(p.options);
         p.options.find("vertices")->required();
         p.options(
             "texture", texture,

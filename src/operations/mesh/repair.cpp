@@ -20,10 +20,10 @@ struct MeshRepair final : Operation {
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: new index of each old triangle, -1 if it was dropped");
         p.output_option("report", Kind::report, report_file, "JSON file to write: the report that --json prints");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(boolean("sound"), text("maps"), any("before"), any("after"));
         p.report.table("steps", text("step"), any("counts"));
-        p.report.people_table("", {"step", "what", "count"});
+        p.report.text_table("", {"step", "what", "count"});
     }
 
     void run(Context& context, Report& report) override {
@@ -42,7 +42,7 @@ struct MeshRepair final : Operation {
         const std::vector<std::string> shown{"vertices", "triangles", "components", "genus", "border loops", "area", "volume"};
         if (repaired.before) show(report, "before intersections were removed", *repaired.before, shown);
         show(report, "after", repaired.after, shown);
-        report.people("verdict", rows_of(repaired.after).back().second);
+        report.text_only("verdict", rows_of(repaired.after).back().second);
 
         output.write(repaired.mesh, repaired.extras);
         const auto map = [&](const char* kind, const std::vector<Index>& indices, std::size_t count) {
@@ -58,7 +58,7 @@ struct MeshRepair final : Operation {
     static void show(Report& report, const char* title, const MeshDiagnosis& diagnosis, const std::vector<std::string>& shown) {
         report.line(title);
         for (const auto& [quantity, value] : rows_of(diagnosis))
-            if (std::find(shown.begin(), shown.end(), quantity) != shown.end()) report.people(quantity, value);
+            if (std::find(shown.begin(), shown.end(), quantity) != shown.end()) report.text_only(quantity, value);
     }
 
     static void report_result(Report& report, const RepairStep& step) {

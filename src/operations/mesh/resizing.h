@@ -15,12 +15,12 @@ namespace ostraka {
 
 /// Declarations and reports of meshes before and after the change.
 struct MeshResize : Operation {
-    void describe_meshes(Parameters& p) {
+    void declare_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .glb, .gltf, .stl, .off, .3mf");
         p.output("output", Kind::mesh, output.with_ascii_option(), "mesh to write: .ply, .obj, .off, .stl, .glb");
         for (const std::string mesh : {"input", "output"})
             p.report.values(integer(mesh + ".vertices"), integer(mesh + ".faces"), number(mesh + ".area", "", "length^2"));
-        p.report.people_table("", {"mesh", "vertices", "faces", "area"});
+        p.report.text_table("", {"mesh", "vertices", "faces", "area"});
     }
     static void report_totals(Report& report, const BoundMesh::Totals& before, const BoundMesh::Totals& after) {
         for (const auto& [mesh, when, totals] : {std::tuple{"input.", "before", before}, {"output.", "after", after}}) {
@@ -46,18 +46,18 @@ struct MeshResizeBound : MeshResize {
                        "write the mesh as .ply, .obj or .off");
     }
 
-    void describe_bound(Parameters& p) {
-        describe_meshes(p);
+    void declare_bound(Parameters& p) {
+        declare_meshes(p);
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the input mesh (.ant.json)");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the output mesh to write (.ant.json)");
         p.output_option("labels-out", Kind::labels, labels_out,
                         "text file to write: the label of each face of the output mesh, one per line");
-        p.report.table("annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"),
-                       integer("before.elements", "elements"), integer("after.elements", "after"),
-                       number("before.area", "area", "length^2"), number("after.area", "", "length^2"), people("change of area"),
-                       number("before.length", "length", "length"), number("after.length", "", "length"),
-                       people("change of length"), boolean("degenerate"), text("note", "note"));
+        p.report.table(
+            "annotations", integer("id", "id"), text("tag", "tag"), text("type", "type"), integer("before.elements", "elements"),
+            integer("after.elements", "after"), number("before.area", "area", "length^2"), number("after.area", "", "length^2"),
+            text_only("change of area"), number("before.length", "length", "length"), number("after.length", "", "length"),
+            text_only("change of length"), boolean("degenerate"), text("note", "note"));
     }
 
     /// Reads the input, calls `work`, reports the changes and writes the outputs.

@@ -10,16 +10,15 @@ namespace {
 
 struct MeshSimplify final : MeshResizeBound {
     void declare(Parameters& p) override {
-        describe_bound(p);
+        declare_bound(p);
         p.output_option("vertex-map", Kind::index_map, vertex_map,
                         "JSON file to write: for each old vertex, the index of the new vertex");
         p.output_option("face-map", Kind::index_map, face_map,
                         "JSON file to write: new index of each old face, -1 if it vanished");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.options.find("vertices")->required();
         outlines = p.options.find("outlines");
-        p.options("protect-outlines", protect, "same effect as --outlines protect, and the pins of measures are protected too")
-            .unrecorded();
+        p.options("protect-outlines", protect, "same as --outlines protect").unrecorded();
         p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
                         integer("isolated_dropped"));
     }

@@ -37,8 +37,8 @@ struct MeshSurface final : Operation {
                   "number of nearest points from which the colour and intensity of a vertex are interpolated, weighted by the "
                   "inverse distance",
                   Range{1, 1000});
-        poisson.list_options(p.options);
-        front.list_options(p.options);
+        poisson.declare_options(p.options);
+        front.declare_options(p.options);
         p.report.values(integer("points", "points"), integer("outliers", "outliers removed"), text("normals", "normals"),
                         text("method", "method"), number("spacing", "point spacing", "length"), integer("vertices", "vertices"),
                         integer("triangles", "triangles"), number("area", "area", "length^2"),

@@ -14,7 +14,7 @@ namespace {
 
 struct RelationAdd final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
+        declare_inputs(p);
         p.input_option("graph", Kind::graph, graph,
                        "graph to which the relationship is added; created if the file does not exist");
         p.output("output", Kind::graph, output, "graph to write (.graph.json); if left out, the file of --graph is updated")
@@ -39,7 +39,7 @@ struct RelationAdd final : RelationOperation {
                   "height; unit of the mesh), distance=1% (of the mesh's diagonal), area=10 (or shape, difference; per cent)")
             .words();
         p.options("attribute", attribute, "with --type 'equal attributes': name of the attribute whose values are equal");
-        describe_relationships(p.report);
+        declare_relationships(p.report);
     }
 
     void check() const override {

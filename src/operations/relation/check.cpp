@@ -13,15 +13,15 @@ namespace {
 
 struct RelationCheckAll final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_graph(p);
+        declare_inputs(p);
+        declare_graph(p);
         p.input_option("rest", Kind::mesh, rest,
                        "the same mesh before the deformation (rest shape); constraints that preserve a quantity compare with it");
         p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf): a rule for a concept also applies to narrower concepts");
-        tolerances.list_options(p.options);
-        describe_relationships(p.report, true);
+        tolerances.declare_options(p.options);
+        declare_relationships(p.report, true);
         for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));
         p.report.table("rules", text("rule", "rule"), integer("annotation", "id"), text("part", "part"), text("text", "broken"));
         p.report.values(boolean("conforms"));

@@ -12,9 +12,9 @@ namespace {
 
 struct RelationEdit final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_graph(p);
-        describe_output(p);
+        declare_inputs(p);
+        declare_graph(p);
+        declare_output(p);
         p.options("id", id, "id of the relationship, as shown by 'relation list'", Range{0, 2147483647}).required();
         p.options("weight", weight, "weight of the relationship as a constraint; with weight 0 the constraint is not used",
                   Range{0, 1e300});
@@ -23,7 +23,7 @@ struct RelationEdit final : RelationOperation {
                   "JSON object whose members replace the parameters of the constraint; null removes a parameter");
         p.options("constraint", constraint, "true: the relationship is a constraint on deformations",
                   Choices{"unchanged", "yes", "no"});
-        describe_relationships(p.report);
+        declare_relationships(p.report);
     }
 
     void check() const override {

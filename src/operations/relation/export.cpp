@@ -14,8 +14,8 @@ namespace {
 
 struct RelationExport final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_graph(p);
+        declare_inputs(p);
+        declare_graph(p);
         p.output("output", Kind::text, output, "drawing to write (.svg, .pdf, .png), or a file for Graphviz (.dot, .gv)");
         for (const char* count : {"relationships", "annotations"}) p.report.values(integer(count, count));
     }

@@ -13,8 +13,8 @@ namespace {
 
 struct RelationExtract final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_output(p);
+        declare_inputs(p);
+        declare_output(p);
         p.input_option("graph", Kind::graph, graph,
                        "existing graph (.graph.json); its user-specified relationships are copied to the output");
         Words told;
@@ -27,9 +27,9 @@ struct RelationExtract final : RelationOperation {
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: adds a relationship 'part of' "
                        "between a part and the annotated whole that contains it");
-        tolerances.list_options(p.options);
+        tolerances.declare_options(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
-        describe_relationships(p.report);
+        declare_relationships(p.report);
     }
 
     void run(Context&, Report& report) override {

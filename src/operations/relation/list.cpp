@@ -7,9 +7,9 @@ namespace {
 
 struct RelationList final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_graph(p);
-        describe_relationships(p.report);
+        declare_inputs(p);
+        declare_graph(p);
+        declare_relationships(p.report);
     }
     void run(Context&, Report& report) override { report_result(report, read_relations().relationships); }
 };

@@ -12,10 +12,10 @@ namespace ostraka {
 
 /// An operation on the graph of relationships among the annotations of a mesh.
 struct RelationOperation : AnnotatedMeshOperation {
-    void describe_graph(Parameters& p) { p.input("graph", Kind::graph, graph, "graph (.graph.json)"); }
-    void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
+    void declare_graph(Parameters& p) { p.input("graph", Kind::graph, graph, "graph (.graph.json)"); }
+    void declare_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
     /// Declares the table of relationships; with `checked` also the verdict on each.
-    static void describe_relationships(ReportLayout& report, bool checked = false) {
+    static void declare_relationships(ReportLayout& report, bool checked = false) {
         std::vector<Field> columns{integer("id", "id")};
         if (checked) columns.push_back(text("verdict", "verdict"));
         columns.insert(columns.end(), {text("type", "type"), text("origin", checked ? "" : "origin"),

@@ -9,11 +9,11 @@ namespace {
 
 struct RelationRemove final : RelationOperation {
     void declare(Parameters& p) override {
-        describe_inputs(p);
-        describe_graph(p);
-        describe_output(p);
+        declare_inputs(p);
+        declare_graph(p);
+        declare_output(p);
         p.options("id", ids, "id of a relationship to remove, as shown by 'relation list'; repeatable").words().required();
-        describe_relationships(p.report);
+        declare_relationships(p.report);
     }
 
     void run(Context&, Report& report) override {

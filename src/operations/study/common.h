@@ -56,7 +56,7 @@ struct StudyOperation : Operation {
 class StudyPart {
 public:
     void declare(Parameters& p) {
-        options_.list_options(p.options);
+        options_.declare_options(p.options);
         vocabulary_.declare(p, "used to match tags of annotations with the names of parts");
     }
     void check() const {

@@ -26,10 +26,10 @@ void LandmarkStudy::declare(Parameters& p, StudyFiles& files) {
         "missing landmarks: leave them out of all specimens, or estimate them by the thin-plate spline of the mean of complete "
         "specimens, by regression on the landmarks present, or by the mirrored other side",
         Choices{"leave-out", "tps", "regression", "mirror"});
-    reading_.list_options(p.options);
+    reading_.declare_options(p.options);
     p.options("slide-curves", slide_curves_, "slide the interior points of the curves of the landmark files");
     p.options("surface-landmarks", surface_, "semi-landmarks on the surface: names, numbers, ranges such as 12-40").words();
-    sliding_.list_options(p.options);
+    sliding_.declare_options(p.options);
     p.options(
         "leave-odd-out", leave_odd_out_,
         "exclude specimens whose landmarks are mirrored, exchanged or displaced, or whose size differs from the median by a "

@@ -20,7 +20,7 @@ struct StudyLandmarks final : StudyOperation {
     void declare(Parameters& p) override {
         study.declare(p, files);
         p.options("components", components, "number of principal components to write", Range{1, 1000});
-        options.list_options(p.options);
+        options.declare_options(p.options);
         for (const char* count : {"objects", "landmarks", "dimension", "iterations"}) p.report.values(integer(count));
         for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
         p.report.values(boolean("converged"), numbers("components"));

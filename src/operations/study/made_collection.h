@@ -12,7 +12,7 @@ namespace ostraka {
 
 /// An operation that makes the objects of a collection in a folder.
 struct StudyMake : Operation {
-    void describe_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
+    void declare_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
 
     /// Creates the folder, which must not contain objects yet, and makes the objects in parallel.
     template <class MakeOne>

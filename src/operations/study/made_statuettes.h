@@ -57,7 +57,7 @@ struct StudyMakeStatuettes : StudyMake {
     /// Writes mesh and annotations; their provenance holds the parameters of the statuette.
     void write_one(const std::string& name, const Statuette& statuette, const StatuetteParameters& parameters,
                    const std::string& command, bool coloured) const {
-        const Provenance provenance{command, list_options(parameters), {}};
+        const Provenance provenance{command, declare_options(parameters), {}};
         MeshExtras extras;
         extras.face_labels = statuette.face_labels;
         if (coloured)

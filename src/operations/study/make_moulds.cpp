@@ -16,11 +16,11 @@ namespace {
 
 struct StudyMakeMoulds final : StudyMake {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: PLY meshes with labelled faces, and their true moulds (truth.csv)");
-        population.list_options(p.options);
-        cast.list_options(p.options);
+        declare_folder(p, "folder to write: PLY meshes with labelled faces, and their true moulds (truth.csv)");
+        population.declare_options(p.options);
+        cast.declare_options(p.options);
         p.report.values(integer("objects"), texts("parts"));
-        p.report.people_table("", {"label", "part"});
+        p.report.text_table("", {"label", "part"});
     }
 
     void run(Context& context, Report& report) override {

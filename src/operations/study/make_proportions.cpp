@@ -28,8 +28,8 @@ constexpr const char* statuette_measures = R"({
 
 struct StudyMakeProportions final : StudyMakeStatuettes {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: meshes, annotations, measure definitions and true sizes (truth.csv)");
-        options.list_options(p.options);
+        declare_folder(p, "folder to write: meshes, annotations, measure definitions and true sizes (truth.csv)");
+        options.declare_options(p.options);
         p.report.values(text("folder"), integer("objects"), text("fixed"));
     }
 

@@ -15,8 +15,8 @@ namespace {
 
 struct StudyMakeTechnique final : StudyMakeStatuettes {
     void declare(Parameters& p) override {
-        describe_folder(p, "folder to write: meshes, annotations and their true techniques (truth.csv)");
-        options.list_options(p.options);
+        declare_folder(p, "folder to write: meshes, annotations and their true techniques (truth.csv)");
+        options.declare_options(p.options);
         p.report.values(text("folder"));
         for (const char* count : {"objects", "wheel", "hand"}) p.report.values(integer(count));
     }
@@ -29,13 +29,13 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
                              CGAL::is_closed(statuette.mesh) ? "true" : "false"};
             });
         std::vector<std::string> header{"name", "label"};
-        for (const auto& [key, value] : list_options(statuettes.front()))
+        for (const auto& [key, value] : declare_options(statuettes.front()))
             if (key != "technique") header.push_back(key);
         header.insert(header.end(), {"mesh-vertices", "closed"});
         std::string truth = csv_row(header);
         for (std::size_t i = 0; i < statuettes.size(); ++i) {
             std::vector<std::string> row{name_of(i, statuettes.size()), option_text(statuettes[i], "technique")};
-            for (const auto& [key, value] : list_options(statuettes[i]))
+            for (const auto& [key, value] : declare_options(statuettes[i]))
                 if (key != "technique") row.push_back(value);
             row.insert(row.end(), meshes[i].begin(), meshes[i].end());
             truth += csv_row(row);

@@ -23,13 +23,13 @@ struct StudyMoulds final : StudyOperation {
         p.options("similarity", similarity,
                   "similarity by which heads are grouped: number of matches, number of consistent matches, distance after "
                   "registration, or a combination",
-                  Choices(mould_similarities()));
+                  Choices(mould_similarity_names()));
         p.options("leave-out", leave_out, "faces with these labels are left out of the analysis, for example beards").words();
         p.options("choices", choices,
                   "also write a table of the groups that result from every similarity, method and rule for epsilon");
-        compare.list_options(p.options);
-        group.list_options(p.options);
-        stability.list_options(p.options);
+        compare.declare_options(p.options);
+        group.declare_options(p.options);
+        stability.declare_options(p.options);
         for (const char* word : {"similarity", "method", "epsilonRule"}) p.report.values(text(word));
         for (const char* figure : {"epsilon", "featureSize", "silhouette", "adjustedRandIndex"}) p.report.values(number(figure));
         p.report.values(boolean("clear"));
@@ -206,7 +206,7 @@ struct StudyMoulds final : StudyOperation {
         std::vector<std::string> columns{"similarity", "method", "epsilon", "value", "groups", "silhouette"};
         if (known_answers.scorable()) columns.emplace_back("adjusted Rand index");
         TextTable table(columns);
-        for (const auto& similarity_name : mould_similarities()) {
+        for (const auto& similarity_name : mould_similarity_names()) {
             const Eigen::MatrixXd distances = mould_distances(study.matrices, similarity_name);
             for (const char* method : {"linkage", "dbscan", "embedding"}) {
                 for (const char* epsilon : {"0.1", "knn", "volume", "knee", "silhouette", "nested"}) {

@@ -49,10 +49,10 @@ TextTable table_3_1(const ProportionStudy& study) {
         std::vector<TableCell> cells{row.name, unit, std::to_string(s ? s->count : 0)};
         for (const auto& value : {s ? std::optional(s->mean) : std::nullopt, s ? std::optional(s->min) : std::nullopt,
                                   s ? std::optional(s->max) : std::nullopt, s ? std::optional(s->median) : std::nullopt,
-                                  s ? s->deviation : std::nullopt})
+                                  s ? s->standard_deviation : std::nullopt})
             cells.push_back(number_cell(value ? std::optional(factor * *value) : std::nullopt, 4));
         cells.push_back(interval_cell(row.deviation_interval, factor, 3));
-        cells.push_back(percent_cell(s ? s->variation : std::nullopt));
+        cells.push_back(percent_cell(s ? s->coefficient_of_variation : std::nullopt));
         cells.push_back(share_interval_cell(row.variation_interval));
         table.add(cells);
     };
@@ -74,7 +74,7 @@ TextTable verdict_table(const ProportionStudy& study, double false_discoveries) 
                      "verdict", "failed"});
     for (const RatioRow* ratio : by_deviation(study)) {
         const Summary& s = *ratio->row.summary;
-        table.add({ratio->row.name, std::to_string(s.count), number_cell(s.mean, 4), percent_cell(s.variation),
+        table.add({ratio->row.name, std::to_string(s.count), number_cell(s.mean, 4), percent_cell(s.coefficient_of_variation),
                    share_interval_cell(ratio->row.variation_interval), number_cell(ratio->p_pairing, 2),
                    number_cell(ratio->p_others, 2), number_cell(ratio->p_size, 2), number_cell(ratio->q, 2),
                    to_string(ratio->fixedness), reason_not_fixed(*ratio, false_discoveries)});
@@ -94,8 +94,8 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
         series.joined = false;
         series.colour = std::array<std::size_t, 5>{2, 0, 5, 6, 3}[k];
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (rows[i]->fixedness != order[k] || !rows[i]->row.summary->variation) continue;
-            series.points.push_back({static_cast<double>(i), 100 * *rows[i]->row.summary->variation});
+            if (rows[i]->fixedness != order[k] || !rows[i]->row.summary->coefficient_of_variation) continue;
+            series.points.push_back({static_cast<double>(i), 100 * *rows[i]->row.summary->coefficient_of_variation});
             const auto& interval = rows[i]->row.variation_interval;
             series.intervals.push_back(interval ? std::optional(std::array{100 * interval->low, 100 * interval->high})
                                                 : std::nullopt);
@@ -121,8 +121,8 @@ struct StudyProportions final : StudyOperation {
                         "graph to write (.graph.json): fixed proportions as constraints on the template");
         p.output_option("annotations-out", Kind::annotations, annotations_out,
                         "annotations of the template to write (.ant.json), with the measures to which the constraints refer");
-        options.list_options(p.options);
-        proposals.list_options(p.options);
+        options.declare_options(p.options);
+        proposals.declare_options(p.options);
         p.report.values(integer("objects"));
         std::vector<Field> columns{text("name"),       text("unit"),
                                    integer("objects"), number("average"),
@@ -209,8 +209,8 @@ struct StudyProportions final : StudyOperation {
             row("objects", measure_row.summary ? measure_row.summary->count : 0);
             if (!measure_row.summary) return row;
             const Summary& s = *measure_row.summary;
-            row("average", s.mean)("min", s.min)("max", s.max)("median", s.median)("deviation", optional(s.deviation))(
-                "deviationInterval", interval(measure_row.deviation_interval))("variation", optional(s.variation))(
+            row("average", s.mean)("min", s.min)("max", s.max)("median", s.median)("deviation", optional(s.standard_deviation))(
+                "deviationInterval", interval(measure_row.deviation_interval))("variation", optional(s.coefficient_of_variation))(
                 "variationInterval", interval(measure_row.variation_interval));
             if (measure_row.own_deviation) row("ownDeviation", *measure_row.own_deviation);
             return row;

@@ -25,7 +25,7 @@ struct StudySegments final : Operation {
                        "the mesh file, if any");
         up.declare(p, "upward direction; by default the upward direction of --compare, or 0,0,1");
         p.options("unit", unit, "unit of the mesh's coordinates; by default the unit of --compare");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
         p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),
                        number("gap", "gap"), number("gapError", "gap error"));
@@ -60,7 +60,7 @@ struct StudySegments final : Operation {
         report.line(fmt::format("{} clusters proposed by {}, {} used\n", segments.count.proposed,
                                 option_text(options.count, "criterion"), segments.clusters));
         for (std::size_t i = 0; i < segments.segments.size(); ++i) {
-            const SliceSegment& slice_segment = segments.segments[i];
+            const SliceRun& slice_segment = segments.segments[i];
             const Annotation* region = set.find(static_cast<int>(i));
             const AnnotationSummary summary = region != nullptr ? summarise(surface, *region) : AnnotationSummary{};
             report.row("segments")("tag", "segment " + std::to_string(i + 1))("cluster", slice_segment.cluster)(

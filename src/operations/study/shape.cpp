@@ -47,7 +47,7 @@ struct StudyShape final : StudyOperation {
         p.options("individual", individual, "column with the individual of each specimen; repeated measurements give the error");
         p.options("side", side, "column with the side of each specimen (matching symmetry)");
         p.options("groups", groups, "column whose levels the plots distinguish; allometry is that within these groups");
-        permutations.list_options(p.options);
+        permutations.declare_options(p.options);
         for (const char* count : {"objects", "landmarks", "dimension"}) p.report.values(integer(count));
         p.report.values(number("sumOfSquares"));
         p.report.values(number("allometry.share"), number("symmetry.share"), number("symmetry.directional"),
@@ -231,11 +231,11 @@ private:
         report.notes(anova.notes);
         TextTable shown({"term", "df", "SS", "MS", "R2", "F", "Z", "p", "error term"});
         for (const AnovaRow& row : anova.rows) {
-            shown.add({row.term, std::to_string(row.freedom), number_cell(row.squares, 6), number_cell(row.mean, 6),
-                       number_cell(row.share, 5), number_cell(row.f, 6), number_cell(row.z, 4), number_cell(row.p, 4),
-                       row.error});
-            report.row(name)("term", row.term)("freedom", row.freedom)("squares", row.squares)("mean", row.mean)(
-                "share", row.share)("f", row.f)("z", row.z)("p", row.p)("error", row.error);
+            shown.add({row.term, std::to_string(row.degrees_of_freedom), number_cell(row.sum_of_squares, 6),
+                       number_cell(row.mean_square, 6), number_cell(row.r_squared, 5), number_cell(row.f, 6),
+                       number_cell(row.z, 4), number_cell(row.p, 4), row.error});
+            report.row(name)("term", row.term)("freedom", row.degrees_of_freedom)("squares", row.sum_of_squares)(
+                "mean", row.mean_square)("share", row.r_squared)("f", row.f)("z", row.z)("p", row.p)("error", row.error);
         }
         shown.write(files.output.path(),
                     name == "anova"       ? "anova"

@@ -19,8 +19,8 @@ struct StudyOfTechnique final : StudyOperation {
         part.declare(p);
         up.declare(
             p, "upward direction of all objects; by default the upward direction of the annotations of each object, or 0,0,1");
-        slices.list_options(p.options);
-        options.list_options(p.options);
+        slices.declare_options(p.options);
+        options.declare_options(p.options);
         for (const char* word : {"positive", "negative", "answeredBy"}) p.report.values(text(word));
         for (const char* answer : {"learned", "separated"}) p.report.values(boolean(answer));
         p.report.table("classifiers", text("name"), texts("descriptors"), integer("objects"), numbers("f1Interval"),
@@ -106,10 +106,10 @@ struct StudyOfTechnique final : StudyOperation {
         if (learned && !technique_answer.certainty.empty())
             row("certainty", technique_answer.certainty)("score", technique_answer.score)(
                 "agreement", technique_answer.agreement)("resamples", technique_answer.asked);
-        if (technique_answer.unlike)
-            row("unlike.descriptor", technique_answer.unlike->descriptor)("unlike.value", technique_answer.unlike->value)(
-                "unlike.labelled", std::vector{technique_answer.unlike->low, technique_answer.unlike->high})(
-                "unlike.distance", technique_answer.unlike->distance);
+        if (technique_answer.outlier)
+            row("unlike.descriptor", technique_answer.outlier->descriptor)("unlike.value", technique_answer.outlier->value)(
+                "unlike.labelled", std::vector{technique_answer.outlier->low, technique_answer.outlier->high})(
+                "unlike.distance", technique_answer.outlier->distance);
         if (technique_answer.roundness)
             row("roundnessInterval", std::vector{technique_answer.roundness->low, technique_answer.roundness->high});
         row("slices.asked", measures.asked)("slices.used", measures.slices.size())("slices.open", measures.open_used)(
@@ -189,7 +189,7 @@ struct StudyOfTechnique final : StudyOperation {
                                            technique_answer.certainty.empty() ? "" : fixed(technique_answer.agreement, 2),
                                            technique_answer.wrong() ? "WRONG" : ""});
             answers.add(cells);
-            if (technique_answer.unlike) dissimilar.push_back(technique_answer.name);
+            if (technique_answer.outlier) dissimilar.push_back(technique_answer.name);
             if (technique_answer.label.empty()) continue;
             ++labelled;
             if (technique_answer.answer.empty()) ++without;

@@ -85,7 +85,7 @@ void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study
             if (group_index != c || !std::isfinite(a) || !std::isfinite(b) || b <= 0 || (a <= 0 && logarithmic)) continue;
             series.points.push_back({a, b});
             // Name only the objects that need attention.
-            series.labels.push_back(study.answers[i].wrong() || study.answers[i].unlike ? objects[i].name : "");
+            series.labels.push_back(study.answers[i].wrong() || study.answers[i].outlier ? objects[i].name : "");
         }
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }

@@ -20,9 +20,9 @@ struct TemplateClassify final : Operation {
         vocabulary.declare(p, as_template_words);
         p.output_option("report", Kind::report, answer,
                         "JSON file to write: the complete answer (doc/schema/classification.schema.json)");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.schema = "classification";
-        p.report.people_table("", {"object", "class", "verdict", "score", "against"});
+        p.report.text_table("", {"object", "class", "verdict", "score", "against"});
     }
 
     void check() const override {
@@ -162,8 +162,8 @@ struct TemplateClassify final : Operation {
                 const bool is_reported = object.text.find(class_answer.undecided) != std::string::npos;
                 if (!class_answer.undecided.empty() && !is_reported)
                     report.line(fmt::format("  {}: {}", printable(class_answer.name), printable(class_answer.undecided)));
-                if (class_answer.undecided.empty() && !class_answer.off.empty())
-                    report.line(fmt::format("  {}: {}", printable(class_answer.name), printable(class_answer.off)));
+                if (class_answer.undecided.empty() && !class_answer.fit_problem.empty())
+                    report.line(fmt::format("  {}: {}", printable(class_answer.name), printable(class_answer.fit_problem)));
                 if (&class_answer == explained_class(object))
                     for (const std::string& line : explanation_lines(class_answer))
                         report.line(fmt::format("  {}: {}", printable(class_answer.name), printable(line)));
@@ -181,7 +181,7 @@ struct TemplateClassify final : Operation {
     }
 
     static std::vector<std::string> explanation_lines(const ClassAnswer& class_answer) {
-        std::vector<std::string> lines = class_answer.odd;
+        std::vector<std::string> lines = class_answer.unusual_findings;
         for (const std::string& line : fit_explanation(class_answer.fit)) lines.push_back(line);
         lines.insert(lines.end(), class_answer.fit.notes.begin(), class_answer.fit.notes.end());
         return lines;

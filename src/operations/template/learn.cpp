@@ -40,14 +40,14 @@ struct TemplateLearn final : Operation {
             "class of landmarks: members that lack a landmark are refused, or the landmark is estimated by the thin-plate "
             "spline of the mean of complete members, by regression, or by the mirrored other side ('left', 'right' in names)",
             Choices{"refuse", "tps", "regression", "mirror"});
-        specimen_options.list_options(p.options);
-        options.list_options(p.options);
+        specimen_options.declare_options(p.options);
+        options.declare_options(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
                         number("diversity"), numbers("varianceShares"));
-        p.report.people_table("members", {"member", "placed by", "scale", "centroid size", "from the mean %", "archetype"});
-        p.report.people_table("ranges",
-                              {"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "recognised to", "unit"});
-        p.report.people_table("modes", {"mode", "deviation", "% of variance", "together"});
+        p.report.text_table("members", {"member", "placed by", "scale", "centroid size", "from the mean %", "archetype"});
+        p.report.text_table("ranges",
+                            {"quantity", "n", "min", "median", "max", "mean", "sd", "from", "to", "recognised to", "unit"});
+        p.report.text_table("modes", {"mode", "deviation", "% of variance", "together"});
     }
 
     void check() const override {

@@ -29,7 +29,7 @@ struct TemplatePack final : Operation {
         p.options("unit", unit, "unit of the coordinates (any text, such as mm); by default the unit of the annotations");
         up.declare(p, "upward direction; by default the upward direction of the annotations");
         p.options("copy", copy, "copy the files into the folder of the template");
-        options.list_options(p.options);
+        options.declare_options(p.options);
         declare_template(p.report, true);
     }
 

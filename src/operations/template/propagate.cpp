@@ -29,11 +29,11 @@ struct TemplatePropagate final : Operation {
             "vertex correspondence between template and members: given (members must have the template's triangles), fitted (the "
             "template is fitted to each member), or auto (given for members with the template's triangles, fitted for others)",
             Choices{"auto", "given", "fitted"});
-        options.fit.list_options(p.options);
+        options.fit.declare_options(p.options);
         p.report.table("members", text("name", "member"), text("placedBy", "placed by"), number("distance", "distance %"),
                        number("distanceBack"), number("unmatched", "unmatched %"), number("unexplained", "unexplained %"),
                        number("stretch"), number("bend"), integer("annotations", "annotations"), integer("lost", "lost"),
-                       texts("notes", "notes"), boolean("liesOn"), text("problem"), people("remarks"));
+                       texts("notes", "notes"), boolean("liesOn"), text("problem"), text_only("remarks"));
     }
 
     void check() const override {

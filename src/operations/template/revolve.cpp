@@ -18,8 +18,8 @@ struct TemplateRevolve final : Operation {
             .many();
         p.output("output", Kind::folder, output, "folder to write: the template of the vessel").flag();
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
-        options.list_options(p.options);
-        reading.list_options(p.options);
+        options.declare_options(p.options);
+        reading.declare_options(p.options);
         p.report.schema = "vessel";
         p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"),
                        number("lean", "tilt of its own axis, degrees"), number("aside", "aside"),

@@ -17,7 +17,7 @@ struct TemplateSample final : Operation {
         p.input("class", Kind::shape_class, file, "class file (.class.json), as written by 'template learn'");
         p.output("output", Kind::folder, output, "folder for meshes, annotations and NAME.samples.json; created if missing")
             .flag();
-        options.list_options(p.options);
+        options.declare_options(p.options);
         p.report.schema = "samples";
     }
 

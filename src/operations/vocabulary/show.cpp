@@ -18,7 +18,7 @@ struct VocabularyShow final : Operation {
         p.input("vocabulary", Kind::vocabulary, file, vocabulary_file);
         p.options("language", language, "language of the labels that are shown");
         p.options("under", under, "id or label of a concept: show only this concept and its narrower concepts");
-        p.report.table("concepts", text("label", "concept"), text("id", "id"), integer("depth"), people("other languages"),
+        p.report.table("concepts", text("label", "concept"), text("id", "id"), integer("depth"), text_only("other languages"),
                        texts("attributes", "attributes"));
     }
 
