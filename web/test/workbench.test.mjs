@@ -685,6 +685,100 @@ try {
     await server.stop();
   });
 
+  await test("notes and errors have buttons that do the remedy; a part is renamed, recoloured and deleted with its relationships", async () => {
+    ostraka("mesh", "make", "box", at("remedy.ply"));
+    ostraka("mesh", "convert", at("remedy.ply"), at("remedy.obj"));
+    // Two boxes that share one vertex: the surface is cut there, and a note says so.
+    const lines = readFileSync(at("remedy.obj"), "utf8").split("\n");
+    const points = lines.filter((one) => one.startsWith("v ")).map((one) => one.slice(2).split(" ").map(Number));
+    const faces = lines
+      .filter((one) => one.startsWith("f "))
+      .map((one) =>
+        one
+          .slice(2)
+          .split(" ")
+          .map((i) => parseInt(i)),
+      );
+    const far = points.reduce((best, p, i) => (p[0] + p[1] + p[2] > points[best].reduce((a, b) => a + b) ? i : best), 0);
+    const mirrored = points.map((p) => p.map((x, k) => 2 * points[far][k] - x));
+    const again = faces.map((f) => [...f].reverse().map((i) => (i - 1 === far ? i : i + points.length)));
+    mkdirSync(at("remedies"));
+    writeFileSync(
+      at("remedies/touching.obj"),
+      [...[...points, ...mirrored].map((p) => `v ${p.join(" ")}`), ...[...faces, ...again].map((f) => `f ${f.join(" ")}`), ""].join("\n"),
+    );
+    copyFileSync(at("pot.ply"), at("remedies/pot.ply"));
+    const server = serve(at("remedies"));
+    const { page, told, close } = await open(await server.address);
+    await page.locator(".start button", { hasText: "touching" }).click();
+    await steps(page, 1);
+    await page.locator(".notes summary").click();
+    assert.ok(!(await page.locator(".notes").innerText()).includes("ostraka"), "no note names a command");
+    await page.getByRole("button", { name: "Repair a copy" }).click();
+    await steps(page, 2);
+    assert.deepEqual(await page.evaluate(() => ostraka.model.objects.value.map((one) => one.name)), ["touching", "touching-repair"]);
+    assert.equal(await page.locator(".notes").count(), 0, "the notes are those of the other object");
+    // An error whose remedy is a button: the cage that is missing is made.
+    await page.locator("header select").first().selectOption("pot.ply");
+    await steps(page, 3);
+    await page.keyboard.press("Control+k");
+    await page.keyboard.type("Link cage");
+    await page.keyboard.press("Enter");
+    await page.locator("[role=alert] button.remedy").click();
+    await page.waitForFunction(() => ostraka.model.place.value === 4 && ostraka.model.busy.value === "", undefined, { timeout: patience });
+    assert.equal(await page.evaluate(() => ostraka.model.problem.value), undefined);
+    // Two parts and a relationship between them.
+    const [w, h] = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
+    for (const [name, from, to, step] of [
+      ["upper", [0.2, 0.15], [0.8, 0.45], 5],
+      ["lower", [0.2, 0.55], [0.8, 0.9], 6],
+    ]) {
+      await useTool(page, "rectangle");
+      await drag(page, [from[0] * w, from[1] * h], [to[0] * w, to[1] * h]);
+      await selected(page);
+      await page.locator(".annotate input").first().fill(name);
+      await page.locator(".annotate button[type=submit]").first().click();
+      await steps(page, step);
+    }
+    await page.evaluate(() =>
+      ostraka.model.run({
+        operation: "relation add",
+        title: "x",
+        with: {
+          mesh: { part: "mesh" },
+          annotations: { part: "annotations" },
+          type: "parallel axes",
+          annotation: ["upper", "lower"],
+        },
+        keep: ["output"],
+      }),
+    );
+    await steps(page, 7);
+    await page.locator("aside .tree .tag", { hasText: "upper" }).click();
+    const name = page.locator(".part-editor input:not([type])");
+    await name.fill("shoulder");
+    await name.press("Enter");
+    await steps(page, 8);
+    await page.locator(".part-editor input[type=color]").fill("#00aa00");
+    await steps(page, 9);
+    const part = await page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].annotations[0]);
+    assert.deepEqual([part.tag, part.colour], ["shoulder", [0, 170, 0]]);
+    // Deleting asks, since a relationship names the part.
+    await page.getByRole("button", { name: "Delete", exact: true }).click();
+    assert.match(await page.getByRole("alertdialog").innerText(), /“shoulder” is a member of relationships .1./);
+    await picture(page, "workbench-delete.png");
+    await page.getByRole("button", { name: "Delete all" }).click();
+    await steps(page, 11);
+    const left = await page.evaluate(() => {
+      const about = ostraka.page.page.objects[ostraka.page.object.value];
+      return { tags: about.annotations.map((one) => one.tag), relations: about.relations.length };
+    });
+    assert.deepEqual(left, { tags: ["lower"], relations: 0 });
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

@@ -10,15 +10,13 @@ import { Gizmo } from "./gizmo";
 import { Icon, type IconName } from "./icons";
 import { Light } from "../light";
 import * as model from "./model";
-import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
+import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
+import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
 import { text, type Key } from "./words";
 import { canEnter, enter } from "./xr";
 
-const tabs = ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"] as const;
-export const tab = signal<(typeof tabs)[number]>("annotating");
-/** Whether the panel is folded away, and its width in pixels. */
-const folded = signal(false);
+/** The panel's width in pixels. */
 const panelWidth = signal(268);
 const panels = {
   annotating: Annotating,
@@ -376,6 +374,49 @@ function Pointed() {
   return null;
 }
 
+/** The buttons that do what a problem or a note asks for. */
+function Remedies({ said }: { said: string }) {
+  const list = remediesOf(said);
+  if (list.length === 0) return null;
+  return (
+    <div class="buttons">
+      {list.map((one) => (
+        <button
+          key={one.label}
+          type="button"
+          class="remedy"
+          onClick={() => {
+            model.problem.value = undefined;
+            one.action();
+          }}
+        >
+          {one.label}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+/** What the command noted when the object was opened, folded. */
+function OpeningNotes() {
+  const name = model.object.value?.name ?? "";
+  const list = model.notes.value.get(name);
+  if (!list || list.length === 0) return null;
+  return (
+    <div class="counts notes">
+      <details>
+        <summary>{list.length === 1 ? text("noteOf", name) : text("notesOf", list.length, name)}</summary>
+        <ul>
+          {list.map((one) => (
+            <li key={one}>{withoutCommands(one)}</li>
+          ))}
+        </ul>
+      </details>
+      <Remedies said={list.find((one) => /mesh repair/.test(one)) ?? ""} />
+    </div>
+  );
+}
+
 /** Counts of the object, work in progress, errors and their remedies, a lost connection: at one place in the picture. */
 function Notices() {
   const about = page.page.objects[page.object.value];
@@ -390,8 +431,9 @@ function Notices() {
       {model.problem.value && (
         <div role="alert" class="notice problem">
           <div>
-            <strong>{model.problem.value.problem}</strong>
-            {model.problem.value.remedy && <p>{model.problem.value.remedy}</p>}
+            <strong>{withoutCommands(model.problem.value.problem)}</strong>
+            {withoutCommands(model.problem.value.remedy) && <p>{withoutCommands(model.problem.value.remedy)}</p>}
+            <Remedies said={`${model.problem.value.problem}; ${model.problem.value.remedy}`} />
           </div>
           <IconButton icon="close" name={text("close")} onClick={() => (model.problem.value = undefined)} />
         </div>
@@ -407,7 +449,9 @@ function Notices() {
           </button>
         </div>
       )}
+      <PartEditor />
       <ToolHint />
+      <OpeningNotes />
       <p role="status" class="counts">
         {about
           ? `${about.name}: ${page.numberText(about.vertices)} ${page.word("vertices")}, ${page.numberText((3 * about.faces) / 2)} ${text("edges")}, ${page.numberText(about.faces)} ${page.word("faces")}` +

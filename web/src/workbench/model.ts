@@ -66,6 +66,9 @@ export const progress = signal<{ phase: string; share: number } | undefined>(und
 export const problem = signal<{ problem: string; remedy: string } | undefined>(undefined);
 export const outcome = signal<{ title: string; text: string; holds: boolean; notes: string[] } | undefined>(undefined);
 
+/** What the command noted when an object was opened, by the object's name. */
+export const notes = signal<ReadonlyMap<string, string[]>>(new Map());
+
 export const object = computed<SessionObject | undefined>(() => objects.value[active.value]);
 export const has = (part: string) => object.value?.parts[part] !== undefined;
 
@@ -157,6 +160,7 @@ export interface Run {
 export function run(request: Run): Promise<boolean> {
   return attempt(request.title, async () => {
     const { result } = await link.ask("run", request);
+    page.message.value = "";
     outcome.value = { title: request.title, text: result.text, holds: result.holds, notes: result.notes };
     await refresh();
   });
@@ -167,8 +171,9 @@ export const change = (title: Key, what: string, more: object = {}) =>
   attempt(text(title), async () => {
     const { result } = await link.ask(what, more);
     outcome.value = undefined;
+    page.message.value = "";
     await refresh();
-    if (result.notes?.length > 0) page.message.value = result.notes.join("; ");
+    if (what === "open" && object.value) notes.value = new Map(notes.value).set(object.value.name, result.notes ?? []);
   });
 
 export const goTo = (step: number) => change("undo", "go", { place: step });

@@ -65,14 +65,65 @@ export function annotate(action: "make" | "replace" | "add to" | "remove from", 
 }
 
 /** Runs "annotation edit" on the selected annotation. */
-function edit(title: string, more: Record<string, unknown>) {
-  const one = chosenAnnotation();
+function edit(title: string, more: Record<string, unknown>, one = chosenAnnotation()) {
   if (!one) return;
   void run({
     operation: "annotation edit",
     title: `${title}: ${one.tag}`,
     with: { mesh: part("mesh"), annotations: part("annotations"), annotation: String(one.id), ...more },
+    keep: ["output"],
   });
+}
+
+/** Name and colour of the selected annotation, changed in place, and its removal together with the relationships that name it. */
+export function PartEditor() {
+  const [asks, setAsks] = useState(false);
+  const about = page.page.objects[page.object.value];
+  const one = chosenAnnotation();
+  if (!about || !one || selection.selected.value) return null;
+  const naming = about.relations.filter((relation) => relation.members.includes(page.chosen.value));
+  const remove = async () => {
+    setAsks(false);
+    const named = naming.map((relation) => relation.id);
+    if (has("graph") && named.length > 0) {
+      const given = { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph"), id: named };
+      if (!(await run({ operation: "relation remove", title: `${text("deletePart")}: ${one.tag} (${text("relationList")})`, with: given })))
+        return;
+    }
+    edit(text("deletePart"), { remove: true }, one);
+  };
+  return (
+    <div class="hint part-editor" key={one.id}>
+      <input
+        type="color"
+        aria-label={text("colour")}
+        value={`#${one.colour.map((c) => c.toString(16).padStart(2, "0")).join("")}`}
+        onChange={(event) => edit(text("colour"), { colour: event.currentTarget.value }, one)}
+      />
+      <input
+        aria-label={text("rename")}
+        title={text("rename")}
+        value={one.tag}
+        onKeyDown={(event) => {
+          if (event.key === "Enter") event.currentTarget.blur();
+        }}
+        onChange={(event) => {
+          const tag = event.currentTarget.value.trim();
+          if (tag && tag !== one.tag) edit(text("rename"), { tag }, one);
+        }}
+      />
+      <Button name="deletePart" onClick={() => (has("graph") && naming.length > 0 ? setAsks(true) : void remove())} />
+      {asks && (
+        <div class="question" role="alertdialog" aria-label={text("deletePart")}>
+          <p>{text("deletePartAsk", naming.length, one.tag)}</p>
+          <div class="buttons">
+            <Button name="deleteAll" onClick={() => void remove()} />
+            <Button name="keepIt" onClick={() => setAsks(false)} />
+          </div>
+        </div>
+      )}
+    </div>
+  );
 }
 
 export function Annotating() {
@@ -194,7 +245,6 @@ export function Annotating() {
                 {text("removeAttribute")}: {which}
               </button>
             ))}
-            <Button name="removeAnnotation" onClick={() => edit(text("removeAnnotation"), { remove: true })} />
           </div>
         </section>
       )}
