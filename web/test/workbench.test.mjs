@@ -779,6 +779,47 @@ try {
     await server.stop();
   });
 
+  await test("the start page and the list of objects show small pictures", async () => {
+    mkdirSync(at("gallery"));
+    for (const [file, name] of [
+      ["pot.ply", "pot.ply"],
+      ["flowers.ply", "flowers.ply"],
+    ])
+      if (existsSync(at(file))) copyFileSync(at(file), join(at("gallery"), name));
+    ostraka("mesh", "make", "box", join(at("gallery"), "box.ply"));
+    writeFileSync(join(at("gallery"), "cut.ply"), "ply\nformat ascii 1.0\nelement vertex 3\n");
+    const server = serve(at("gallery"));
+    const { page, told, close } = await open(await server.address);
+    await page.waitForFunction(() => document.querySelectorAll(".start canvas.thumbnail").length >= 2, undefined, { timeout: patience });
+    /** How many different colours a picture has. */
+    const colours = (which) =>
+      page
+        .locator(which)
+        .first()
+        .evaluate((canvas) => {
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          return new Set(new Uint32Array(data.buffer)).size;
+        });
+    assert.ok((await colours(".start canvas.thumbnail")) > 3);
+    await picture(page, "workbench-start.png");
+    await page.locator(".start button", { hasText: "pot.ply" }).click();
+    await steps(page, 1);
+    await page.locator("header select").first().selectOption("box.ply");
+    await steps(page, 2);
+    await page.waitForFunction(() => document.querySelectorAll(".layer canvas.thumbnail").length === 2, undefined, { timeout: patience });
+    assert.ok((await colours(".layer canvas.thumbnail")) > 3);
+    // What was done before is a click away when everything is undone.
+    await page.keyboard.press("Control+z");
+    await steps(page, 1);
+    await page.keyboard.press("Control+z");
+    await steps(page, 0);
+    await page.getByRole("button", { name: /Go on with the last session/ }).click();
+    await steps(page, 2);
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

@@ -12,6 +12,7 @@ import { Light } from "../light";
 import * as model from "./model";
 import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
 import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
+import { FileThumbnail, ObjectThumbnail } from "./thumbnails";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
 import { text, type Key } from "./words";
 import { canEnter, enter } from "./xr";
@@ -212,14 +213,19 @@ function Layers() {
         {objects.value.map((one, i) => {
           const about = page.page.objects[model.shown.value.findIndex((other) => other.object === i)];
           return (
-            <li key={one.name} class={i === active.value ? "layer active" : "layer"}>
+            <li
+              key={one.name}
+              class={i === active.value ? "layer active" : "layer"}
+              ref={(element) => void (i === active.value && element?.scrollIntoView({ block: "nearest" }))}
+            >
               <label>
                 <input
                   type="radio"
                   name="active"
                   checked={i === active.value}
                   onChange={() => void model.change("activate", "activate", { object: i })}
-                />{" "}
+                />
+                <ObjectThumbnail name={one.name} />
                 <strong>{one.name}</strong>
                 {about && (
                   <small>
@@ -469,14 +475,19 @@ function Start() {
     <section class="start" aria-labelledby="start-title">
       <h2 id="start-title">{text("startTitle")}</h2>
       <p>{text(model.openable.value.length > 0 ? "startHelp" : "startEmpty")}</p>
-      <p>
+      <p class="buttons">
         <ChooseFiles />
+        {model.history.value.length > model.place.value && (
+          <button type="button" onClick={() => void model.goTo(model.history.value.length)}>
+            <Icon name="history" /> {text("goOn", model.history.value.length)}
+          </button>
+        )}
       </p>
       <ul>
         {model.openable.value.map((one) => (
           <li key={one}>
             <button type="button" onClick={() => openFile(one)}>
-              <Icon name="object" /> {one}
+              <FileThumbnail name={one} /> <span>{one}</span>
             </button>
           </li>
         ))}
