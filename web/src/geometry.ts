@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { MeshBVH } from "three-mesh-bvh";
 import { readRuns, type Blobs, type Colouring, type PageObject, type Slice } from "./data";
+import { angleSign } from "./sizes";
 import { kindsOf, rangesByMaterial, texturedMaterials, type Kinds, type ShapeLook, type ShapeTexture } from "./texture";
 
 /** Vertices and triangles in the order of the object's file. */
@@ -636,7 +637,13 @@ export class DrawnObject {
   /** Whether there are annotations of parts, not only of the whole object. */
   private get hasParts(): boolean {
     const all = this.shape.triangles.length / 3;
-    return this.about.annotations.some((one) => (one.faces ? one.faces.count < all : true));
+    return this.about.annotations.some((one) => (one.faces ? one.faces.count < all : !one.tag.startsWith(angleSign)));
+  }
+
+  /** Whether a region only holds the measures of the whole object: grey all over, it would hide the object's own colours. */
+  private isBare(annotation: number): boolean {
+    const { faces, colour } = this.about.annotations[annotation];
+    return faces !== undefined && faces.count === this.top.length && colour.every((c) => c === 190);
   }
 
   /** The colouring shown for a wanted one; "auto": annotations of parts if there are any, otherwise texture or own colours. */
@@ -687,7 +694,8 @@ export class DrawnObject {
     if (colouring === "annotations") {
       const table = sets.members.map((regions, set) => {
         const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 160] : [1, 0];
-        return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
+        const bare = topOf[set] < 0 || (this.isBare(topOf[set]) && topOf[set] !== chosen);
+        return (bare ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
       });
       this.recolour(
         false,

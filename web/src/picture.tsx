@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import * as THREE from "three";
 import { colourOf } from "./colours";
 import { shared, type DrawnObject } from "./geometry";
+import { angleOf } from "./sizes";
 import * as state from "./state";
 import { numberText, page, withUnit, word } from "./state";
 import { isUnlit } from "./texture";
@@ -101,6 +102,13 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
         state.object.value,
         (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
         m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
+      );
+    const angle = angleOf(drawn[state.object.value], i);
+    if (angle !== undefined)
+      add(
+        state.object.value,
+        one.points!.map((v) => drawn[state.object.value].vertex(v)),
+        `${one.tag} ${numberText(Number(angle.toFixed(1)))}°`,
       );
   });
   const { object, places } = state.measured.value;

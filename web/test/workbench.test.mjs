@@ -630,13 +630,12 @@ try {
     await useTool(page, "base");
     await page.mouse.click(x, y);
     await steps(page, 2);
-    const size = await page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].size);
-    assert.ok(Math.abs(size[2] - 2) < 1e-3 && Math.abs(size[0] - 2) < 1e-3, size.join());
-    const tip = await page.evaluate(() => {
+    const along = await page.evaluate(() => {
       const of = ostraka.objects[ostraka.page.object.value];
-      return of.vertex(24).z > of.vertex(25).z;
+      const [tip, base] = [24, 25].map((v) => of.group.localToWorld(of.vertex(v)));
+      return tip.sub(base).normalize().z;
     });
-    assert.ok(tip, "the tip points up");
+    assert.ok(along > 0.9999, `the tip points up: ${along}`);
     // Each change of light changes the picture, and a double click takes it back.
     const pixels = async () => {
       await page.waitForTimeout(400);
@@ -815,6 +814,95 @@ try {
     await steps(page, 0);
     await page.getByRole("button", { name: /Go on with the last session/ }).click();
     await steps(page, 2);
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
+  await test("the unit and the upward axis are asked once; angle, list of measures, and deleting one", async () => {
+    // A table whose legs point along -y, as its file has it.
+    const boxes = [[0, 0.7, 0, 1, 0.75, 0.6], ...[0, 0.92].flatMap((x) => [0, 0.52].map((z) => [x, 0, z, x + 0.08, 0.7, z + 0.08]))];
+    const sides = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    const text = boxes.flatMap(([x0, y0, z0, x1, y1, z1], b) => [
+      ...[0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${k & 1 ? x1 : x0} ${k & 2 ? y1 : y0} ${k & 4 ? z1 : z0}`),
+      ...sides.map(
+        (one) =>
+          `f ${one
+            .split(" ")
+            .map((v) => +v + 8 * b)
+            .join(" ")}`,
+      ),
+    ]);
+    writeFileSync(at("table.obj"), text.join("\n") + "\n");
+    const server = serve(at("table.obj"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    assert.match(await page.locator(".first").innerText(), /y is probably up[^]*longest side is 1 long. In m/);
+    await picture(page, "workbench-questions.png");
+    await page.getByRole("button", { name: "Stand it up" }).click();
+    await steps(page, 2);
+    const up = () => page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].up);
+    assert.deepEqual(await up(), [0, 1, 0]);
+    await page.locator(".first").getByRole("button", { name: "m", exact: true }).click();
+    await steps(page, 3);
+    assert.equal(await page.evaluate(() => ostraka.page.page.objects[0].unit), "m");
+    assert.equal(await page.locator(".first").count(), 0, "nothing is asked twice");
+    // Taken back, a click on the end of one leg stands it on all four.
+    await page.keyboard.press("Control+z");
+    await steps(page, 2);
+    await page.keyboard.press("Control+z");
+    await steps(page, 1);
+    await useTool(page, "base");
+    const onPage = async (v) => {
+      const place = await page.evaluate((v) => ostraka.view.place(ostraka.objects[0], ostraka.objects[0].vertex(v).clone()), v);
+      const box = await page.locator(".canvas canvas").boundingBox();
+      return [box.x + place.x, box.y + place.y];
+    };
+    const leg = await page.evaluate(() => {
+      // A place in the picture where the end of a leg is seen.
+      const { view } = ostraka;
+      for (let y = 10; y < view.canvas.clientHeight; y += 3)
+        for (let x = 10; x < view.canvas.clientWidth; x += 3) {
+          const hit = view.pick(x, y);
+          if (hit && Math.abs(hit.point.y) < 1e-6) return [x, y];
+        }
+    });
+    assert.ok(leg, "the end of a leg is seen");
+    const box = await page.locator(".canvas canvas").boundingBox();
+    await page.mouse.click(box.x + leg[0], box.y + leg[1]);
+    await steps(page, 2);
+    assert.ok(
+      (await up()).every((x, k) => Math.abs(x - [0, 1, 0][k]) < 1e-6),
+      `${await up()}`,
+    );
+    await page.locator(".first").getByRole("button", { name: "cm", exact: true }).click();
+    await steps(page, 3);
+    // A right angle at a corner of the table's top, from above.
+    await page.locator(".gizmo button.top").click();
+    await page.waitForTimeout(400);
+    await useTool(page, "angle");
+    for (const v of [2, 3, 7]) {
+      const [x, y] = await onPage(v);
+      const middle = [box.x + box.width / 2, box.y + box.height / 2];
+      // A little towards the middle, where the surface is.
+      await page.mouse.click(x + Math.sign(middle[0] - x) * 3, y + Math.sign(middle[1] - y) * 3);
+    }
+    await steps(page, 4);
+    assert.match(await page.locator("#panel .measures").first().innerText(), /∠ angle[^]*90°/);
+    await useTool(page, "ruler");
+    for (const v of [2, 3]) {
+      const [x, y] = await onPage(v);
+      const middle = [box.x + box.width / 2, box.y + box.height / 2];
+      await page.mouse.click(x + Math.sign(middle[0] - x) * 3, y + Math.sign(middle[1] - y) * 3);
+    }
+    await steps(page, 5);
+    assert.match(await page.locator("#panel .measures").first().innerText(), /ruler \(object\)\s+1 cm/);
+    const drawn = await page.locator(".picture text.ruler").allTextContents();
+    assert.ok(drawn.some((one) => /∠ angle 90°/.test(one)) && drawn.some((one) => /ruler 1 cm/.test(one)), drawn.join());
+    await picture(page, "workbench-measures.png");
+    await page.getByRole("button", { name: /Remove: ∠ angle/ }).click();
+    await steps(page, 6);
+    assert.ok(!(await page.locator("#panel .measures").first().innerText()).includes("∠"));
     assert.deepEqual(told, []);
     await close();
     await server.stop();

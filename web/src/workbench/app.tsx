@@ -7,9 +7,11 @@ import * as page from "../state";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
 import { Arriving, ChooseFiles } from "./drop";
 import { Gizmo } from "./gizmo";
+import { FirstQuestions } from "./first";
 import { Icon, type IconName } from "./icons";
 import { Light } from "../light";
 import * as model from "./model";
+import { Measuring } from "./measuring";
 import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
 import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
 import { FileThumbnail, ObjectThumbnail } from "./thumbnails";
@@ -21,6 +23,7 @@ import { canEnter, enter } from "./xr";
 const panelWidth = signal(268);
 const panels = {
   annotating: Annotating,
+  measuring: Measuring,
   relating: Relations,
   deforming: Deforming,
   fragments: Fragments,
@@ -155,7 +158,11 @@ function Tools() {
               data-tool={one}
               aria-pressed={tool.value === one}
               title={`${text(one as Key)}: ${text(`${one}Help` as Key)}`}
-              onClick={() => choose(one)}
+              onClick={() => {
+                choose(one);
+                if (name === "measure") tab.value = "measuring";
+                else if (name === "select" && tab.value === "measuring") tab.value = "annotating";
+              }}
             >
               <Icon name={one} />
               <span>{text(one as Key)}</span>
@@ -187,7 +194,7 @@ function ToolHint() {
           />
         </label>
       )}
-      {["ruler", "tape", "bounding"].includes(tool.value) && (
+      {["ruler", "tape", "angle", "bounding"].includes(tool.value) && (
         <label>
           {text("name")} <input value={measureName.value} onInput={(event) => (measureName.value = event.currentTarget.value)} />
         </label>
@@ -216,7 +223,11 @@ function Layers() {
             <li
               key={one.name}
               class={i === active.value ? "layer active" : "layer"}
-              ref={(element) => void (i === active.value && element?.scrollIntoView({ block: "nearest" }))}
+              ref={(element) => {
+                // The list alone scrolls to the active object.
+                if (i === active.value && element?.parentElement)
+                  element.parentElement.scrollTop = element.offsetTop - element.parentElement.offsetTop - 8;
+              }}
             >
               <label>
                 <input
@@ -236,19 +247,16 @@ function Layers() {
                 )}
               </label>
               {i !== active.value && (
-                <label class="with">
-                  <input
-                    type="checkbox"
-                    checked={model.layers.value.has(one.name)}
-                    onChange={(event) => {
-                      const next = new Set(model.layers.value);
-                      if (event.currentTarget.checked) next.add(one.name);
-                      else next.delete(one.name);
-                      model.layers.value = next;
-                    }}
-                  />{" "}
-                  {text("showWith")}
-                </label>
+                <IconButton
+                  icon="showWith"
+                  name={`${text("showWith")}: ${one.name}`}
+                  pressed={model.layers.value.has(one.name)}
+                  onClick={() => {
+                    const next = new Set(model.layers.value);
+                    if (!next.delete(one.name)) next.add(one.name);
+                    model.layers.value = next;
+                  }}
+                />
               )}
               <button
                 type="button"
@@ -645,6 +653,7 @@ export function App() {
                 ))}
               </div>
               <Layers />
+              <FirstQuestions key={`first ${turn}`} />
               <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
                 <h2 class="panel-title">{text(tab.value)}</h2>
                 {!isEmpty || tab.value === "history" || tab.value === "everything" ? (

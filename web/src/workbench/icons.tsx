@@ -5,6 +5,7 @@ import {
   Brush,
   CircleQuestionMark,
   Clock,
+  Eye,
   FileText,
   Glasses,
   Grip,
@@ -32,6 +33,7 @@ import {
   Spline,
   SquareDashedMousePointer,
   Tags,
+  TriangleRight,
   Undo2,
   UnfoldHorizontal,
   Workflow,
@@ -51,6 +53,7 @@ const icons = {
   points: MapPin,
   ruler: Ruler,
   tape: Route,
+  angle: TriangleRight,
   bounding: UnfoldHorizontal,
   handles: Grip,
   move: Move,
@@ -58,6 +61,7 @@ const icons = {
   scale: Scaling,
   stretch: MoveDiagonal,
   annotating: Tags,
+  measuring: Ruler,
   relating: Workflow,
   deforming: Move3d,
   fragments: Puzzle,
@@ -77,6 +81,7 @@ const icons = {
   close: X,
   fit: Maximize,
   object: Box,
+  showWith: Eye,
 } satisfies Record<string, IconNode>;
 
 export type IconName = keyof typeof icons;

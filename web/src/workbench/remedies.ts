@@ -10,7 +10,17 @@ export interface Remedy {
   action: () => void;
 }
 
-export const tabs = ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"] as const;
+export const tabs = [
+  "annotating",
+  "measuring",
+  "relating",
+  "deforming",
+  "fragments",
+  "slicing",
+  "everything",
+  "results",
+  "history",
+] as const;
 export type Tab = (typeof tabs)[number];
 export const tab = signal<Tab>("annotating");
 /** Whether the panel is folded away. */
@@ -63,6 +73,10 @@ const rules: { says: RegExp; suits?: () => boolean; remedy: () => Remedy }[] = [
     remedy: () => ({ label: text("makeRelation"), action: () => showTab("relating") }),
   },
   { says: /set-up|upward direction|direction is up/, remedy: () => ({ label: text("standIt"), action: () => choose("base") }) },
+  {
+    says: /set-unit|no unit|unit is not known|states no unit/,
+    remedy: () => ({ label: text("setUnitNow"), action: () => showTab("measuring") }),
+  },
   { says: /load the page again/, remedy: () => ({ label: text("reloadPage"), action: () => location.reload() }) },
 ];
 
