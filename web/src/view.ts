@@ -66,6 +66,8 @@ export class View {
   private seen = false;
   private wanted = true;
   private running = false;
+  /** Compares two objects: left of the share of the width the first, right of it the second. */
+  wipe: { left: DrawnObject; right: DrawnObject; share: number } | undefined;
   clip = 1;
   clipAxis = 2;
   background = 0xffffff;
@@ -323,12 +325,22 @@ export class View {
     this.plane.set(normal, this.clip);
     if (this.clip < 1) shared.clip.value.set(normal.x, normal.y, normal.z, this.clip);
     else shared.clip.value.set(0, 0, 0, 1);
-    this.panes.forEach((pane, i) => {
-      for (const one of this.objects) one.group.visible = one === pane || this.layers.includes(one);
-      renderer.setViewport(i * width, 0, width, height);
-      renderer.setScissor(i * width, 0, width, height);
+    const { wipe } = this;
+    const halves = wipe && this.panes.length === 1 ? [wipe.left, wipe.right] : [];
+    halves.forEach((half, i) => {
+      for (const one of this.objects) one.group.visible = one === half;
+      const edge = Math.round(wipe!.share * width);
+      renderer.setViewport(0, 0, width, height);
+      renderer.setScissor(i * edge, 0, i === 0 ? edge : width - edge, height);
       renderer.render(this.scene, this.camera);
     });
+    if (halves.length === 0)
+      this.panes.forEach((pane, i) => {
+        for (const one of this.objects) one.group.visible = one === pane || this.layers.includes(one);
+        renderer.setViewport(i * width, 0, width, height);
+        renderer.setScissor(i * width, 0, width, height);
+        renderer.render(this.scene, this.camera);
+      });
     if (!this.seen) {
       this.seen = true;
       renderer.getContext().finish();

@@ -908,6 +908,88 @@ try {
     await server.stop();
   });
 
+  await test("by numbers: the back 20 % higher with its legs level; compared by a line; picture, plate and page; numbers beside the hand", async () => {
+    mkdirSync(at("chairs"));
+    for (const name of ["chair.ply", "chair.ant.json"]) copyFileSync(join(project, "data", name), join(at("chairs"), name));
+    const server = serve(at("chairs"));
+    const { page, told, close } = await open(await server.address);
+    await page.locator(".start button", { hasText: "chair.ply" }).click();
+    await steps(page, 1);
+    const height = () =>
+      page.evaluate(() => {
+        const i = ostraka.page.object.value;
+        const of = ostraka.objects[i];
+        const back = ostraka.page.page.objects[i].annotations.findIndex((one) => one.tag === "back");
+        const z = [...of.regions[back]].flatMap((f) => [0, 1, 2].map((k) => of.vertex(of.shape.triangles[3 * f + k]).z));
+        return Math.max(...z) - Math.min(...z);
+      });
+    const before = await height();
+    await tab(page, "deforming");
+    await page.locator(".numbers select").first().selectOption({ label: "back" });
+    assert.equal(await page.locator(".numbers .kept input:checked").count(), 4, "the legs keep their level unless one says otherwise");
+    await page.getByRole("button", { name: "Do it" }).click();
+    await steps(page, 2);
+    assert.ok(await page.evaluate(() => ostraka.model.outcome.value.holds));
+    const ratio = (await height()) / before;
+    assert.ok(Math.abs(ratio - 1.2) < 0.01, String(ratio));
+    assert.match(await page.locator("#panel .verdict").first().innerText(), /acceptable/);
+    // The line between before and after follows the pointer, and the picture with it.
+    await page.getByRole("checkbox", { name: /Compare with before/ }).check();
+    await look(page);
+    const pixels = async () => (await page.locator(".canvas canvas").first().screenshot()).toString("base64");
+    const first = await pixels();
+    const line = await page.locator(".wipe").boundingBox();
+    await page.mouse.move(line.x + 7, line.y + 150);
+    await page.mouse.down();
+    await page.mouse.move(line.x - 150, line.y + 160, { steps: 5 });
+    await page.mouse.up();
+    await look(page);
+    const moved = await page.locator(".wipe").boundingBox();
+    assert.ok(Math.abs(moved.x + 157 - line.x) < 3, `${line.x} ${moved.x}`);
+    assert.notEqual(first, await pixels());
+    await picture(page, "workbench-compare.png");
+    await page.getByRole("checkbox", { name: /Compare with before/ }).uncheck();
+    // What one takes away.
+    const take = async (name) => {
+      const [download] = await Promise.all([
+        page.waitForEvent("download", { timeout: patience }),
+        page.getByRole("button", { name, exact: true }).click(),
+      ]);
+      await settled(page);
+      return { name: download.suggestedFilename(), data: readFileSync(await download.path()) };
+    };
+    const png = await take("Picture");
+    assert.ok(png.name === "chair.png" && png.data.subarray(1, 4).toString() === "PNG");
+    const [width, heightOf] = await page.evaluate(() => [ostraka.view.canvas.width, ostraka.view.canvas.height]);
+    assert.deepEqual([png.data.readUInt32BE(16), png.data.readUInt32BE(20)], [width, heightOf]);
+    const plate = await take("Plate");
+    assert.ok(plate.name === "chair-plate.pdf" && plate.data.subarray(0, 5).toString() === "%PDF-");
+    const html = await take("Make a page");
+    assert.ok(html.name === "chair.html" && html.data.toString().includes("front left leg"));
+    // A drag of the whole: the number is beside the pointer.
+    await page.getByRole("button", { name: "Withdraw" }).click();
+    await settled(page);
+    const [w, h] = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
+    await useTool(page, "stretch");
+    const box = await page.locator(".canvas canvas").boundingBox();
+    await page.mouse.move(box.x + 0.5 * w, box.y + 0.6 * h);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.5 * w, box.y + 0.6 * h - 30, { steps: 5 });
+    await page.waitForFunction(() => document.querySelector(".drawing-now .reading")?.textContent.startsWith("20 % higher, from its base"));
+    await picture(page, "workbench-reading.png");
+    await page.mouse.up();
+    await settled(page);
+    assert.equal(await page.locator(".drawing-now .reading").count(), 0);
+    const sizes = await page.evaluate(() => {
+      const of = (deformed) => ostraka.page.page.objects[ostraka.model.shown.value.findIndex((one) => one.deformed === deformed)].size[2];
+      return of(true) / of(false);
+    });
+    assert.ok(Math.abs(sizes - 1.2) < 0.01, String(sizes));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

@@ -11,6 +11,8 @@ import { FirstQuestions } from "./first";
 import { Icon, type IconName } from "./icons";
 import { Light } from "../light";
 import * as model from "./model";
+import { savePicture } from "../snapshot";
+import { makePage, makePlate } from "./products";
 import { Measuring } from "./measuring";
 import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
 import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
@@ -115,6 +117,7 @@ function Header() {
           <Icon name="save" />
         </button>
       </form>
+      <Products />
       <span class="group">
         <IconButton icon="palette" name={text("palette")} hint={`${text("palette")} (Ctrl+K)`} onClick={() => (palette.value = true)} />
         {canListen() && <IconButton icon="voice" name={text("voice")} pressed={listening.value} onClick={() => listen(!listening.value)} />}
@@ -281,6 +284,74 @@ function Layers() {
         </label>
       )}
     </fieldset>
+  );
+}
+
+/** Updates the comparison of the shape before and after the deformation. */
+effect(() => {
+  const share = model.compare.value;
+  void page.turn.value;
+  if (!view) return;
+  const rest = model.shown.value.findIndex((one) => one.object === model.active.value && !one.deformed);
+  const deformed = model.shown.value.findIndex((one) => one.object === model.active.value && one.deformed);
+  const [left, right] = [drawn[rest], drawn[deformed]];
+  view.wipe = share !== undefined && left && right ? { left, right, share } : undefined;
+  if (view.wipe) left.paint(() => true, -1, left.colouring(page.colouring.value));
+  view.draw();
+});
+
+/** The line between the shape before and after the deformation: dragged, or moved by arrow keys. */
+function Wipe() {
+  const share = model.compare.value;
+  if (share === undefined || !model.has("deformed")) return null;
+  const put = (value: number) => (model.compare.value = Math.min(0.98, Math.max(0.02, value)));
+  return (
+    <div
+      class="wipe"
+      role="slider"
+      aria-label={text("compare")}
+      aria-valuemin={0}
+      aria-valuemax={100}
+      aria-valuenow={Math.round(100 * share)}
+      tabIndex={0}
+      ref={(element) => void (element && (element.style.left = `${100 * share}%`))}
+      onKeyDown={(event) => {
+        if (event.key === "ArrowLeft") put(share - 0.02);
+        if (event.key === "ArrowRight") put(share + 0.02);
+      }}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={(event) => {
+        if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
+        const box = event.currentTarget.parentElement!.getBoundingClientRect();
+        put((event.clientX - box.left) / box.width);
+      }}
+    >
+      <span class="before">{page.word("before")}</span>
+      <span class="after">{page.word("after")}</span>
+    </div>
+  );
+}
+
+/** The buttons that make something to take away: a picture, a plate for print, a page for a colleague. */
+function Products() {
+  const isOpen = model.object.value !== undefined;
+  return (
+    <span class="group products">
+      <button
+        type="button"
+        disabled={!isOpen}
+        title={text("pictureHelp")}
+        onClick={() => view && savePicture(view, model.object.value!.name)}
+      >
+        <Icon name="picture" /> {text("picture")}
+      </button>
+      <button type="button" disabled={!isOpen} title={text("plateHelp")} onClick={() => void makePlate()}>
+        <Icon name="plate" /> {text("plate")}
+      </button>
+      <button type="button" disabled={!isOpen} title={text("pageHelp")} onClick={() => void makePage()}>
+        <Icon name="page" /> {text("makePage")}
+      </button>
+    </span>
   );
 }
 
@@ -626,6 +697,7 @@ export function App() {
               <Light />
             </div>
           )}
+          <Wipe />
           <Chooser />
           <Arriving />
           {heard.value && <p class="quiet heard">{text("heard", heard.value)}</p>}

@@ -76,6 +76,9 @@ export const has = (part: string) => object.value?.parts[part] !== undefined;
 export const layers = signal<ReadonlySet<string>>(new Set());
 export const drawnAs = signal<"surface" | "edges" | "points">("surface");
 
+/** Where the comparison of the shape before and after the deformation divides the picture, from 0 to 1; undefined: it is off. */
+export const compare = signal<number | undefined>(undefined);
+
 /** Called when another content is displayed. */
 export const onShown: (() => void)[] = [];
 

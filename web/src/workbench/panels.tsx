@@ -10,8 +10,10 @@ import { Tables } from "../tables";
 import { extract, linkCage, makeCage, makeCageFor } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
+import { ByNumbers } from "./numbers";
 import {
   change,
+  compare,
   download,
   files,
   goTo,
@@ -429,6 +431,7 @@ export function Deforming() {
   const deformed = has("deformed");
   return (
     <>
+      <ByNumbers />
       <section aria-labelledby="cage-title">
         <h2 id="cage-title">{text("cage")}</h2>
         <p class="quiet">
@@ -505,7 +508,17 @@ export function Deforming() {
           <Button name="accept" disabled={!deformed} onClick={() => void change("accept", "accept")} />
           <Button name="withdraw" disabled={!deformed} onClick={() => void change("withdraw", "withdraw")} />
         </div>
-        {deformed && <BeforeAfter />}
+        {deformed && page.blendPartner.value >= 0 && <BeforeAfter />}
+        {deformed && (
+          <label>
+            <input
+              type="checkbox"
+              checked={compare.value !== undefined}
+              onChange={(event) => (compare.value = event.currentTarget.checked ? 0.5 : undefined)}
+            />{" "}
+            {text("compare")}
+          </label>
+        )}
       </section>
       <Constraints />
       <More title="deform" operation="deform" />

@@ -394,6 +394,11 @@ export function Drawing() {
       {points.map((one, i) => (
         <circle key={i} cx={one.x} cy={one.y} r={4} />
       ))}
+      {deform.reading.value && (
+        <text class="reading" x={deform.reading.value.x + 16} y={deform.reading.value.y - 10}>
+          {deform.reading.value.text}
+        </text>
+      )}
     </svg>
   );
 }
