@@ -127,6 +127,32 @@ function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: 
   return { of, members };
 }
 
+/** What is computed of a shape once, also when objects are made of it again: normals, and the hierarchy of boxes by which places are picked. */
+class Rest {
+  private hierarchy: MeshBVH | undefined;
+  readonly normals: Float32Array;
+  constructor(private readonly shape: Shape) {
+    this.normals = normalsOf(shape.positions, shape.triangles);
+  }
+  get bvh(): MeshBVH {
+    this.hierarchy ??= hierarchyOf(this.shape.positions, this.shape.triangles);
+    return this.hierarchy;
+  }
+}
+const rests = new WeakMap<Float32Array, Rest>();
+function restOf(shape: Shape): Rest {
+  const rest = rests.get(shape.positions) ?? new Rest(shape);
+  rests.set(shape.positions, rest);
+  return rest;
+}
+
+function hierarchyOf(positions: Float32Array, triangles: Uint32Array): MeshBVH {
+  const indexed = new THREE.BufferGeometry();
+  indexed.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+  indexed.setIndex(new THREE.BufferAttribute(triangles, 1));
+  return new MeshBVH(indexed, { indirect: true });
+}
+
 /** Duplicates vertices so that each one has one colour: one per vertex and kind of triangle that meets there. */
 function splitVertices(
   vertices: number,
@@ -388,7 +414,10 @@ export class DrawnObject {
   private readonly apart: Float32Array | undefined;
   private moved = { blend: 0, explode: 0 };
   private slice: THREE.Mesh | undefined;
+  /** Of the moved vertices. */
   private bvhMade: MeshBVH | undefined;
+  /** Whether vertices are no longer where the shape has them. */
+  private isMoved = false;
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
   private readonly kinds: Kinds;
@@ -413,7 +442,7 @@ export class DrawnObject {
     this.kinds = kindsOf(this.sets.of, shape.look);
     const split = splitVertices(texture ? texture.vertices.length : positions.length / 3, texture?.corners ?? triangles, this.kinds.of);
     this.split = { source: texture ? split.source.map((i) => texture.vertices[i]) : split.source, kind: split.kind };
-    this.normals = normalsOf(positions, triangles);
+    this.normals = restOf(shape).normals;
     const geometry = new THREE.BufferGeometry();
     const count = this.split.source.length;
     if (texture) {
@@ -454,12 +483,8 @@ export class DrawnObject {
 
   /** Built on first use; triangles keep their numbers. */
   get bvh(): MeshBVH {
-    if (!this.bvhMade) {
-      const indexed = new THREE.BufferGeometry();
-      indexed.setAttribute("position", new THREE.BufferAttribute(this.current, 3));
-      indexed.setIndex(new THREE.BufferAttribute(this.shape.triangles, 1));
-      this.bvhMade = new MeshBVH(indexed, { indirect: true });
-    }
+    if (!this.isMoved) return restOf(this.shape).bvh;
+    this.bvhMade ??= hierarchyOf(this.current, this.shape.triangles);
     return this.bvhMade;
   }
 
@@ -497,6 +522,7 @@ export class DrawnObject {
       if (wanted.explode > 0) x += wanted.explode * this.apart![i];
       this.current[i] = x;
     }
+    this.isMoved = true;
     this.bvhMade?.refit();
     return true;
   }
@@ -607,6 +633,7 @@ export class DrawnObject {
     });
     attribute.needsUpdate = true;
     this.current.set(positions);
+    this.isMoved = true;
     this.bvhMade?.refit();
   }
 

@@ -990,6 +990,51 @@ try {
     await server.stop();
   });
 
+  await test("on a phone of 390 x 844 nothing overlaps, fingers turn the object, and every command is reached", async () => {
+    mkdirSync(at("phone"));
+    copyFileSync(join(project, "data/chair.ply"), join(at("phone"), "chair.ply"));
+    const server = serve(at("phone"));
+    const { page, told, close } = await open(await server.address, {
+      viewport: { width: 390, height: 844 },
+      hasTouch: true,
+      isMobile: true,
+    });
+    await page.waitForFunction(() => document.querySelector(".start button"), undefined, { timeout: patience });
+    await page.locator(".start button", { hasText: "chair.ply" }).tap();
+    await steps(page, 1);
+    const boxes = await page.evaluate(() =>
+      ["header", ".tools", ".canvas", "aside"].map((one) => {
+        const { left, top, right, bottom } = document.querySelector(one).getBoundingClientRect();
+        return { one, left, top, right, bottom };
+      }),
+    );
+    boxes.forEach((box, i) => {
+      assert.ok(box.left >= 0 && box.right <= 391 && box.bottom <= 845, JSON.stringify(box));
+      if (i > 0) assert.ok(box.top >= boxes[i - 1].bottom - 1, JSON.stringify(boxes));
+    });
+    assert.ok(boxes[0].bottom < 60, "the header is one row");
+    assert.ok(boxes[2].bottom - boxes[2].top > 0.42 * 844, "the picture has its room");
+    // What stands in one row does not cover its neighbour.
+    for (const row of ["header", ".tools", ".tabs"]) {
+      const covers = await page.evaluate((row) => {
+        const list = [...document.querySelector(row).querySelectorAll("button, select, h1, form > input:not([type=file])")]
+          .filter((one) => one.offsetParent)
+          .map((one) => one.getBoundingClientRect());
+        return list.some((a, i) =>
+          list.some((b, k) => k > i && a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1),
+        );
+      }, row);
+      assert.ok(!covers, row);
+    }
+    await picture(page, "workbench-phone.png");
+    await turnsByHand(page);
+    await page.getByRole("button", { name: "Hide the panel" }).tap();
+    assert.equal(await page.locator("aside").count(), 0);
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

@@ -180,8 +180,24 @@ export const change = (title: Key, what: string, more: object = {}) =>
   });
 
 export const goTo = (step: number) => change("undo", "go", { place: step });
-export const undo = () => (place.value > 0 ? goTo(place.value - 1) : Promise.resolve(false));
-export const redo = () => (place.value < history.value.length ? goTo(place.value + 1) : Promise.resolve(false));
+/** The step to which undo and redo lead while they are under way, so that five fast presses of a key are five steps. */
+let wantedPlace: number | undefined;
+let isGoing = false;
+
+async function goBy(by: number): Promise<boolean> {
+  const wanted = (wantedPlace ?? place.value) + by;
+  if (wanted < 0 || wanted > history.value.length) return false;
+  wantedPlace = wanted;
+  if (isGoing) return true;
+  isGoing = true;
+  let went = true;
+  while (went && wantedPlace !== undefined && wantedPlace !== place.value) went = await goTo(wantedPlace);
+  isGoing = false;
+  wantedPlace = undefined;
+  return went;
+}
+export const undo = () => goBy(-1);
+export const redo = () => goBy(1);
 
 export const part = (which: string) => ({ part: which });
 

@@ -10,6 +10,7 @@ import { busy, connected, link, objects, onShown, openable, shown } from "./mode
 import { Icon } from "./icons";
 
 const [width, height] = [104, 78];
+const most = 200000;
 /** Pictures of files by name, and of open objects by name; null: there is none. */
 const ofFiles = signal<ReadonlyMap<string, HTMLCanvasElement | null>>(new Map());
 const ofObjects = signal<ReadonlyMap<string, HTMLCanvasElement>>(new Map());
@@ -54,7 +55,9 @@ function drawObjects() {
     const at = shown.value.findIndex((other) => other.object === i);
     const of = drawn[at];
     if (!of) return;
-    const key = `${of.about.shape?.key} ${of.about.annotations.map((a) => `${a.id} ${a.colour} ${a.faces?.count}`)} ${of.about.up}`;
+    // Large objects are drawn once, whatever is annotated on them.
+    const parts = of.about.faces > most ? "" : of.about.annotations.map((a) => `${a.id} ${a.colour} ${a.faces?.count}`).join();
+    const key = `${of.about.shape?.key} ${parts} ${of.about.up}`;
     const before = ofObjects.value.get(one.name);
     if (before && pictured.get(one.name) === key) {
       next.set(one.name, before);
