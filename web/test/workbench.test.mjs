@@ -137,6 +137,11 @@ async function drag(page, from, to, between = 4) {
 }
 const useTool = (page, name) => page.locator(`[data-tool="${name}"]`).click();
 const tab = (page, name) => page.locator(`#tab-${name}`).click();
+/** Ticks the members of a relationship, and no others. */
+async function members(page, ...names) {
+  for (const box of await page.locator("#panel .members input:checked").all()) await box.uncheck();
+  for (const name of names) await page.locator("#panel .members").getByRole("checkbox", { name, exact: true }).check();
+}
 const sha = (file) => createHash("sha256").update(readFileSync(file)).digest("hex");
 function tree(root) {
   const found = new Map();
@@ -198,7 +203,7 @@ try {
     await tab(page, "relating");
     await page.getByRole("button", { name: "Extract relationships" }).click();
     await steps(page, 5);
-    await page.locator("#panel select[multiple]").selectOption({ label: "lid" });
+    await members(page, "lid");
     await page.locator("#panel form select").first().selectOption("keep shape");
     await page.locator("#panel form button[type=submit]").click();
     await steps(page, 6);
@@ -285,7 +290,7 @@ try {
     const { page, told, close } = await open(await server.address);
     await steps(page, 1);
     await tab(page, "relating");
-    await page.locator("#panel select[multiple]").selectOption([1, 2, 3, 4, 5].map((i) => ({ label: `flower ${i}` })));
+    await members(page, ...[1, 2, 3, 4, 5].map((i) => `flower ${i}`));
     await page.locator("#panel form select").first().selectOption("same level");
     await page.locator("#panel form button[type=submit]").click();
     await steps(page, 2);
@@ -1030,6 +1035,58 @@ try {
     await turnsByHand(page);
     await page.getByRole("button", { name: "Hide the panel" }).tap();
     assert.equal(await page.locator("aside").count(), 0);
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
+  await test("relationships: types in groups of the field, forms from each type's declaration, what is refused is said at once", async () => {
+    mkdirSync(at("relate"));
+    for (const name of ["chair.ply", "chair.ant.json"]) copyFileSync(join(project, "data", name), join(at("relate"), name));
+    // As most scans come: no direction is up.
+    const set = JSON.parse(readFileSync(join(at("relate"), "chair.ant.json"), "utf8"));
+    delete set.up;
+    writeFileSync(join(at("relate"), "chair.ant.json"), JSON.stringify(set));
+    const server = serve(at("relate"));
+    const { page, told, close } = await open(await server.address);
+    await page.locator(".start button", { hasText: "chair.ply" }).click();
+    await steps(page, 1);
+    await tab(page, "relating");
+    const type = page.locator("#panel form.operation select").first();
+    const groups = await type
+      .locator("optgroup")
+      .evaluateAll((list) => list.map((one) => [one.label, one.querySelectorAll("option").length]));
+    assert.equal(groups.length, 5);
+    const offered = await page.evaluate(
+      () =>
+        ostraka.model.operations.value.find((one) => one.name === "relation add").options.find((one) => one.name === "type").words.length,
+    );
+    assert.equal(
+      groups.reduce((sum, [, count]) => sum + count, 0),
+      offered,
+      "every type is offered once",
+    );
+    await type.selectOption("keep measure");
+    await members(page, "back");
+    await page.locator("#parameter-measure").selectOption("height");
+    await page.getByLabel("At least").fill("300");
+    await page.getByLabel("At most").fill("600");
+    await page.getByLabel("Strength").selectOption("exact");
+    await page.locator("#panel form.operation button[type=submit]").click();
+    await steps(page, 2);
+    const graph = await page.evaluate(async () => {
+      const answer = await ostraka.model.link.ask("file", { file: ostraka.model.object.value.parts.graph });
+      return JSON.parse(new TextDecoder().decode(answer.bytes));
+    });
+    assert.deepEqual(graph.relationships.at(-1).constraint, { hard: true, measure: "height", minValue: 300, maxValue: 600 });
+    // "Same level" needs a direction that is up: said when it is added, with the button that mends it.
+    await type.selectOption("same level");
+    await members(page, "front left leg", "front right leg");
+    await page.locator("#panel form.operation button[type=submit]").click();
+    await page.locator("[role=alert] button.remedy").waitFor();
+    await picture(page, "workbench-relate.png");
+    await page.locator("[role=alert] button.remedy").click();
+    assert.equal(await page.evaluate(() => ostraka.tools.tool.value), "base");
     assert.deepEqual(told, []);
     await close();
     await server.stop();

@@ -11,6 +11,7 @@ import { extract, linkCage, makeCage, makeCageFor } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
 import { ByNumbers } from "./numbers";
+import { AddRelation } from "./relate";
 import {
   change,
   compare,
@@ -21,7 +22,6 @@ import {
   history,
   object,
   objects,
-  operations,
   outcome,
   part,
   place,
@@ -271,12 +271,6 @@ function More({ title, operation }: { title: Key; operation: string }) {
 
 export function Relations() {
   const about = page.page.objects[page.object.value];
-  const [type, setType] = useState("adjacency");
-  const [members, setMembers] = useState<string[]>([]);
-  const [constrains, setConstrains] = useState(true);
-  const [weight, setWeight] = useState("1");
-  const [parameters, setParameters] = useState("");
-  const types = operations.value.find((one) => one.name === "relation add")?.options.find((one) => one.name === "type")?.words ?? [];
   if (!about) return null;
   return (
     <>
@@ -331,73 +325,7 @@ export function Relations() {
           ))}
         </ul>
       </section>
-      <section aria-labelledby="relation-add">
-        <h2 id="relation-add">{text("addRelation")}</h2>
-        <form
-          class="operation"
-          onSubmit={(event) => {
-            event.preventDefault();
-            const given: Record<string, unknown> = {
-              mesh: part("mesh"),
-              annotations: part("annotations"),
-              type,
-              annotation: members,
-              constraint: constrains,
-            };
-            if (has("graph")) given.graph = part("graph");
-            if (constrains) given.weight = Number(weight);
-            if (parameters.trim()) given.parameters = parameters;
-            void run({ operation: "relation add", title: `${text("addRelation")}: ${type}`, with: given, keep: ["output"] });
-          }}
-        >
-          <label class="field">
-            {text("type")}{" "}
-            <select value={type} onChange={(event) => setType(event.currentTarget.value)}>
-              {types.map((one) => (
-                <option key={one} value={one}>
-                  {one}
-                </option>
-              ))}
-            </select>
-          </label>
-          <label class="field">
-            {text("members")}{" "}
-            <select
-              multiple
-              size={6}
-              required
-              onChange={(event) => setMembers([...event.currentTarget.selectedOptions].map((one) => one.value))}
-            >
-              {about.annotations.map((one) => (
-                <option key={one.id} value={String(one.id)} selected={members.includes(String(one.id))}>
-                  {one.tag || `#${one.id}`}
-                </option>
-              ))}
-            </select>
-          </label>
-          <label class="field">
-            <input type="checkbox" checked={constrains} onChange={(event) => setConstrains(event.currentTarget.checked)} />{" "}
-            {text("constraint")}
-          </label>
-          {constrains && (
-            <label class="field">
-              {text("weight")}{" "}
-              <input type="number" min="0" step="any" value={weight} onInput={(event) => setWeight(event.currentTarget.value)} />
-            </label>
-          )}
-          <label class="field">
-            {text("parameters")}{" "}
-            <input
-              value={parameters}
-              placeholder='{"min": 0.9, "max": 1.1}'
-              onInput={(event) => setParameters(event.currentTarget.value)}
-            />
-          </label>
-          <button type="submit" title={helpOf("relation add")}>
-            {text("addRelation")}
-          </button>
-        </form>
-      </section>
+      <AddRelation />
     </>
   );
 }
