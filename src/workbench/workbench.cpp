@@ -26,6 +26,7 @@ using workbench::fail_request;
 namespace {
 
 constexpr std::size_t kept_meshes = 12;
+constexpr std::uintmax_t largest_preview = 24'000'000;  // bytes of a file of which a thumbnail is made
 
 JsonValue error_json(const std::string& problem, const std::string& where, const std::string& remedy, JsonAllocator& a) {
     return json_object(a, "problem", problem, "where", where, "remedy", remedy);
@@ -107,6 +108,7 @@ const std::map<std::string, Workbench::Answer>& Workbench::answers() {
         {"influence", &Workbench::influence}, {"file", &Workbench::file},
         {"handles", &Workbench::handles},     {"parts", &Workbench::parts},
         {"reach", &Workbench::reach},         {"upload", &Workbench::upload},
+        {"preview", &Workbench::preview},
     };
     return handlers;
 }
@@ -269,6 +271,25 @@ void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes
     add_members(result, a, "shown", std::move(shown_objects), "content", content.data);
     add_session(result);
     add_members(result, a, "openable", session_.openable());
+    bytes = std::move(content.bytes);
+}
+
+void Workbench::preview(const JsonValue& request, Json& result, std::string& bytes) {
+    const std::string name = text_in(request, "name");
+    const std::vector<std::string> names = session_.openable();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        fail_request(fmt::format("'{}' is not a file that can be opened", printable(name, 100)), "open one that is in the list");
+    const Path file = session_.root() / name;
+    if (name.ends_with(".json") || size_of_file(file) > largest_preview) return;
+    const MeshFile mesh = in_file(file.string(), [&] { return read_mesh(file); });
+    workbench::ShownShape shape;
+    shape.name = shape.key = "preview of " + name;
+    shape.mesh = &mesh.mesh;
+    shape.extras = &mesh.extras;
+    workbench::Scene scene({});
+    scene.add(shape);
+    Page::Content content = scene.content("the workbench");
+    add_members(result, result.GetAllocator(), "content", content.data);
     bytes = std::move(content.bytes);
 }
 

@@ -11,6 +11,7 @@ import { address, closeEntry } from "./content";
 import { Picture, view } from "./picture";
 import { sixViews } from "./view";
 import { Slices } from "./slices";
+import { savePicture } from "./snapshot";
 import * as state from "./state";
 import { numberText, page, word } from "./state";
 import { Tables } from "./tables";
@@ -92,19 +93,6 @@ function ColourBar() {
   );
 }
 
-function savePicture() {
-  if (!view) return;
-  view.paint();
-  view.canvas.toBlob((blob) => {
-    if (!blob) return;
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = `${page.title.replace(/[^\p{L}\p{N}._-]+/gu, "-")}.png`;
-    link.click();
-    URL.revokeObjectURL(link.href);
-  }, "image/png");
-}
-
 function keepAddress() {
   history.replaceState(null, "", address());
   state.message.value = word("copied");
@@ -178,7 +166,7 @@ function Toolbar() {
         }}
       />
       <Check label={word("patterns")} checked={state.patterns.value} onChange={(value) => (state.patterns.value = value)} />
-      <button type="button" onClick={savePicture}>
+      <button type="button" onClick={() => view && savePicture(view, page.title)}>
         {word("picture")}
       </button>
       <button type="button" onClick={keepAddress}>

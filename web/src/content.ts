@@ -87,11 +87,13 @@ async function cageOf(one: DrawnObject, content: Content): Promise<THREE.Object3
   return group;
 }
 
+/** The objects of a content that is not displayed, for pictures of them. */
+export const objectsOf = ({ data, blobs }: Content): Promise<DrawnObject[]> =>
+  Promise.all(data.objects.map(async (about, i) => new DrawnObject(i, about, await shapeOf(about, blobs), blobs)));
+
 /** Displays a content: that of the page, or of an object of a collection. */
 export async function showContent(content: Content, keepsCamera = false) {
-  const objects = await Promise.all(
-    content.data.objects.map(async (about, i) => new DrawnObject(i, about, await shapeOf(about, content.blobs), content.blobs)),
-  );
+  const objects = await objectsOf(content);
   for (const one of objects) {
     one.cage = await cageOf(one, content);
     if (one.cage) one.group.add(one.cage);

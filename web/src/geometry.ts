@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { MeshBVH } from "three-mesh-bvh";
 import { readRuns, type Blobs, type Colouring, type PageObject, type Slice } from "./data";
+import { angleSign } from "./sizes";
 import { kindsOf, rangesByMaterial, texturedMaterials, type Kinds, type ShapeLook, type ShapeTexture } from "./texture";
 
 /** Vertices and triangles in the order of the object's file. */
@@ -124,6 +125,32 @@ function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: 
     }
   });
   return { of, members };
+}
+
+/** What is computed of a shape once, also when objects are made of it again: normals, and the hierarchy of boxes by which places are picked. */
+class Rest {
+  private hierarchy: MeshBVH | undefined;
+  readonly normals: Float32Array;
+  constructor(private readonly shape: Shape) {
+    this.normals = normalsOf(shape.positions, shape.triangles);
+  }
+  get bvh(): MeshBVH {
+    this.hierarchy ??= hierarchyOf(this.shape.positions, this.shape.triangles);
+    return this.hierarchy;
+  }
+}
+const rests = new WeakMap<Float32Array, Rest>();
+function restOf(shape: Shape): Rest {
+  const rest = rests.get(shape.positions) ?? new Rest(shape);
+  rests.set(shape.positions, rest);
+  return rest;
+}
+
+function hierarchyOf(positions: Float32Array, triangles: Uint32Array): MeshBVH {
+  const indexed = new THREE.BufferGeometry();
+  indexed.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+  indexed.setIndex(new THREE.BufferAttribute(triangles, 1));
+  return new MeshBVH(indexed, { indirect: true });
 }
 
 /** Duplicates vertices so that each one has one colour: one per vertex and kind of triangle that meets there. */
@@ -387,7 +414,10 @@ export class DrawnObject {
   private readonly apart: Float32Array | undefined;
   private moved = { blend: 0, explode: 0 };
   private slice: THREE.Mesh | undefined;
+  /** Of the moved vertices. */
   private bvhMade: MeshBVH | undefined;
+  /** Whether vertices are no longer where the shape has them. */
+  private isMoved = false;
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
   private readonly kinds: Kinds;
@@ -412,7 +442,7 @@ export class DrawnObject {
     this.kinds = kindsOf(this.sets.of, shape.look);
     const split = splitVertices(texture ? texture.vertices.length : positions.length / 3, texture?.corners ?? triangles, this.kinds.of);
     this.split = { source: texture ? split.source.map((i) => texture.vertices[i]) : split.source, kind: split.kind };
-    this.normals = normalsOf(positions, triangles);
+    this.normals = restOf(shape).normals;
     const geometry = new THREE.BufferGeometry();
     const count = this.split.source.length;
     if (texture) {
@@ -453,12 +483,8 @@ export class DrawnObject {
 
   /** Built on first use; triangles keep their numbers. */
   get bvh(): MeshBVH {
-    if (!this.bvhMade) {
-      const indexed = new THREE.BufferGeometry();
-      indexed.setAttribute("position", new THREE.BufferAttribute(this.current, 3));
-      indexed.setIndex(new THREE.BufferAttribute(this.shape.triangles, 1));
-      this.bvhMade = new MeshBVH(indexed, { indirect: true });
-    }
+    if (!this.isMoved) return restOf(this.shape).bvh;
+    this.bvhMade ??= hierarchyOf(this.current, this.shape.triangles);
     return this.bvhMade;
   }
 
@@ -496,6 +522,7 @@ export class DrawnObject {
       if (wanted.explode > 0) x += wanted.explode * this.apart![i];
       this.current[i] = x;
     }
+    this.isMoved = true;
     this.bvhMade?.refit();
     return true;
   }
@@ -606,6 +633,7 @@ export class DrawnObject {
     });
     attribute.needsUpdate = true;
     this.current.set(positions);
+    this.isMoved = true;
     this.bvhMade?.refit();
   }
 
@@ -636,7 +664,13 @@ export class DrawnObject {
   /** Whether there are annotations of parts, not only of the whole object. */
   private get hasParts(): boolean {
     const all = this.shape.triangles.length / 3;
-    return this.about.annotations.some((one) => (one.faces ? one.faces.count < all : true));
+    return this.about.annotations.some((one) => (one.faces ? one.faces.count < all : !one.tag.startsWith(angleSign)));
+  }
+
+  /** Whether a region only holds the measures of the whole object: grey all over, it would hide the object's own colours. */
+  private isBare(annotation: number): boolean {
+    const { faces, colour } = this.about.annotations[annotation];
+    return faces !== undefined && faces.count === this.top.length && colour.every((c) => c === 190);
   }
 
   /** The colouring shown for a wanted one; "auto": annotations of parts if there are any, otherwise texture or own colours. */
@@ -687,7 +721,8 @@ export class DrawnObject {
     if (colouring === "annotations") {
       const table = sets.members.map((regions, set) => {
         const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 160] : [1, 0];
-        return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
+        const bare = topOf[set] < 0 || (this.isBare(topOf[set]) && topOf[set] !== chosen);
+        return (bare ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
       });
       this.recolour(
         false,

@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import * as THREE from "three";
 import { colourOf } from "./colours";
 import { shared, type DrawnObject } from "./geometry";
+import { angleOf, angleSign } from "./sizes";
 import * as state from "./state";
 import { numberText, page, withUnit, word } from "./state";
 import { isUnlit } from "./texture";
@@ -59,7 +60,7 @@ function labelPlaces(width: number, height: number): Label[] {
       if (!state.isShown(o, i) || !one.tag) return;
       const chosen = state.chosen.value === i && o === state.object.value;
       const whole = one.faces && one.faces.count >= 0.95 * of.top.length;
-      if (whole && !chosen) return;
+      if ((whole && !chosen) || one.tag.startsWith(angleSign)) return; // an angle has its name beside its value
       const key = state.keyOf(o, i);
       if (!anchors.has(key)) anchors.set(key, anchorsOf(of, i));
       const at = anchors.get(key)!.find((one) => view!.sees(of, one));
@@ -101,6 +102,13 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
         state.object.value,
         (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
         m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
+      );
+    const angle = angleOf(drawn[state.object.value], i);
+    if (angle !== undefined)
+      add(
+        state.object.value,
+        one.points!.map((v) => drawn[state.object.value].vertex(v)),
+        `${one.tag} ${numberText(Number(angle.toFixed(1)))}°`,
       );
   });
   const { object, places } = state.measured.value;

@@ -66,6 +66,8 @@ export class View {
   private seen = false;
   private wanted = true;
   private running = false;
+  /** Compares two objects: left of the share of the width the first, right of it the second. */
+  wipe: { left: DrawnObject; right: DrawnObject; share: number } | undefined;
   clip = 1;
   clipAxis = 2;
   background = 0xffffff;
@@ -176,19 +178,78 @@ export class View {
 
   /** Zoom at which the boxes of the displayed objects fill the panes. */
   private homeZoom(): number {
-    const back = new THREE.Vector3(1.5, -2.6, 1.1).normalize();
-    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
-    const up = back.clone().cross(right);
+    const camera = this.camera.clone();
+    camera.position.set(1.5, -2.6, 1.1);
+    camera.lookAt(0, 0, 0);
     const [width, height] = this.paneSize();
     const [x, y] = halfSizes(width > 0 && height > 0 ? width / height : 1.6);
+    const most = this.mostOf(this.panes.length > 0 ? this.panes : this.objects.slice(0, 1), camera, x, y);
+    return most > 0 ? 0.97 / most : 1;
+  }
+
+  /** How far the boxes of objects reach from the centre of the picture, as a share of its half width and half height. */
+  private mostOf(objects: DrawnObject[], camera: THREE.Camera, x: number, y: number): number {
+    const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
+    const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
     let most = 0;
-    for (const one of this.panes.length > 0 ? this.panes : this.objects.slice(0, 1))
+    for (const one of objects)
       for (let corner = 0; corner < 8; ++corner) {
         const at = new THREE.Vector3(...one.about.size.map((x, k) => ((corner >> k) % 2) * x));
         one.group.localToWorld(at);
         most = Math.max(most, Math.abs(at.dot(right)) / x, Math.abs(at.dot(up)) / y);
       }
-    return most > 0 ? 0.97 / most : 1;
+    return most;
+  }
+
+  /** A small picture of one object; neither the object nor the view is changed by it. */
+  thumbnail(of: DrawnObject, width: number, height: number): HTMLCanvasElement {
+    const { group } = of;
+    const before = { parent: group.parent, turn: group.quaternion.clone(), scale: group.scale.clone(), place: group.position.clone() };
+    const size = new THREE.Vector3(...of.about.size);
+    const scene = new THREE.Scene().add(group);
+    const hidden = group.children.filter((one) => one !== of.mesh && one.visible);
+    for (const one of hidden) one.visible = false;
+    group.visible = true;
+    group.quaternion.setFromUnitVectors(new THREE.Vector3(...of.about.up).normalize(), new THREE.Vector3(0, 0, 1));
+    group.scale.setScalar(2 / (size.length() || 1));
+    group.position.copy(size).multiplyScalar(-0.5).applyQuaternion(group.quaternion).multiply(group.scale);
+    group.updateMatrixWorld(true);
+    const camera = this.camera.clone();
+    const [x, y] = halfSizes(width / height);
+    Object.assign(camera, { left: -x, right: x, top: y, bottom: -y, zoom: 1 });
+    camera.position.set(1.5, -2.6, 1.1);
+    camera.lookAt(0, 0, 0);
+    camera.updateMatrixWorld();
+    camera.zoom = 0.95 / this.mostOf([of], camera, x, y);
+    camera.updateProjectionMatrix();
+    shared.clip.value.set(0, 0, 0, 1);
+    const { renderer } = this;
+    renderer.setPixelRatio(1);
+    renderer.setSize(2 * width, 2 * height, false);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, 2 * width, 2 * height);
+    renderer.setClearColor(this.background, 0);
+    renderer.clear();
+    renderer.render(scene, camera);
+    const picture = document.createElement("canvas");
+    Object.assign(picture, { width: 2 * width, height: 2 * height });
+    picture.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    for (const one of hidden) one.visible = true;
+    scene.remove(group);
+    before.parent?.add(group);
+    group.quaternion.copy(before.turn);
+    group.scale.copy(before.scale);
+    group.position.copy(before.place);
+    group.updateMatrixWorld(true);
+    this.paint();
+    return picture;
+  }
+
+  /** Frees what the view holds of the graphics card. */
+  close() {
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   look(azimuth: number, elevation: number) {
@@ -264,12 +325,22 @@ export class View {
     this.plane.set(normal, this.clip);
     if (this.clip < 1) shared.clip.value.set(normal.x, normal.y, normal.z, this.clip);
     else shared.clip.value.set(0, 0, 0, 1);
-    this.panes.forEach((pane, i) => {
-      for (const one of this.objects) one.group.visible = one === pane || this.layers.includes(one);
-      renderer.setViewport(i * width, 0, width, height);
-      renderer.setScissor(i * width, 0, width, height);
+    const { wipe } = this;
+    const halves = wipe && this.panes.length === 1 ? [wipe.left, wipe.right] : [];
+    halves.forEach((half, i) => {
+      for (const one of this.objects) one.group.visible = one === half;
+      const edge = Math.round(wipe!.share * width);
+      renderer.setViewport(0, 0, width, height);
+      renderer.setScissor(i * edge, 0, i === 0 ? edge : width - edge, height);
       renderer.render(this.scene, this.camera);
     });
+    if (halves.length === 0)
+      this.panes.forEach((pane, i) => {
+        for (const one of this.objects) one.group.visible = one === pane || this.layers.includes(one);
+        renderer.setViewport(i * width, 0, width, height);
+        renderer.setScissor(i * width, 0, width, height);
+        renderer.render(this.scene, this.camera);
+      });
     if (!this.seen) {
       this.seen = true;
       renderer.getContext().finish();

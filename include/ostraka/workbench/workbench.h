@@ -52,6 +52,8 @@ private:
 
     void hello(const JsonValue& request, Json& result, std::string& bytes);    ///< version, operations, and state of the session
     void scene(const JsonValue& request, Json& result, std::string& bytes);    ///< shapes and tables to show
+    /// Content with the shape of a file that can be opened, for a thumbnail: {"name"}; without content if the file is large.
+    void preview(const JsonValue& request, Json& result, std::string& bytes);
     void select(const JsonValue& request, Json& result, std::string& bytes);   ///< elements that a selection expression selects
     void run(const JsonValue& request, Json& result, std::string& bytes);      ///< runs an operation
     void handles(const JsonValue& request, Json& result, std::string& bytes);  ///< cage vertices that influence an annotation

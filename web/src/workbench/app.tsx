@@ -7,21 +7,25 @@ import * as page from "../state";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
 import { Arriving, ChooseFiles } from "./drop";
 import { Gizmo } from "./gizmo";
+import { FirstQuestions } from "./first";
 import { Icon, type IconName } from "./icons";
 import { Light } from "../light";
 import * as model from "./model";
-import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
+import { savePicture } from "../snapshot";
+import { makePage, makePlate } from "./products";
+import { Measuring } from "./measuring";
+import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
+import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
+import { FileThumbnail, ObjectThumbnail } from "./thumbnails";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
 import { text, type Key } from "./words";
 import { canEnter, enter } from "./xr";
 
-const tabs = ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"] as const;
-export const tab = signal<(typeof tabs)[number]>("annotating");
-/** Whether the panel is folded away, and its width in pixels. */
-const folded = signal(false);
+/** The panel's width in pixels. */
 const panelWidth = signal(268);
 const panels = {
   annotating: Annotating,
+  measuring: Measuring,
   relating: Relations,
   deforming: Deforming,
   fragments: Fragments,
@@ -113,6 +117,7 @@ function Header() {
           <Icon name="save" />
         </button>
       </form>
+      <Products />
       <span class="group">
         <IconButton icon="palette" name={text("palette")} hint={`${text("palette")} (Ctrl+K)`} onClick={() => (palette.value = true)} />
         {canListen() && <IconButton icon="voice" name={text("voice")} pressed={listening.value} onClick={() => listen(!listening.value)} />}
@@ -156,7 +161,11 @@ function Tools() {
               data-tool={one}
               aria-pressed={tool.value === one}
               title={`${text(one as Key)}: ${text(`${one}Help` as Key)}`}
-              onClick={() => choose(one)}
+              onClick={() => {
+                choose(one);
+                if (name === "measure") tab.value = "measuring";
+                else if (name === "select" && tab.value === "measuring") tab.value = "annotating";
+              }}
             >
               <Icon name={one} />
               <span>{text(one as Key)}</span>
@@ -188,7 +197,7 @@ function ToolHint() {
           />
         </label>
       )}
-      {["ruler", "tape", "bounding"].includes(tool.value) && (
+      {["ruler", "tape", "angle", "bounding"].includes(tool.value) && (
         <label>
           {text("name")} <input value={measureName.value} onInput={(event) => (measureName.value = event.currentTarget.value)} />
         </label>
@@ -214,14 +223,23 @@ function Layers() {
         {objects.value.map((one, i) => {
           const about = page.page.objects[model.shown.value.findIndex((other) => other.object === i)];
           return (
-            <li key={one.name} class={i === active.value ? "layer active" : "layer"}>
+            <li
+              key={one.name}
+              class={i === active.value ? "layer active" : "layer"}
+              ref={(element) => {
+                // The list alone scrolls to the active object.
+                if (i === active.value && element?.parentElement)
+                  element.parentElement.scrollTop = element.offsetTop - element.parentElement.offsetTop - 8;
+              }}
+            >
               <label>
                 <input
                   type="radio"
                   name="active"
                   checked={i === active.value}
                   onChange={() => void model.change("activate", "activate", { object: i })}
-                />{" "}
+                />
+                <ObjectThumbnail name={one.name} />
                 <strong>{one.name}</strong>
                 {about && (
                   <small>
@@ -232,19 +250,16 @@ function Layers() {
                 )}
               </label>
               {i !== active.value && (
-                <label class="with">
-                  <input
-                    type="checkbox"
-                    checked={model.layers.value.has(one.name)}
-                    onChange={(event) => {
-                      const next = new Set(model.layers.value);
-                      if (event.currentTarget.checked) next.add(one.name);
-                      else next.delete(one.name);
-                      model.layers.value = next;
-                    }}
-                  />{" "}
-                  {text("showWith")}
-                </label>
+                <IconButton
+                  icon="showWith"
+                  name={`${text("showWith")}: ${one.name}`}
+                  pressed={model.layers.value.has(one.name)}
+                  onClick={() => {
+                    const next = new Set(model.layers.value);
+                    if (!next.delete(one.name)) next.add(one.name);
+                    model.layers.value = next;
+                  }}
+                />
               )}
               <button
                 type="button"
@@ -269,6 +284,74 @@ function Layers() {
         </label>
       )}
     </fieldset>
+  );
+}
+
+/** Updates the comparison of the shape before and after the deformation. */
+effect(() => {
+  const share = model.compare.value;
+  void page.turn.value;
+  if (!view) return;
+  const rest = model.shown.value.findIndex((one) => one.object === model.active.value && !one.deformed);
+  const deformed = model.shown.value.findIndex((one) => one.object === model.active.value && one.deformed);
+  const [left, right] = [drawn[rest], drawn[deformed]];
+  view.wipe = share !== undefined && left && right ? { left, right, share } : undefined;
+  if (view.wipe) left.paint(() => true, -1, left.colouring(page.colouring.value));
+  view.draw();
+});
+
+/** The line between the shape before and after the deformation: dragged, or moved by arrow keys. */
+function Wipe() {
+  const share = model.compare.value;
+  if (share === undefined || !model.has("deformed")) return null;
+  const put = (value: number) => (model.compare.value = Math.min(0.98, Math.max(0.02, value)));
+  return (
+    <div
+      class="wipe"
+      role="slider"
+      aria-label={text("compare")}
+      aria-valuemin={0}
+      aria-valuemax={100}
+      aria-valuenow={Math.round(100 * share)}
+      tabIndex={0}
+      ref={(element) => void (element && (element.style.left = `${100 * share}%`))}
+      onKeyDown={(event) => {
+        if (event.key === "ArrowLeft") put(share - 0.02);
+        if (event.key === "ArrowRight") put(share + 0.02);
+      }}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={(event) => {
+        if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
+        const box = event.currentTarget.parentElement!.getBoundingClientRect();
+        put((event.clientX - box.left) / box.width);
+      }}
+    >
+      <span class="before">{page.word("before")}</span>
+      <span class="after">{page.word("after")}</span>
+    </div>
+  );
+}
+
+/** The buttons that make something to take away: a picture, a plate for print, a page for a colleague. */
+function Products() {
+  const isOpen = model.object.value !== undefined;
+  return (
+    <span class="group products">
+      <button
+        type="button"
+        disabled={!isOpen}
+        title={text("pictureHelp")}
+        onClick={() => view && savePicture(view, model.object.value!.name)}
+      >
+        <Icon name="picture" /> {text("picture")}
+      </button>
+      <button type="button" disabled={!isOpen} title={text("plateHelp")} onClick={() => void makePlate()}>
+        <Icon name="plate" /> {text("plate")}
+      </button>
+      <button type="button" disabled={!isOpen} title={text("pageHelp")} onClick={() => void makePage()}>
+        <Icon name="page" /> {text("makePage")}
+      </button>
+    </span>
   );
 }
 
@@ -376,6 +459,49 @@ function Pointed() {
   return null;
 }
 
+/** The buttons that do what a problem or a note asks for. */
+function Remedies({ said }: { said: string }) {
+  const list = remediesOf(said);
+  if (list.length === 0) return null;
+  return (
+    <div class="buttons">
+      {list.map((one) => (
+        <button
+          key={one.label}
+          type="button"
+          class="remedy"
+          onClick={() => {
+            model.problem.value = undefined;
+            one.action();
+          }}
+        >
+          {one.label}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+/** What the command noted when the object was opened, folded. */
+function OpeningNotes() {
+  const name = model.object.value?.name ?? "";
+  const list = model.notes.value.get(name);
+  if (!list || list.length === 0) return null;
+  return (
+    <div class="counts notes">
+      <details>
+        <summary>{list.length === 1 ? text("noteOf", name) : text("notesOf", list.length, name)}</summary>
+        <ul>
+          {list.map((one) => (
+            <li key={one}>{withoutCommands(one)}</li>
+          ))}
+        </ul>
+      </details>
+      <Remedies said={list.find((one) => /mesh repair/.test(one)) ?? ""} />
+    </div>
+  );
+}
+
 /** Counts of the object, work in progress, errors and their remedies, a lost connection: at one place in the picture. */
 function Notices() {
   const about = page.page.objects[page.object.value];
@@ -390,8 +516,9 @@ function Notices() {
       {model.problem.value && (
         <div role="alert" class="notice problem">
           <div>
-            <strong>{model.problem.value.problem}</strong>
-            {model.problem.value.remedy && <p>{model.problem.value.remedy}</p>}
+            <strong>{withoutCommands(model.problem.value.problem)}</strong>
+            {withoutCommands(model.problem.value.remedy) && <p>{withoutCommands(model.problem.value.remedy)}</p>}
+            <Remedies said={`${model.problem.value.problem}; ${model.problem.value.remedy}`} />
           </div>
           <IconButton icon="close" name={text("close")} onClick={() => (model.problem.value = undefined)} />
         </div>
@@ -407,7 +534,9 @@ function Notices() {
           </button>
         </div>
       )}
+      <PartEditor />
       <ToolHint />
+      <OpeningNotes />
       <p role="status" class="counts">
         {about
           ? `${about.name}: ${page.numberText(about.vertices)} ${page.word("vertices")}, ${page.numberText((3 * about.faces) / 2)} ${text("edges")}, ${page.numberText(about.faces)} ${page.word("faces")}` +
@@ -425,14 +554,19 @@ function Start() {
     <section class="start" aria-labelledby="start-title">
       <h2 id="start-title">{text("startTitle")}</h2>
       <p>{text(model.openable.value.length > 0 ? "startHelp" : "startEmpty")}</p>
-      <p>
+      <p class="buttons">
         <ChooseFiles />
+        {model.history.value.length > model.place.value && (
+          <button type="button" onClick={() => void model.goTo(model.history.value.length)}>
+            <Icon name="history" /> {text("goOn", model.history.value.length)}
+          </button>
+        )}
       </p>
       <ul>
         {model.openable.value.map((one) => (
           <li key={one}>
             <button type="button" onClick={() => openFile(one)}>
-              <Icon name="object" /> {one}
+              <FileThumbnail name={one} /> <span>{one}</span>
             </button>
           </li>
         ))}
@@ -563,6 +697,7 @@ export function App() {
               <Light />
             </div>
           )}
+          <Wipe />
           <Chooser />
           <Arriving />
           {heard.value && <p class="quiet heard">{text("heard", heard.value)}</p>}
@@ -590,6 +725,7 @@ export function App() {
                 ))}
               </div>
               <Layers />
+              <FirstQuestions key={`first ${turn}`} />
               <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
                 <h2 class="panel-title">{text(tab.value)}</h2>
                 {!isEmpty || tab.value === "history" || tab.value === "everything" ? (

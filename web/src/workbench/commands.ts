@@ -87,6 +87,7 @@ export const commands: Command[] = [
       "points",
       "ruler",
       "tape",
+      "angle",
       "bounding",
       "handles",
       "move",

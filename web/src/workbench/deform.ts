@@ -18,6 +18,8 @@ export const space = signal<(typeof spaces)[number]>("auto");
 /** Descriptions of the constraints that the cage cannot satisfy, and the number of all constraints. */
 export const reach = signal<{ constraints: number; texts: string[] } | undefined>(undefined);
 export const showsPoints = signal(true);
+/** What the drag does in numbers, beside the pointer. */
+export const reading = signal<{ x: number; y: number; text: string } | undefined>(undefined);
 export const latency = signal<number[]>([]);
 
 /** The displayed shape, which is dragged. */
@@ -239,8 +241,38 @@ function motionTo(drag: Drag, to: { x: number; y: number }): Step {
   }
   const factor = Number(Math.exp(-dy / 150).toPrecision(6));
   if (drag.motion === "scale") return { scale: { factor, centre } };
-  const direction = length > 0 ? along.normalize() : up;
-  return { stretch: { direction: plain(direction), factor: Number((1 + length / 150).toPrecision(6)), from: "middle" } };
+  return stretchTo(drag, along, up, dx, dy);
+}
+
+/** A stretch along the drag; a drag about along the object's upward direction is one along it, from the base: up makes higher, down lower. */
+function stretchTo(drag: Drag, along: THREE.Vector3, up: THREE.Vector3, dx: number, dy: number): Step {
+  const length = Math.hypot(dx, dy);
+  const upward = new THREE.Vector3(...drag.of.about.up).normalize();
+  const drawn = length > 0 ? along.clone().normalize() : up;
+  const isUpward = Math.abs(drawn.dot(upward)) > 0.8;
+  const direction = isUpward ? upward : drawn;
+  const sign = isUpward && drawn.dot(upward) < 0 ? -1 : 1;
+  const factor = Number(Math.max(0.05, 1 + (sign * length) / 150).toFixed(2));
+  return { stretch: { direction: plain(direction), factor, from: "base" } };
+}
+
+/** The part of the selected control points that a stretch from the base keeps in place. */
+function baseOf(drag: Drag, direction: number[]): THREE.Vector3 {
+  const d = new THREE.Vector3(...direction);
+  return drag.rest.reduce((lowest, p) => (p.dot(d) < lowest.dot(d) ? p : lowest), drag.rest[0] ?? drag.centre);
+}
+
+/** A step in words: "20 % higher, from its base". */
+function inWords(step: Step, of: DrawnObject): string {
+  const { numberText, withUnit } = page;
+  if ("translate" in step) return withUnit(Number(Math.hypot(...step.translate).toPrecision(3)), of.about.unit);
+  if ("rotate" in step) return `${numberText(Number(step.rotate.angle.toFixed(1)))}°`;
+  const percent = (factor: number) => numberText(Math.abs(Math.round(100 * (factor - 1))));
+  if ("scale" in step) return text(step.scale.factor < 1 ? "percentSmaller" : "percentLarger", percent(step.scale.factor));
+  const isUpward = new THREE.Vector3(...step.stretch.direction).dot(new THREE.Vector3(...of.about.up).normalize()) > 0.999;
+  const { factor } = step.stretch;
+  if (!isUpward) return text("percentLonger", percent(factor));
+  return text(factor < 1 ? "percentLower" : "percentHigher", percent(factor));
 }
 
 /** The same map as a matrix and a vector. */
@@ -275,11 +307,14 @@ export function affine(step: Step, centre: THREE.Vector3): { linear: THREE.Matri
 
 export function drag(to: { x: number; y: number }) {
   if (!now) return;
-  apply(now, motionTo(now, to));
+  const step = motionTo(now, to);
+  reading.value = { ...to, text: inWords(step, now.of) };
+  apply(now, step);
 }
 
 function apply(one: Drag, step: Step) {
-  const { linear, shift } = affine(step, one.centre);
+  const fixed = "stretch" in step && step.stretch.from === "base" ? baseOf(one, step.stretch.direction) : one.centre;
+  const { linear, shift } = affine(step, fixed);
   const moved = one.rest.map((p) => p.clone().applyMatrix3(linear).add(shift));
   if (one.constrained) {
     one.next = moved;
@@ -336,6 +371,7 @@ function pump(one: Drag) {
 
 /** Ends a drag: the command computes the exact result and adds it to the session. */
 export async function release(to: { x: number; y: number }): Promise<boolean> {
+  reading.value = undefined;
   const one = now;
   if (!one) {
     ended = to;
@@ -416,6 +452,7 @@ function still(of: DrawnObject) {
 }
 
 export function letGo() {
+  reading.value = undefined;
   const one = now;
   now = undefined;
   ended = undefined;

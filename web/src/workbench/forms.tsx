@@ -1,6 +1,7 @@
 // Forms for all operations of the table: generated from the declarations, with inputs offered from the session.
 import { useState } from "preact/hooks";
 import { files, has, object, objects, operations, run, type Declaration, type OperationInput, type OperationOption } from "./model";
+import { wantedForm } from "./remedies";
 import { text } from "./words";
 
 /** Kinds of inputs, and the parts of objects that have this kind. */
@@ -205,14 +206,14 @@ const elsewhere = /^(run|replay|conformance .*|operations|study make .*)$/;
 
 /** A form for all operations, or for one of them. */
 export function Operations({ only }: { only?: string }) {
-  const [name, setName] = useState(only ?? "mesh info");
+  const name = only ?? wantedForm.value;
   const of = operations.value.find((one) => one.name === name);
   return (
     <>
       {!only && (
         <label class="field">
           {text("operation")}{" "}
-          <select value={name} onChange={(event) => setName(event.currentTarget.value)}>
+          <select value={name} onChange={(event) => (wantedForm.value = event.currentTarget.value)}>
             {operations.value
               .filter((one) => !elsewhere.test(one.name))
               .map((one) => (

@@ -37,7 +37,10 @@ model.link.onEvent = (event) => {
   // Another page changed the same session.
   if (event.event === "changed") void model.attempt(text("loading"), model.refresh);
 };
-page.allMeasures.value = true;
+// On a phone names and measures would cover the picture: they are shown when asked for.
+const isNarrow = window.innerWidth < 600;
+page.allMeasures.value = !isNarrow;
+page.labels.value = !isNarrow;
 model.link.connect();
 commands.attachKeys();
 drop.attachDrop();

@@ -66,12 +66,18 @@ export const progress = signal<{ phase: string; share: number } | undefined>(und
 export const problem = signal<{ problem: string; remedy: string } | undefined>(undefined);
 export const outcome = signal<{ title: string; text: string; holds: boolean; notes: string[] } | undefined>(undefined);
 
+/** What the command noted when an object was opened, by the object's name. */
+export const notes = signal<ReadonlyMap<string, string[]>>(new Map());
+
 export const object = computed<SessionObject | undefined>(() => objects.value[active.value]);
 export const has = (part: string) => object.value?.parts[part] !== undefined;
 
 /** Objects of the session drawn together with the active one, and the drawing style. */
 export const layers = signal<ReadonlySet<string>>(new Set());
 export const drawnAs = signal<"surface" | "edges" | "points">("surface");
+
+/** Where the comparison of the shape before and after the deformation divides the picture, from 0 to 1; undefined: it is off. */
+export const compare = signal<number | undefined>(undefined);
 
 /** Called when another content is displayed. */
 export const onShown: (() => void)[] = [];
@@ -157,6 +163,7 @@ export interface Run {
 export function run(request: Run): Promise<boolean> {
   return attempt(request.title, async () => {
     const { result } = await link.ask("run", request);
+    page.message.value = "";
     outcome.value = { title: request.title, text: result.text, holds: result.holds, notes: result.notes };
     await refresh();
   });
@@ -167,13 +174,30 @@ export const change = (title: Key, what: string, more: object = {}) =>
   attempt(text(title), async () => {
     const { result } = await link.ask(what, more);
     outcome.value = undefined;
+    page.message.value = "";
     await refresh();
-    if (result.notes?.length > 0) page.message.value = result.notes.join("; ");
+    if (what === "open" && object.value) notes.value = new Map(notes.value).set(object.value.name, result.notes ?? []);
   });
 
 export const goTo = (step: number) => change("undo", "go", { place: step });
-export const undo = () => (place.value > 0 ? goTo(place.value - 1) : Promise.resolve(false));
-export const redo = () => (place.value < history.value.length ? goTo(place.value + 1) : Promise.resolve(false));
+/** The step to which undo and redo lead while they are under way, so that five fast presses of a key are five steps. */
+let wantedPlace: number | undefined;
+let isGoing = false;
+
+async function goBy(by: number): Promise<boolean> {
+  const wanted = (wantedPlace ?? place.value) + by;
+  if (wanted < 0 || wanted > history.value.length) return false;
+  wantedPlace = wanted;
+  if (isGoing) return true;
+  isGoing = true;
+  let went = true;
+  while (went && wantedPlace !== undefined && wantedPlace !== place.value) went = await goTo(wantedPlace);
+  isGoing = false;
+  wantedPlace = undefined;
+  return went;
+}
+export const undo = () => goBy(-1);
+export const redo = () => goBy(1);
 
 export const part = (which: string) => ({ part: which });
 

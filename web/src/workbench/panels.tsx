@@ -10,8 +10,11 @@ import { Tables } from "../tables";
 import { extract, linkCage, makeCage, makeCageFor } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
+import { ByNumbers } from "./numbers";
+import { AddRelation } from "./relate";
 import {
   change,
+  compare,
   download,
   files,
   goTo,
@@ -19,7 +22,6 @@ import {
   history,
   object,
   objects,
-  operations,
   outcome,
   part,
   place,
@@ -65,14 +67,65 @@ export function annotate(action: "make" | "replace" | "add to" | "remove from", 
 }
 
 /** Runs "annotation edit" on the selected annotation. */
-function edit(title: string, more: Record<string, unknown>) {
-  const one = chosenAnnotation();
+function edit(title: string, more: Record<string, unknown>, one = chosenAnnotation()) {
   if (!one) return;
   void run({
     operation: "annotation edit",
     title: `${title}: ${one.tag}`,
     with: { mesh: part("mesh"), annotations: part("annotations"), annotation: String(one.id), ...more },
+    keep: ["output"],
   });
+}
+
+/** Name and colour of the selected annotation, changed in place, and its removal together with the relationships that name it. */
+export function PartEditor() {
+  const [asks, setAsks] = useState(false);
+  const about = page.page.objects[page.object.value];
+  const one = chosenAnnotation();
+  if (!about || !one || selection.selected.value) return null;
+  const naming = about.relations.filter((relation) => relation.members.includes(page.chosen.value));
+  const remove = async () => {
+    setAsks(false);
+    const named = naming.map((relation) => relation.id);
+    if (has("graph") && named.length > 0) {
+      const given = { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph"), id: named };
+      if (!(await run({ operation: "relation remove", title: `${text("deletePart")}: ${one.tag} (${text("relationList")})`, with: given })))
+        return;
+    }
+    edit(text("deletePart"), { remove: true }, one);
+  };
+  return (
+    <div class="hint part-editor" key={one.id}>
+      <input
+        type="color"
+        aria-label={text("colour")}
+        value={`#${one.colour.map((c) => c.toString(16).padStart(2, "0")).join("")}`}
+        onChange={(event) => edit(text("colour"), { colour: event.currentTarget.value }, one)}
+      />
+      <input
+        aria-label={text("rename")}
+        title={text("rename")}
+        value={one.tag}
+        onKeyDown={(event) => {
+          if (event.key === "Enter") event.currentTarget.blur();
+        }}
+        onChange={(event) => {
+          const tag = event.currentTarget.value.trim();
+          if (tag && tag !== one.tag) edit(text("rename"), { tag }, one);
+        }}
+      />
+      <Button name="deletePart" onClick={() => (has("graph") && naming.length > 0 ? setAsks(true) : void remove())} />
+      {asks && (
+        <div class="question" role="alertdialog" aria-label={text("deletePart")}>
+          <p>{text("deletePartAsk", naming.length, one.tag)}</p>
+          <div class="buttons">
+            <Button name="deleteAll" onClick={() => void remove()} />
+            <Button name="keepIt" onClick={() => setAsks(false)} />
+          </div>
+        </div>
+      )}
+    </div>
+  );
 }
 
 export function Annotating() {
@@ -194,7 +247,6 @@ export function Annotating() {
                 {text("removeAttribute")}: {which}
               </button>
             ))}
-            <Button name="removeAnnotation" onClick={() => edit(text("removeAnnotation"), { remove: true })} />
           </div>
         </section>
       )}
@@ -219,12 +271,6 @@ function More({ title, operation }: { title: Key; operation: string }) {
 
 export function Relations() {
   const about = page.page.objects[page.object.value];
-  const [type, setType] = useState("adjacency");
-  const [members, setMembers] = useState<string[]>([]);
-  const [constrains, setConstrains] = useState(true);
-  const [weight, setWeight] = useState("1");
-  const [parameters, setParameters] = useState("");
-  const types = operations.value.find((one) => one.name === "relation add")?.options.find((one) => one.name === "type")?.words ?? [];
   if (!about) return null;
   return (
     <>
@@ -279,73 +325,7 @@ export function Relations() {
           ))}
         </ul>
       </section>
-      <section aria-labelledby="relation-add">
-        <h2 id="relation-add">{text("addRelation")}</h2>
-        <form
-          class="operation"
-          onSubmit={(event) => {
-            event.preventDefault();
-            const given: Record<string, unknown> = {
-              mesh: part("mesh"),
-              annotations: part("annotations"),
-              type,
-              annotation: members,
-              constraint: constrains,
-            };
-            if (has("graph")) given.graph = part("graph");
-            if (constrains) given.weight = Number(weight);
-            if (parameters.trim()) given.parameters = parameters;
-            void run({ operation: "relation add", title: `${text("addRelation")}: ${type}`, with: given, keep: ["output"] });
-          }}
-        >
-          <label class="field">
-            {text("type")}{" "}
-            <select value={type} onChange={(event) => setType(event.currentTarget.value)}>
-              {types.map((one) => (
-                <option key={one} value={one}>
-                  {one}
-                </option>
-              ))}
-            </select>
-          </label>
-          <label class="field">
-            {text("members")}{" "}
-            <select
-              multiple
-              size={6}
-              required
-              onChange={(event) => setMembers([...event.currentTarget.selectedOptions].map((one) => one.value))}
-            >
-              {about.annotations.map((one) => (
-                <option key={one.id} value={String(one.id)} selected={members.includes(String(one.id))}>
-                  {one.tag || `#${one.id}`}
-                </option>
-              ))}
-            </select>
-          </label>
-          <label class="field">
-            <input type="checkbox" checked={constrains} onChange={(event) => setConstrains(event.currentTarget.checked)} />{" "}
-            {text("constraint")}
-          </label>
-          {constrains && (
-            <label class="field">
-              {text("weight")}{" "}
-              <input type="number" min="0" step="any" value={weight} onInput={(event) => setWeight(event.currentTarget.value)} />
-            </label>
-          )}
-          <label class="field">
-            {text("parameters")}{" "}
-            <input
-              value={parameters}
-              placeholder='{"min": 0.9, "max": 1.1}'
-              onInput={(event) => setParameters(event.currentTarget.value)}
-            />
-          </label>
-          <button type="submit" title={helpOf("relation add")}>
-            {text("addRelation")}
-          </button>
-        </form>
-      </section>
+      <AddRelation />
     </>
   );
 }
@@ -379,6 +359,7 @@ export function Deforming() {
   const deformed = has("deformed");
   return (
     <>
+      <ByNumbers />
       <section aria-labelledby="cage-title">
         <h2 id="cage-title">{text("cage")}</h2>
         <p class="quiet">
@@ -455,7 +436,17 @@ export function Deforming() {
           <Button name="accept" disabled={!deformed} onClick={() => void change("accept", "accept")} />
           <Button name="withdraw" disabled={!deformed} onClick={() => void change("withdraw", "withdraw")} />
         </div>
-        {deformed && <BeforeAfter />}
+        {deformed && page.blendPartner.value >= 0 && <BeforeAfter />}
+        {deformed && (
+          <label>
+            <input
+              type="checkbox"
+              checked={compare.value !== undefined}
+              onChange={(event) => (compare.value = event.currentTarget.checked ? 0.5 : undefined)}
+            />{" "}
+            {text("compare")}
+          </label>
+        )}
       </section>
       <Constraints />
       <More title="deform" operation="deform" />

@@ -5,11 +5,13 @@ import { useEffect } from "preact/hooks";
 import * as THREE from "three";
 import type { DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
+import { angleSign } from "../sizes";
 import * as page from "../state";
 import { paneOf, recipeCamera, type RecipeCamera } from "./camera";
 import * as deform from "./deform";
 import { has, onShown, part, run } from "./model";
 import * as selection from "./selection";
+import { restingPlane } from "./stand";
 import { text, type Key } from "./words";
 
 export type Tool =
@@ -23,6 +25,7 @@ export type Tool =
   | "points"
   | "ruler"
   | "tape"
+  | "angle"
   | "bounding"
   | "handles"
   | "move"
@@ -35,7 +38,7 @@ export const radius = signal(0);
 export const groups: [Key, Tool[]][] = [
   ["look", ["look", "base"]],
   ["select", ["rectangle", "lasso", "closed", "brush", "path", "points"]],
-  ["measure", ["ruler", "tape", "bounding"]],
+  ["measure", ["ruler", "tape", "angle", "bounding"]],
   ["deform", ["handles", "move", "rotate", "scale", "stretch"]],
 ];
 
@@ -72,24 +75,37 @@ function directionAround(of: DrawnObject, face: number, place: THREE.Vector3): T
   return (sum.lengthSq() > 0 ? sum : first).normalize();
 }
 
-/** Stands the object on the surface at a position of the picture: with annotations by their upward direction, otherwise by a moved copy. */
+/** Stands the object on the base under a position of the picture: on the plane it rests on, such as the ends of four legs. */
 async function standOn(at: Place) {
   const hit = view?.pick(at.x, at.y);
   const of = hit && drawn[hit.object];
-  if (!hit || !of) return;
-  const up = directionAround(of, hit.face, hit.point).negate();
-  const list = (numbers: number[]) => numbers.map((x) => Number(x.toFixed(9))).join(",");
-  choose("look");
-  if (has("annotations")) {
-    const given = { mesh: part("mesh"), annotations: part("annotations"), "set-up": list(up.toArray()) };
-    await run({ operation: "annotation edit", title: text("base"), with: given, keep: ["output"] });
-  } else {
-    const turn = new THREE.Quaternion().setFromUnitVectors(up, new THREE.Vector3(0, 0, 1));
-    const given = { input: part("mesh"), quaternion: list([turn.w, turn.x, turn.y, turn.z]), about: "box" };
-    await run({ operation: "mesh move", title: text("base"), with: given });
+  if (!hit || !of) {
+    page.message.value = text("baseMissed");
+    return;
   }
-  view?.home();
+  const outward = directionAround(of, hit.face, hit.point);
+  choose("look");
+  await setUp((restingPlane(of, outward) ?? outward).negate().toArray());
 }
+
+/** States which direction of the object is up, as a step of the session. */
+export async function setUp(up: number[]) {
+  const given = { mesh: part("mesh"), annotations: annotationsInput(), "set-up": up.map((x) => Number(x.toFixed(9))).join(",") };
+  if (await run({ operation: "annotation edit", title: text("base"), with: given, keep: ["output"] })) view?.home();
+}
+
+/** States the unit of the object's coordinates, as a step of the session. */
+export const setUnit = (unit: string) =>
+  run({
+    operation: "annotation edit",
+    title: `${text("unit")}: ${unit}`,
+    with: { mesh: part("mesh"), annotations: annotationsInput(), "set-unit": unit },
+    keep: ["output"],
+  });
+
+/** The annotations of the active object; an empty set if it has none yet. */
+const annotationsInput = () =>
+  has("annotations") ? part("annotations") : { document: { format: "ostraka-annotations", version: 1, annotations: [] } };
 
 /** Path of the pointer since it was pressed, and the surface points picked so far. */
 const trail = signal<Place[]>([]);
@@ -105,6 +121,7 @@ export function choose(next: Tool) {
   tool.value = next;
   trail.value = [];
   picks.value = [];
+  page.message.value = "";
   page.clicks.value = next === "look";
   if (view) view.controls.mouseButtons.left = drags.includes(next) ? CameraControls.ACTION.NONE : CameraControls.ACTION.ROTATE;
   if (view) view.controls.touches.one = drags.includes(next) ? CameraControls.ACTION.NONE : CameraControls.ACTION.TOUCH_ROTATE;
@@ -135,12 +152,42 @@ export async function finish() {
       t,
       list.map((one) => one.vertex),
     );
+  else if (t === "angle" && list.length === 3) await takeAngle(list.map((one) => one.vertex));
+}
+
+/** A name that no measure of the object has: the given one, with a number if it is taken. */
+function freeName(wanted: string): string {
+  const { annotations } = page.page.objects[page.object.value];
+  const taken = new Set(annotations.flatMap((one) => [one.tag, ...one.measures.map((m) => m.name)]));
+  let name = wanted;
+  for (let i = 2; taken.has(name); ++i) name = `${wanted} ${i}`;
+  return name;
+}
+
+/** Takes an angle: an annotation of three points, of which the second is the apex; its value is that of the shown shape. */
+function takeAngle(vertices: number[]): Promise<boolean> {
+  const tag = freeName(`${angleSign} ${measureName.value || text("angle").toLocaleLowerCase()}`);
+  const given: Record<string, unknown> = {
+    mesh: part("mesh"),
+    expression: JSON.stringify({ vertices }),
+    action: "make",
+    tag,
+    type: "point",
+    colour: [160, 0, 60],
+  };
+  const keep = ["output"];
+  if (has("annotations")) given.annotations = part("annotations");
+  if (!has("annotations") || has("recipe")) {
+    keep.push("recipe");
+    if (has("recipe")) given.record = part("recipe");
+  }
+  return run({ operation: "annotation select", title: text("measured", text("angle")), with: given, keep });
 }
 
 /** Takes a measure of the selected annotation or of the object. */
 export function take(which: "ruler" | "tape" | "bounding", vertices: number[], direction?: string): Promise<boolean> {
   const chosen = page.page.objects[page.object.value]?.annotations[page.chosen.value];
-  const given: Record<string, unknown> = { mesh: part("mesh"), tool: which, name: measureName.value || which };
+  const given: Record<string, unknown> = { mesh: part("mesh"), tool: which, name: freeName(measureName.value || which) };
   if (has("annotations")) given.annotations = part("annotations");
   if (vertices.length > 0) given.points = vertices;
   if (direction) given.direction = direction;
@@ -276,7 +323,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
       const one = pickAt(start);
       if (!one) return;
       picks.value = [...picks.value, one];
-      if (t === "ruler" && picks.value.length === 2) void finish();
+      if (picks.value.length === (t === "ruler" ? 2 : t === "angle" ? 3 : 0)) void finish();
     }
   };
   const onKey = (event: KeyboardEvent) => {
@@ -347,6 +394,11 @@ export function Drawing() {
       {points.map((one, i) => (
         <circle key={i} cx={one.x} cy={one.y} r={4} />
       ))}
+      {deform.reading.value && (
+        <text class="reading" x={deform.reading.value.x + 16} y={deform.reading.value.y - 10}>
+          {deform.reading.value.text}
+        </text>
+      )}
     </svg>
   );
 }
