@@ -108,7 +108,14 @@ void Reader::read(std::size_t index, const Shape& shape, std::vector<Number>& va
     values.resize(shape.count * shape.width);
     if (has_data)
         with_component(shape.component, [&](auto component) {
+            using Component = decltype(component);
             Number* value = values.data();
+            if constexpr (std::is_same_v<Component, Number>) {
+                if (source.stride == shape.width * sizeof component && !values.empty()) {
+                    std::memcpy(value, source.bytes.data(), values.size() * sizeof component);
+                    return;
+                }
+            }
             for (std::size_t i = 0; i < shape.count; ++i)
                 for (std::size_t k = 0; k < shape.width; ++k) {
                     std::memcpy(&component, source.bytes.data() + i * source.stride + k * sizeof component, sizeof component);
@@ -158,6 +165,16 @@ Reader::Values Reader::accessor(std::size_t index, std::size_t width, const std:
     std::vector<double> numbers;
     read(index, described, numbers);
     return values = std::make_shared<const std::vector<double>>(std::move(numbers));
+}
+
+std::optional<Reader::Floats> Reader::floats(std::size_t index, std::size_t width, const std::string& pointer) const {
+    const Shape described = shape(index, pointer);
+    const JsonValue& entry = element("accessors", index, pointer);
+    if (described.component != single || described.width != width || find_member(entry, "bufferView") == nullptr ||
+        find_member(entry, "sparse") != nullptr)
+        return std::nullopt;
+    const Stored source = stored(entry, described, "/accessors/" + std::to_string(index));
+    return Floats{source.bytes.data(), source.stride, described.count};
 }
 
 std::vector<std::uint32_t> Reader::integers(std::size_t index, const std::string& pointer) const {

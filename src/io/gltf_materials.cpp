@@ -283,7 +283,9 @@ Index GltfMaterials::embedded_image(const JsonValue& entry, const std::string& n
 
 void GltfMaterials::finish() {
     MeshExtras& extras = soup_.extras;
-    std::set<Index> used(extras.face_materials.begin(), extras.face_materials.end());
+    std::set<Index> used;
+    for (Index last = no_index; const Index m : extras.face_materials)
+        if (m != last) used.insert(last = m);
     used.erase(no_index);
     const bool all_plain = std::all_of(used.begin(), used.end(), [&](Index m) { return parsed_.at(m).plain; });
     if (all_plain) {
@@ -299,9 +301,13 @@ void GltfMaterials::finish() {
         place_of[m] = static_cast<Index>(extras.appearance.materials.size());
         extras.appearance.materials.push_back(std::move(entry.material));
     }
+    Index last = no_index, last_place = no_index;
     for (Index& m : extras.face_materials) {
-        const auto place = place_of.find(m);
-        m = place == place_of.end() ? no_index : place->second;
+        if (m != last) {
+            const auto place = place_of.find(last = m);
+            last_place = place == place_of.end() ? no_index : place->second;
+        }
+        m = last_place;
     }
 }
 

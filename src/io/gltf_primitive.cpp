@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace ostraka::io {
 
 namespace {
@@ -73,6 +75,15 @@ glb::Reader::Values GltfPrimitive::values(const std::string& attribute, std::siz
     return values;
 }
 
+std::optional<glb::Reader::Floats> GltfPrimitive::floats(const std::string& attribute, std::size_t width,
+                                                         std::size_t count) const {
+    if (draco_id(attribute)) return std::nullopt;
+    const std::string place = fmt::format("{}/attributes/{}", pointer_, attribute);
+    const auto list = reader_.floats(*accessor(attribute), width, place);
+    if (list && list->count != count) reader_.fail(place, "has a different count from the positions");
+    return list;
+}
+
 std::size_t GltfPrimitive::vertices() const { return draco_ != nullptr ? draco_->vertices() : shape("POSITION").count; }
 
 std::size_t GltfPrimitive::corners() const {
@@ -95,7 +106,9 @@ std::vector<std::uint32_t> GltfPrimitive::triangles() const {
         list.resize(count);
         for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i);
     }
-    for (std::size_t i = 0; i < list.size(); ++i)
+    std::uint32_t largest = 0;
+    for (const std::uint32_t v : list) largest = std::max(largest, v);
+    for (std::size_t i = 0; i < list.size() && largest >= count; ++i)
         if (list[i] >= count)
             reader_.fail(pointer_ + "/indices",
                          fmt::format("index {} (number {}) is out of range: there are {} vertices", list[i], i, count));

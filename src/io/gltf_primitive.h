@@ -28,6 +28,9 @@ public:
     [[nodiscard]] glb::Reader::Shape shape(const std::string& attribute) const;
     /// Numbers of an attribute that the primitive has. Throws Error (input) unless there are `count` elements of `width`.
     [[nodiscard]] glb::Reader::Values values(const std::string& attribute, std::size_t width, std::size_t count) const;
+    /// The numbers of an attribute where they lie in the file (Reader::floats); nothing if they must be converted or decoded.
+    [[nodiscard]] std::optional<glb::Reader::Floats> floats(const std::string& attribute, std::size_t width,
+                                                            std::size_t count) const;
     [[nodiscard]] std::size_t vertices() const;  ///< number of positions
     [[nodiscard]] std::size_t corners() const;   ///< number of indices, or of vertices without indices
     /// The vertices of three corners per triangle, from triangles, strips or fans; corners that complete no triangle are left

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <ranges>
 #include <set>
 
 namespace ostraka::io {
@@ -103,6 +105,26 @@ private:
         restore_order(mesh, first_triangle, pointer);
     }
 
+    /// Calls visit(i, numbers) for each element of an attribute; reads single precision where it lies in the file.
+    template <std::size_t width, class Visit>
+    void for_each_element(const GltfPrimitive& primitive, const std::string& attribute, std::size_t count, const Visit& visit) {
+        std::array<double, width> numbers{};
+        if (const auto floats = primitive.floats(attribute, width, count)) {
+            std::array<float, width> stored{};
+            for (std::size_t i = 0; i < count; ++i) {
+                std::memcpy(stored.data(), floats->bytes + i * floats->stride, sizeof stored);
+                std::copy(stored.begin(), stored.end(), numbers.begin());
+                visit(i, numbers);
+            }
+            return;
+        }
+        const auto values = primitive.values(attribute, width, count);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::copy_n(values->data() + width * i, width, numbers.begin());
+            visit(i, numbers);
+        }
+    }
+
     /// Appends the vertices of a primitive, unless another primitive of this mesh has the same; returns the first of them.
     Index add_vertices(const GltfPrimitive& primitive, const AffineMap& placement) {
         const auto [place, is_new] = first_vertices_.try_emplace(primitive.key(), static_cast<Index>(soup_.points.size()));
@@ -110,16 +132,14 @@ private:
         const std::size_t count = primitive.vertices(), first = soup_.points.size();
         if (first + count >= no_index) fail_work(path_.string(), "has more than four thousand million vertices", "split it");
         reader_.charge(static_cast<double>((sizeof(std::array<double, 3>) + sizeof(Colour)) * count), primitive.pointer());
-        const auto positions = primitive.values("POSITION", 3, count);
-        soup_.points.reserve(first + count);
+        soup_.points.resize(first + count);
         const bool moves = placement != AffineMap{};
-        for (std::size_t i = 0; i < count; ++i) {
-            std::array<double, 3> point{(*positions)[3 * i], (*positions)[3 * i + 1], (*positions)[3 * i + 2]};
+        for_each_element<3>(primitive, "POSITION", count, [&](std::size_t i, std::array<double, 3> point) {
             if (moves) point = placement(point);
             if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
                 reader_.fail(primitive.pointer() + "/attributes/POSITION", fmt::format("vertex {} is not finite", i));
-            soup_.points.push_back(point);
-        }
+            soup_.points[first + i] = point;
+        });
         if (primitive.accessor("COLOR_0")) add_colours(primitive, first, count);
         else if (!soup_.extras.vertex_colours.empty()) soup_.extras.vertex_colours.resize(soup_.points.size(), white);
         return place->second;
@@ -163,10 +183,13 @@ private:
         if (placement.mirrors())
             for (std::size_t c = 0; c < corners.size(); c += 3) std::swap(corners[c + 1], corners[c + 2]);
         add_texture(primitive, coordinates, corners);
-        soup_.corners.reserve(soup_.corners.size() + corners.size());
-        for (const std::uint32_t corner : corners) soup_.corners.push_back(first + corner);
-        soup_.polygon_begin.reserve(soup_.polygon_begin.size() + corners.size() / 3);
-        for (std::size_t c = 0; c < corners.size(); c += 3) soup_.polygon_begin.push_back(soup_.polygon_begin.back() + 3);
+        if (first > 0)
+            for (std::uint32_t& corner : corners) corner += first;
+        const std::size_t triangles = corners.size() / 3, before = soup_.polygon_begin.size();
+        if (soup_.corners.empty()) soup_.corners = std::move(corners);
+        else soup_.corners.insert(soup_.corners.end(), corners.begin(), corners.end());
+        soup_.polygon_begin.resize(before + triangles);
+        for (std::size_t t = before; t < before + triangles; ++t) soup_.polygon_begin[t] = soup_.polygon_begin[t - 1] + 3;
         soup_.extras.face_materials.resize(soup_.polygon_count(),
                                            material == no_material ? no_index : static_cast<Index>(material));
     }
@@ -184,14 +207,20 @@ private:
             texture.resize(soup_.corners.size() + corners.size(), TexturePoint{0, 0});
             return;
         }
-        const auto values = primitive.values(attribute, 2, primitive.vertices());
-        texture.reserve(soup_.corners.size() + corners.size());
-        for (const std::uint32_t corner : corners) {
-            const TexturePoint point = coordinates.map((*values)[2 * corner], (*values)[2 * corner + 1]);
-            const bool is_finite = std::isfinite(point[0]) && std::isfinite(point[1]);
-            if (!is_finite) reader_.fail(primitive.pointer() + "/attributes/" + attribute, "a coordinate is not finite");
-            texture.push_back(point);
-        }
+        const std::size_t count = primitive.vertices(), first = soup_.corners.size();
+        reader_.charge(static_cast<double>(sizeof(TexturePoint) * count), primitive.pointer());
+        std::vector<TexturePoint> of_vertex(count);
+        bool all_finite = true;
+        for_each_element<2>(primitive, attribute, count, [&](std::size_t i, const std::array<double, 2>& numbers) {
+            of_vertex[i] = coordinates.map(numbers[0], numbers[1]);
+            all_finite = all_finite && std::isfinite(of_vertex[i][0]) && std::isfinite(of_vertex[i][1]);
+        });
+        const auto at_corner = [&](std::uint32_t v) -> const TexturePoint& { return of_vertex[v]; };
+        const auto of_corner = corners | std::views::transform(at_corner);
+        texture.insert(texture.end(), of_corner.begin(), of_corner.end());
+        const auto is_finite = [](const TexturePoint& point) { return std::isfinite(point[0]) && std::isfinite(point[1]); };
+        if (!all_finite && !std::all_of(texture.begin() + static_cast<std::ptrdiff_t>(first), texture.end(), is_finite))
+            reader_.fail(primitive.pointer() + "/attributes/" + attribute, "a coordinate is not finite");
     }
 
     /// Puts the triangles of a mesh back into the order that they had before the writer ordered them by material.

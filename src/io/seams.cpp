@@ -24,7 +24,7 @@ std::uint64_t hash_of(const std::array<double, 3>& point) {
 
 /// For each vertex, the first vertex with the same coordinates. Points are put into buckets by a hash of their coordinates, and
 /// sorted within each bucket.
-std::vector<Index> first_at_place(const std::vector<std::array<double, 3>>& points) {
+std::vector<Index> first_by_sorting(const std::vector<std::array<double, 3>>& points) {
     const std::size_t count = points.size();
     const auto bits = static_cast<unsigned>(std::bit_width(std::max<std::size_t>(count, 2)));
     std::vector<std::uint32_t> bucket_of(count);
@@ -44,6 +44,43 @@ std::vector<Index> first_at_place(const std::vector<std::array<double, 3>>& poin
     return first;
 }
 
+/// The same from a table of hashes with open addressing. Files whose coordinates collide there get the result by sorting.
+std::vector<Index> first_at_place(const std::vector<std::array<double, 3>>& points) {
+    struct Slot {
+        std::uint32_t tag;
+        Index vertex = no_index;
+    };
+    constexpr std::size_t batch = 16;  // slots of so many points are fetched from memory together
+    const std::size_t count = points.size();
+    const auto bits = static_cast<unsigned>(std::bit_width(std::max<std::size_t>(count, 2)) + 1);
+    const std::size_t mask = (std::size_t{1} << bits) - 1;
+    std::vector<Slot> slots(mask + 1);
+    std::vector<Index> first(count);
+    std::size_t probes_left = 16 * count + 1000;
+    std::array<std::uint64_t, batch> hashes{};
+    for (std::size_t begin = 0; begin < count; begin += batch) {
+        const std::size_t end = std::min(begin + batch, count);
+        for (std::size_t v = begin; v < end; ++v) {
+            hashes[v - begin] = hash_of(points[v]) * 0x9E3779B97F4A7C15U;
+            __builtin_prefetch(&slots[hashes[v - begin] >> (64 - bits)]);
+        }
+        for (std::size_t v = begin; v < end; ++v) {
+            std::size_t place = hashes[v - begin] >> (64 - bits);
+            const auto tag = static_cast<std::uint32_t>(hashes[v - begin]);
+            const auto is_other = [&](const Slot& slot) {
+                return slot.vertex != no_index && (slot.tag != tag || points[slot.vertex] != points[v]);
+            };
+            while (is_other(slots[place])) {
+                if (--probes_left == 0) return first_by_sorting(points);
+                place = (place + 1) & mask;
+            }
+            if (slots[place].vertex == no_index) slots[place] = {tag, static_cast<Index>(v)};
+            first[v] = slots[place].vertex;
+        }
+    }
+    return first;
+}
+
 /// A border edge of the polygons, traversed from `from` to `to`.
 struct BorderEdge {
     Index from, to;              ///< vertices
@@ -56,24 +93,25 @@ std::vector<BorderEdge> border_edges(const PolygonSoup& soup, const std::vector<
     std::vector<std::uint8_t> doubled(place.size(), 0);
     for (std::size_t v = 0; v < place.size(); ++v)
         if (place[v] != v) doubled[v] = doubled[place[v]] = 1;
-    const auto for_each_side = [&](const auto& visit) {
-        for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
-            const Index first = soup.polygon_begin[i], last = soup.polygon_begin[i + 1];
-            for (Index k = first; k < last; ++k) {
-                const Index a = soup.corners[k], b = soup.corners[k + 1 < last ? k + 1 : first];
-                if ((doubled[a] | doubled[b]) != 0 && place[a] != place[b]) visit(a, b);
-            }
+    std::vector<std::array<Index, 2>> edges;
+    for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
+        const Index first = soup.polygon_begin[i], last = soup.polygon_begin[i + 1];
+        std::uint8_t any_doubled = 0;
+        for (Index k = first; k < last; ++k) any_doubled |= doubled[soup.corners[k]];
+        for (Index k = first; k < last && any_doubled != 0; ++k) {
+            const Index a = soup.corners[k], b = soup.corners[k + 1 < last ? k + 1 : first];
+            if ((doubled[a] | doubled[b]) != 0 && place[a] != place[b]) edges.push_back({a, b});
         }
-    };
+    }
     struct Side {
         Index high;
         bool forward;  ///< from the smaller to the larger end point
     };
-    std::vector<std::size_t> end(place.size() + 1, 0);
-    for_each_side([&](Index a, Index b) { ++end[std::min(a, b) + 1]; });
+    std::vector<Index> end(place.size() + 1, 0);
+    for (const auto& [a, b] : edges) ++end[std::min(a, b) + 1];
     std::partial_sum(end.begin(), end.end(), end.begin());
     std::vector<Side> sides(end.back());
-    for_each_side([&](Index a, Index b) { sides[end[std::min(a, b)]++] = {std::max(a, b), a < b}; });
+    for (const auto& [a, b] : edges) sides[end[std::min(a, b)]++] = {std::max(a, b), a < b};
     std::vector<BorderEdge> borders;
     for (std::size_t low = 0; low < place.size(); ++low) {
         const std::size_t from = low == 0 ? 0 : end[low - 1], to = end[low];
@@ -108,7 +146,9 @@ void unite_coincident(std::vector<BorderEdge>& borders, DisjointSets& sets) {
 template <class Value>
 void keep_entries(std::vector<Value>& values, const std::vector<Index>& kept) {
     if (values.empty()) return;
-    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+    std::size_t i = 0;
+    while (i < kept.size() && kept[i] == i) ++i;
+    for (; i < kept.size(); ++i) values[i] = values[kept[i]];
     values.resize(kept.size());
 }
 
@@ -124,6 +164,7 @@ void join_seams(PolygonSoup& soup) {
     DisjointSets sets(count);
     unite_coincident(borders, sets);
     std::vector<Index> kept, vertex(count);
+    kept.reserve(count);
     for (std::size_t v = 0; v < count; ++v)
         if (sets.find(v) == v) {
             vertex[v] = static_cast<Index>(kept.size());

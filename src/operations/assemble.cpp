@@ -1,6 +1,7 @@
 // assemble: joins fragments along their fracture surfaces.
 #include "operations/completed_output.h"
 #include "operations/operations.h"
+#include "operations/outward.h"
 #include "operations/turned_groups.h"
 
 #include "ostraka/collection/objects.h"
@@ -358,8 +359,10 @@ private:
             prior = prior_of(learnt.modes);
         }
         const RelationGraph& graph = class_template(*object_template).graph;
-        const Reconstruction completed = reconstruct({object_template->mesh->mesh, *object_template->annotations}, graph,
-                                                     {&joined_group}, {}, {}, prior ? &*prior : nullptr);
+        const AnnotatedMeshView given(object_template->mesh->mesh, *object_template->annotations);
+        const std::optional<AnnotatedMesh> turned = outward(given, object_template.file(), report);
+        const Reconstruction completed =
+            reconstruct(turned ? AnnotatedMeshView(*turned) : given, graph, {&joined_group}, {}, {}, prior ? &*prior : nullptr);
         for (const auto& notes : completed.notes) context.notes(name, notes);
         add_members(entry, allocator, "completion", to_string(completed.verdict), "observed", completed.observed_share);
         if (!completed.undecided.empty()) add_members(entry, allocator, "because", completed.undecided);

@@ -1,6 +1,7 @@
 // fit: reconstructs the whole object from fragments.
 #include "operations/completed_output.h"
 #include "operations/constraint_report.h"
+#include "operations/outward.h"
 
 #include "ostraka/measure/measure.h"
 #include "ostraka/reconstruction/assembly.h"
@@ -62,7 +63,9 @@ struct Fit final : Operation {
         check_usable(*object_template, object_template.file());
         if (!object_template->annotations)
             fail_input(object_template.file(), "has no annotations", "pack them: they identify corresponding parts");
-        const Mesh& mesh = object_template->mesh->mesh;
+        turned = outward(AnnotatedMeshView(object_template->mesh->mesh, *object_template->annotations), object_template.file(),
+                         report);
+        const Mesh& mesh = template_object().mesh;
         names.template_file = object_template.file_name();
         std::vector<std::vector<StatedMatch>> stated = read_fragments(context, report);
         const RelationGraph& graph = class_template(*object_template).graph;
@@ -86,8 +89,7 @@ struct Fit final : Operation {
                 cage = generated_cage(mesh);
             }
         }
-        Reconstructor reconstructor({mesh, *object_template->annotations}, graph, options, prior ? &*prior : nullptr,
-                                    cage ? &*cage : nullptr);
+        Reconstructor reconstructor(template_object(), graph, options, prior ? &*prior : nullptr, cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
         // Results must not overwrite fragments; checked before the work starts.
         for (const char* name : {"fit.assembly.json", searches_file, "completed.ply", "completed.ant.json"})
@@ -152,6 +154,12 @@ struct Fit final : Operation {
         return stated;
     }
 
+    /// The template, with its faces turned over if it is inside out.
+    [[nodiscard]] AnnotatedMeshView template_object() const {
+        return turned ? AnnotatedMeshView(*turned)
+                      : AnnotatedMeshView(object_template->mesh->mesh, *object_template->annotations);
+    }
+
     static constexpr const char* searches_file = "fit.searches.json";
 
     /// Adds pose searches stored by an earlier fit in the folder. The key of each decides whether it is used.
@@ -182,8 +190,7 @@ struct Fit final : Operation {
             for (const CompletionNote& note : result.object.notes)
                 report.note(fmt::format("{}: {}; its observed surface is represented by the template's triangles",
                                         names.fragments[static_cast<std::size_t>(note.fragment)], note.text));
-            AnnotationSet carried_annotations =
-                completed_annotations({object_template->mesh->mesh, *object_template->annotations}, result);
+            AnnotationSet carried_annotations = completed_annotations(template_object(), result);
             report.notes(refresh_measures(result.object.mesh, carried_annotations).notes);
             output.write("completed.ant.json", {result.object.mesh, carried_annotations}, "completed.ply");
         }
@@ -267,6 +274,7 @@ struct Fit final : Operation {
     }
 
     TemplateInput object_template;
+    std::optional<AnnotatedMesh> turned;  ///< the template with its faces turned over, if it is inside out
     FileInput files, class_file;
     JsonInput assembly;
     FolderOutput output;

@@ -2,6 +2,7 @@
 #include "point_cloud/surface_parts.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/message_text.h"
 #include "ostraka/io/repair.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
@@ -147,7 +148,8 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     result.sources = std::move(sources);
     clouds::count_borders(repaired.after, result);
     if (result.border_loops > 0)
-        result.notes.push_back(fmt::format("the surface has {} borders where there are no points", result.border_loops));
+        result.notes.push_back(
+            fmt::format("the surface has {} where there are no points", counted(result.border_loops, "border")));
     return result;
 }
 

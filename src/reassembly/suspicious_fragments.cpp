@@ -97,8 +97,7 @@ std::vector<SuspiciousFragment> suspicious_fragments(const std::vector<Fragment>
     for (std::size_t k = 0; k < fragments.size(); ++k) {
         const Mesh& mesh = fragments[k].mesh;
         if (!(measurements[k].area > 0)) continue;
-        if (closed(mesh) && measurements[k].volume < 0)
-            result.push_back({k, "is inside out: its faces point inwards; run 'ostraka mesh repair'", false});
+        if (closed(mesh) && measurements[k].volume < 0) result.push_back({k, "is inside out: its faces point inwards", false});
         auto& others = by_size[{mesh.number_of_vertices(), mesh.number_of_faces()}];
         for (const std::size_t other : others) {
             if (std::abs(measurements[k].area - measurements[other].area) > 1e-4 * measurements[k].area ||

@@ -7,6 +7,8 @@
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/surface_colour.h"
+#include "ostraka/mesh/orientation.h"
+#include "ostraka/transfer/moved_annotations.h"
 
 #include <fmt/core.h>
 
@@ -82,6 +84,10 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         annotated = options.facets != FacetSource::none &&
                     std::any_of(annotations.begin(), annotations.end(),
                                 [](const Annotation& annotation) { return named_facet(annotation).has_value(); });
+    }
+    if (is_inside_out(fragment.mesh)) {
+        static_cast<AnnotatedMesh&>(fragment) = turned_over(AnnotatedMeshView(fragment));
+        result.notes.emplace_back("is inside out: its faces were turned over in memory (ostraka mesh repair corrects the file)");
     }
     const bool by_shape = options.facets == FacetSource::automatic ||
                           (options.facets == FacetSource::either && !annotated && (result.points || !has_border(fragment.mesh)));

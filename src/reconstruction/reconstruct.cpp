@@ -9,8 +9,9 @@
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/diagnose.h"
+#include "ostraka/mesh/orientation.h"
+#include "ostraka/transfer/moved_annotations.h"
 
-#include <CGAL/boost/graph/helpers.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -19,15 +20,6 @@
 namespace ostraka {
 
 namespace {
-
-/// Whether a closed mesh has a negative volume.
-bool inside_out(const Mesh& mesh) {
-    if (mesh.number_of_faces() == 0 || !CGAL::is_closed(mesh)) return false;
-    const Point origin = mesh.point(*mesh.vertices().begin());
-    double volume = 0;
-    for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
-    return volume < 0;
-}
 
 /// The share of an annotation's vertices that were observed.
 double observed_share(AnnotatedMeshView template_object, int id, const std::vector<bool>& observed) {
@@ -78,6 +70,7 @@ RelationGraph with_observed_as_reference(AnnotatedMeshView template_object, cons
 /// A fragment with its cached results.
 struct FragmentState {
     const Fragment* fragment = nullptr;
+    std::shared_ptr<const Fragment> turned;  ///< the fragment with its faces turned over, if the given one is inside out
     std::vector<StatedMatch> stated;
     std::vector<LandmarkPair> pairs;  ///< with the template
     std::vector<std::string> notes;
@@ -377,20 +370,24 @@ Reconstructor::Reconstructor(AnnotatedMeshView template_object, const RelationGr
         fail_usage("a class changes the shape of the template, which its cage does not follow",
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(template_object.mesh.number_of_vertices());
-    if (inside_out(template_object.mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
+    if (is_inside_out(template_object.mesh)) fail_input("template", "is inside out", "turn its faces over");
     known_ = std::make_unique<ReconstructionState>(template_object, graph, options, prior, cage);
 }
 Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 
 void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> stated) {
-    if (inside_out(fragment.mesh))
-        fail_input(fmt::format("fragment '{}'", fragment.name), "is inside out", "run: ostraka mesh repair");
     FragmentState added;
     added.fragment = &fragment;
+    if (is_inside_out(fragment.mesh)) {
+        added.notes.emplace_back("is inside out: its faces were turned over in memory");
+        added.turned =
+            std::make_shared<const Fragment>(Fragment{turned_over(AnnotatedMeshView(fragment)), fragment.name, fragment.facets});
+        added.fragment = added.turned.get();
+    }
     added.stated = std::move(stated);
-    added.pairs = common_landmarks(*known_, fragment, &added.notes);
-    added.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
+    added.pairs = common_landmarks(*known_, *added.fragment, &added.notes);
+    added.trees = std::make_shared<FragmentTrees>(added.fragment->mesh, fragment.facets);
     known_->fragments.push_back(std::move(added));
 }
 

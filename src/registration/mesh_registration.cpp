@@ -12,6 +12,7 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/mesh/orientation.h"
 
 #include <fmt/core.h>
 
@@ -453,15 +454,9 @@ void choose_pose(const MeshRegistrar& registrar, const std::vector<UnitPose>& po
     }
 }
 
-}  // namespace
-
-std::string to_string(RegistrationVerdict verdict) {
-    static constexpr const char* words[]{"aligned", "mirror image", "inside out", "not the same object"};
-    return words[static_cast<std::size_t>(verdict)];
-}
-
-MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options) {
-    check_options(options, "registration");
+/// Registers the meshes as they are oriented; verdict `different` and `turned_over` if they coincide once the faces of one of
+/// them are turned over.
+MeshRegistration registered_as_oriented(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options) {
     Progress progress("registering", 4);
     const MeshRegistrar registrar(source, target, options);
     MeshRegistration result;
@@ -483,14 +478,37 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
             const Handedness hand{.mirrored = with_mirror, .flipped = true};
             const SurfaceAgreement agreement = registrar.judge(registrar.search(hand, max_rough_residual).front().pose, hand);
             if (!registrar.aligned(agreement)) continue;
-            result.verdict = with_mirror ? RegistrationVerdict::mirrored : RegistrationVerdict::inside_out;
-            if (with_mirror) result.mirrored = agreement;
+            if (with_mirror) result.verdict = RegistrationVerdict::mirrored, result.mirrored = agreement;
+            else result.turned_over = true;
             break;
         }
     }
     if (result.verdict != RegistrationVerdict::aligned) result.others.clear();
     progress.advance();
     return result;
+}
+
+}  // namespace
+
+std::string to_string(RegistrationVerdict verdict) {
+    static constexpr const char* words[]{"aligned", "mirror image", "not the same object"};
+    return words[static_cast<std::size_t>(verdict)];
+}
+
+MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options) {
+    check_options(options, "registration");
+    MeshRegistration result = registered_as_oriented(source, target, options);
+    if (!result.turned_over) return result;
+    MeshRegistration turned = registered_as_oriented(turned_over(source), target, options);
+    if (turned.verdict != RegistrationVerdict::aligned) {
+        result.turned_over = false;
+        return result;
+    }
+    turned.turned_over = true;
+    turned.inside_out = is_inside_out(source)   ? MeshRegistration::InsideOut::source
+                        : is_inside_out(target) ? MeshRegistration::InsideOut::target
+                                                : MeshRegistration::InsideOut::unknown;
+    return turned;
 }
 
 std::string message_about(const MeshRegistration& registration, double diagonal) {
@@ -505,8 +523,6 @@ std::string message_about(const MeshRegistration& registration, double diagonal)
             return fmt::format(
                 "a mirror image: reflected, the source would fit with an rms distance of {} of the diagonal (unreflected: {})",
                 share(registration.mirrored.rms / diagonal), share(registration.agreement.rms / diagonal));
-        case RegistrationVerdict::inside_out:
-            return "one of the meshes is inside out; run: ostraka mesh repair";
         default:
             return "not the same object, or too coarse to decide: " + residual;
     }
@@ -515,6 +531,14 @@ std::string message_about(const MeshRegistration& registration, double diagonal)
 std::vector<std::string> remarks_on(const MeshRegistration& registration) {
     std::vector<std::string> remarks;
     if (registration.verdict != RegistrationVerdict::aligned) return remarks;
+    if (registration.turned_over) {
+        using InsideOut = MeshRegistration::InsideOut;
+        remarks.push_back(fmt::format(
+            "{} inside out: the faces of the source were turned over in memory (ostraka mesh repair corrects the file)",
+            registration.inside_out == InsideOut::source   ? "the source is"
+            : registration.inside_out == InsideOut::target ? "the target is"
+                                                           : "one of the meshes is"));
+    }
     if (!registration.others.empty())
         remarks.push_back(
             fmt::format("{}{} poses fit equally: the object is symmetric; the one that rotates the source least was chosen",

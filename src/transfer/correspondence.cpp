@@ -197,6 +197,8 @@ std::string known_ratio(double scale) {
 Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     Agreement result;
     const double source_size = box_diagonal(source), target_size = box_diagonal(target);
+    const Moments s = moments(source), t = moments(target);
+    result.opposite = std::min(std::abs(s.volume), std::abs(t.volume)) > 1e-3 && s.volume * t.volume < 0;
     if (!(source_size > 0) || !(target_size > 0)) {
         result.problem = "one of the meshes has no extent";
         return result;
@@ -207,7 +209,6 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
                          known_ratio(result.scale) + "; bring them to one unit first";
         return result;
     }
-    const Moments s = moments(source), t = moments(target);
     result.offset = (t.centre - s.centre).norm() / std::max(source_size, target_size);
     const SymmetricEigen3 es(s.covariance), et(t.covariance);
     // An axis is compared if its moment differs clearly from the others on both meshes.
@@ -229,8 +230,6 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
         result.problem = "the meshes are not aligned: the target's centre lies " + digits(100 * result.offset, 3) +
                          " % of the diagonal away (" + digits(d.x(), 6) + ", " + digits(d.y(), 6) + ", " + digits(d.z(), 6) +
                          "); move it there first";
-    } else if (std::min(std::abs(s.volume), std::abs(t.volume)) > 1e-3 && s.volume * t.volume < 0) {
-        result.problem = "one of the meshes is inside out; run: ostraka mesh repair";
     } else {
         for (int i = 0; i < 3; ++i) {
             if (std::min(std::abs(s.skewness[i]), std::abs(t.skewness[i])) < 0.15 || s.skewness[i] * t.skewness[i] > 0) continue;

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/mesh/orientation.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include <algorithm>
@@ -106,6 +107,12 @@ AnnotationSet moved_annotations(AnnotatedMeshView object, const Motion& motion, 
         }
         if (motion.mirrors()) mirror_curves(object.mesh, annotation);
     }
+    return result;
+}
+
+AnnotatedMesh turned_over(AnnotatedMeshView object) {
+    AnnotatedMesh result{turned_over(object.mesh), object.annotations};
+    for (Annotation& annotation : result.annotations.annotations) mirror_curves(object.mesh, annotation);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/transfer/moved_annotations.h"
 #include "ostraka/transfer/project_curves.h"
 #include "transfer/attribute_carrier.h"
 #include "transfer/curve_partition.h"
@@ -235,9 +236,13 @@ TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, c
     const Stopwatch watch;
     check_options(options, "transfer");
     check_indices(source);
-    if (!options.force) {
-        const Agreement alignment = compare_alignment(source.mesh, target.mesh());
-        if (!alignment.problem.empty()) fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
+    const Agreement alignment = compare_alignment(source.mesh, target.mesh());
+    if (!options.force && !alignment.problem.empty())
+        fail_input("transfer", alignment.problem, "or --force if they are meant to differ");
+    if (alignment.opposite) {
+        TransferResult result = transfer(turned_over(source), target, options);
+        result.turned_over = true;
+        return result;
     }
     const bool needs_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
     if (options.refine && options.cover != TransferOptions::Cover::overlapping)

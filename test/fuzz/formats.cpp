@@ -3,11 +3,14 @@
 
 #include "../io/three_mf_examples.h"
 #include "../point_cloud/e57_writer.h"
+#include "../point_cloud/las_writer.h"
 #include "ostraka/image/image.h"
 
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 namespace ostraka::fuzz {
@@ -52,11 +55,31 @@ std::string points_text(const Mesh& mesh, const char* before, std::size_t every)
     return text.str();
 }
 
+/// Points with 30 coordinates of single precision, as binary PCD.
+std::string binary_pcd(const Mesh& mesh) {
+    std::string text = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 30\nHEIGHT 1\nDATA binary\n";
+    for (Index i = 0; i < 30; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const auto x = static_cast<float>(mesh.point(Vertex(i))[k]);
+            text.append(reinterpret_cast<const char*>(&x), sizeof x);
+        }
+    return text;
+}
+
 std::string read_cloud(const Path& file) {
     const auto cloud = read_point_cloud(file);
     if (!cloud) return "a file with faces";
     const std::size_t normals = estimate_normals(cloud->points).size();
     return std::to_string(cloud->points.size()) + " points, " + std::to_string(normals) + " normals";
+}
+
+/// Reads an E57 file, whose checksums are corrected first.
+std::string read_sealed_e57(const Path& file) {
+    std::string bytes = read_file(file);
+    bytes.resize(std::max<std::size_t>(bytes.size() / 1024, 1) * 1024);
+    test::seal_e57_pages(bytes);
+    write_file("out/sealed.e57", bytes);
+    return read_cloud("out/sealed.e57");
 }
 
 std::string decode_image(const Path& file) {
@@ -132,6 +155,61 @@ usemtl paint
 f 3/1 4/2 5/3
 )";
 
+/// Meshes with an image inside or beside them.
+void make_textured() {
+    make_folder("textured");
+    write_file("textured/textured.obj", textured);
+    write_file("textured/textured.mtl", mtl);
+    write_file("textured/image.png", read_file("images/image.png"));
+    const MeshFile mesh = read_mesh("textured/textured.obj");
+    for (const char* name : {"textured/out.glb", "textured/out.ply"}) write_mesh(name, mesh.mesh, mesh.extras);
+    WriteOptions ascii;
+    ascii.encoding = Encoding::ascii;
+    write_mesh("textured/text.ply", mesh.mesh, mesh.extras, ascii);
+}
+
+void add_sealed_e57(const Path& file, std::vector<Subject>& subjects) {
+    const std::string name = file.filename().string();
+    Subject subject;
+    subject.name = "sealed cloud " + name;
+    subject.files = {{name, file}};
+    subject.folders = {"out"};
+    subject.targets = {{"e57", name}};
+    subject.act = [name](Stopper&) { return read_sealed_e57(name); };
+    subjects.push_back(std::move(subject));
+}
+
+/// What is done with a scan of a kind.
+void add_scan(const Path& file, std::vector<SubjectFile> beside, std::vector<Subject>& subjects) {
+    const std::string name = file.filename().string(), kind = extension(name).substr(1);
+    std::vector<SubjectFile> files{{name, file}};
+    files.insert(files.end(), beside.begin(), beside.end());
+    add_call(subjects, "info of scan " + name, files, {kind, name}, call_text("mesh info", R"({"input":")" + name + "\"}"));
+    add_call(subjects, "import of scan " + name, files, {kind, name},
+             call_text("import", R"({"scan":[")" + name + R"("],"object":"out/object"})"));
+}
+
+/// Files of a folder that the environment names, such as scans of collections: other dialects than ours.
+void add_samples(std::vector<Subject>& subjects) {
+    const char* folder = std::getenv("OSTRAKA_FUZZ_SAMPLES");
+    if (folder == nullptr) return;
+    for (const std::string& name : files_in(folder)) {
+        const Path file = Path(folder) / name;
+        const std::string ending = extension(file);
+        if (ending != ".jpg" && ending != ".jpeg" && ending != ".png" && ending != ".webp" && ending != ".gif") {
+            if (ending.size() > 1) add_scan(file, {}, subjects);
+            if (ending == ".e57") add_sealed_e57(file, subjects);
+            continue;
+        }
+        Subject subject;
+        subject.name = "sample " + name;
+        subject.files = {{name, file}};
+        subject.targets = {{"image", name}};
+        subject.act = [name](Stopper&) { return decode_image(name); };
+        subjects.push_back(std::move(subject));
+    }
+}
+
 /// Meshes with materials: the files that they name are mutated too.
 void add_materials(const Path& seeds, std::vector<Subject>& subjects) {
     const SubjectFile obj{"textured.obj", {}, textured}, materials{"textured.mtl", {}, mtl};
@@ -195,6 +273,11 @@ void make_formats(const Path& project) {
     write_file("clouds/points.obj", points_text(sphere.mesh, "v ", 2));
     write_file("clouds/points.ply", read_file(inputs / "points-only.ply"));
     make_images();
+    write_file("clouds/points.las", test::las_file(3, 0x8040));
+    write_file("clouds/points-binary.pcd", binary_pcd(sphere.mesh));
+    write_file("clouds/points.pts", "20\n" + points_text(sphere.mesh, "", 10));
+    write_file("clouds/coloured.csv", "//X,Y,Z,R,G,B\n0.5,1,2,255,0,0\n1,2,3,0,128,255\n3,1,0.25,1,2,3\n4,4,1e1,9,9,9\n");
+    make_textured();
     write_file("clouds/points.ptx",
                "200\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n" + points_text(sphere.mesh, "", 3));
     write_file("clouds/points.pcd",
@@ -243,7 +326,17 @@ void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& s
             subjects.push_back(std::move(subject));
         }
     };
-    add_reader("clouds", "cloud", read_cloud);
+    for (const std::string& name : files_in(seeds / "clouds")) {
+        const std::string ending = extension(name);
+        const bool is_mesh_format = ending == ".obj" || ending == ".ply";
+        Subject subject;
+        subject.name = "cloud " + name;
+        subject.files = {{name, seeds / "clouds" / name}};
+        subject.targets = {{is_mesh_format ? "cloud" : ending.substr(1), name}};
+        subject.act = [name](Stopper&) { return read_cloud(name); };
+        subjects.push_back(std::move(subject));
+        if (ending == ".e57") add_sealed_e57(seeds / "clouds" / name, subjects);
+    }
     add_reader("images", "image", decode_image);
     for (const std::string& name : files_in(seeds / "exchange")) {
         const SubjectFile seed{name, seeds / "exchange" / name};
@@ -256,6 +349,10 @@ void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& s
                 call_text("annotation import", R"({"mesh":"box.ply","input":")" + name + R"(","output":"out/out.ant.json"})"));
     }
     add_materials(seeds, subjects);
+    const SubjectFile image{"out.png", seeds / "images" / "image.png"};
+    for (const std::string& name : files_in(seeds / "textured"))
+        if (name.ends_with(".glb") || name.ends_with(".ply")) add_scan(seeds / "textured" / name, {image}, subjects);
+    add_samples(subjects);
     add_recipes(project, subjects);
 }
 

@@ -1,4 +1,5 @@
 #include "ostraka/measure/surface_colour.h"
+#include "ostraka/measure/appearance_change.h"
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
@@ -52,6 +53,20 @@ TEST(SurfaceColour, VerticesHaveTheColourOfTheImageAroundThem) {
         if (x > 0.85 && x < 1.15) continue;
         EXPECT_LT(colour_difference(colours[v], x < 1 ? red : blue), 1) << x;
     }
+}
+
+TEST(AppearanceChange, IsTheShareOfTheSurfaceThatShowsAnotherColour) {
+    const MeshFile before = flag();
+    const AppearanceChange none = appearance_change(before, before.mesh, before.extras, "flag");
+    EXPECT_EQ(none.mean, 0);
+    EXPECT_GT(none.resampling, 0);
+    EXPECT_LT(none.resampling, 10);
+    MeshExtras shifted = before.extras;
+    for (TexturePoint& point : shifted.corner_texture) point[0] += 0.25F;
+    const AppearanceChange change = appearance_change(before, before.mesh, shifted, "flag", 5000);
+    EXPECT_EQ(change.samples, 5000U);
+    // A quarter of the surface is blue instead of red: 255 in two of three channels.
+    EXPECT_NEAR(change.mean, 0.25 * 170, 1.5);
 }
 
 TEST(SurfaceColour, MeasuresOfAPart) {

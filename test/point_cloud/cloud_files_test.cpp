@@ -2,6 +2,7 @@
 #include "../../src/point_cloud/cloud_formats.h"
 #include "../../src/point_cloud/e57_file.h"
 #include "e57_writer.h"
+#include "las_writer.h"
 #include "ostraka/core/error.h"
 #include "ostraka/point_cloud/point_cloud.h"
 #include "ostraka/stats/random.h"
@@ -13,13 +14,10 @@
 namespace ostraka {
 namespace {
 
+using test::las_colours;
+using test::las_file;
+using test::put;
 using test::Scratch;
-
-template <class T>
-void put(std::string& bytes, std::size_t position, T value) {
-    if (bytes.size() < position + sizeof(T)) bytes.resize(position + sizeof(T), '\0');
-    std::memcpy(bytes.data() + position, &value, sizeof(T));
-}
 
 PointCloud cloud_of(const Path& file) {
     std::optional<PointCloud> cloud = read_point_cloud(file);
@@ -75,37 +73,6 @@ void read_changed(const std::string& bytes, const std::string& name, int rounds)
 }
 
 // ---- LAS ----
-
-constexpr std::array<std::size_t, 11> las_records{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::array<std::size_t, 11> las_colours{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
-
-std::string las_file(unsigned format, std::uint16_t red, std::uint16_t intensity = 700) {
-    const unsigned minor = format > 5 ? 4 : format > 3 ? 3 : 2;
-    const std::uint16_t header = minor == 4 ? 375 : 227, record = static_cast<std::uint16_t>(las_records[format] + 3);
-    std::string bytes(header, '\0');
-    bytes.replace(0, 4, "LASF");
-    bytes[24] = 1;
-    bytes[25] = static_cast<char>(minor);
-    put<std::uint16_t>(bytes, 94, header);
-    put<std::uint32_t>(bytes, 96, header);
-    bytes[104] = static_cast<char>(format);
-    put<std::uint16_t>(bytes, 105, record);
-    if (minor == 4) put<std::uint64_t>(bytes, 247, 3);
-    else put<std::uint32_t>(bytes, 107, 3);
-    const std::array<double, 3> scale{0.001, 0.001, 0.01}, offset{650000, 5600000, -10};
-    for (std::size_t k = 0; k < 3; ++k) {
-        put(bytes, 131 + 8 * k, scale[k]);
-        put(bytes, 155 + 8 * k, offset[k]);
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t begin = header + i * record;
-        bytes.resize(begin + record, '\0');
-        for (std::size_t k = 0; k < 3; ++k) put<std::int32_t>(bytes, begin + 4 * k, static_cast<std::int32_t>(1000 * i + k));
-        put<std::uint16_t>(bytes, begin + 12, intensity);
-        if (las_colours[format] > 0) put<std::uint16_t>(bytes, begin + las_colours[format], red);
-    }
-    return bytes;
-}
 
 TEST(CloudFiles, LasOfEveryPointFormat) {
     const Scratch scratch;

@@ -4,6 +4,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/files/json.h"
+#include "ostraka/mesh/orientation.h"
 
 #include <gtest/gtest.h>
 
@@ -140,11 +141,28 @@ TEST(Reconstructor, RefusesMissingFragmentsAndPositions) {
     EXPECT_THROW(reconstructor.remove(0), Error);
     reconstructor.add(pieces.fragments[0]);
     EXPECT_THROW(reconstructor.remove(1), Error);
-    Mesh turned = pieces.mesh;
-    for (const Vertex v : turned.vertices()) turned.point(v) = point_of(-eigen(turned.point(v)));
-    const Fragment inside_out{{turned, {}}, "turned", {}};
-    EXPECT_THROW(reconstructor.add(inside_out), Error);
-    EXPECT_EQ(reconstructor.size(), 1U);
+}
+
+TEST(Reconstructor, TurnsFragmentsOverThatAreInsideOut) {
+    const Pieces pieces(3);
+    Fragment whole{{pieces.mesh, pieces.set}, "whole", {}}, turned = whole;
+    turned.mesh = turned_over(whole.mesh);
+    std::vector<std::vector<Point>> placed;
+    for (const Fragment* fragment : {&whole, &turned}) {
+        Reconstructor reconstructor({pieces.mesh, pieces.set}, pieces.graph);
+        reconstructor.add(*fragment);
+        const Reconstruction result = reconstructor.run();
+        ASSERT_EQ(result.notes.size(), 1U);
+        const bool is_noted = std::any_of(result.notes[0].begin(), result.notes[0].end(), [](const std::string& note) {
+            return note.find("is inside out") != std::string::npos;
+        });
+        EXPECT_EQ(is_noted, fragment == &turned);
+        placed.push_back(result.points);
+    }
+    ASSERT_FALSE(placed[0].empty());
+    EXPECT_EQ(placed[0].size(), placed[1].size());
+    for (std::size_t i = 0; i < placed[0].size(); ++i)
+        ASSERT_LT(std::sqrt((placed[0][i] - placed[1][i]).squared_length()), 1e-6 * box_diagonal(pieces.mesh)) << i;
 }
 
 class PoseSearchFile : public ::testing::Test {

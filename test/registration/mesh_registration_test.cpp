@@ -131,9 +131,20 @@ TEST(MeshRegistration, RefusesAndReportsMirrorImages) {
     EXPECT_EQ(register_mesh(mirrored(pot), pot).verdict, RegistrationVerdict::mirrored);
 }
 
-TEST(MeshRegistration, ReportsMeshesThatAreInsideOut) {
-    const Mesh hand = synthetic_mesh("hand", 3000);
-    EXPECT_EQ(register_mesh(flipped_mesh(hand, false), hand).verdict, RegistrationVerdict::inside_out);
+TEST(MeshRegistration, RegistersMeshesThatAreInsideOut) {
+    const Mesh hand = synthetic_mesh("hand", 3000), turned = flipped_mesh(hand, false);
+    using InsideOut = MeshRegistration::InsideOut;
+    for (const auto& [source, target, which] :
+         {std::tuple{&turned, &hand, InsideOut::source}, {&hand, &turned, InsideOut::target}}) {
+        const MeshRegistration registration = register_mesh(*source, *target);
+        EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned);
+        EXPECT_TRUE(registration.turned_over);
+        EXPECT_EQ(registration.inside_out, which);
+        EXPECT_LT(registration.agreement.rms, 1e-6 * box_diagonal(hand));
+        ASSERT_FALSE(remarks_on(registration).empty());
+        EXPECT_NE(remarks_on(registration).front().find("inside out"), std::string::npos);
+    }
+    EXPECT_FALSE(register_mesh(hand, hand).turned_over);
 }
 
 TEST(MeshRegistration, CountsThePosesOfASymmetricObjectAndChoosesTheNearest) {

@@ -219,6 +219,50 @@ TEST_F(ResizeCommand, ColoursAreCarried) {
     }
 }
 
+/// A curved sheet whose texture coordinates are no linear function of the place, with stripes as its image.
+MeshFile striped_sheet() {
+    MeshFile file{build_mesh(grid(40, 40, false, false,
+                                  [](double u, double v) {
+                                      return std::array<double, 3>{u, v, 0.05 * std::sin(3 * u)};
+                                  })),
+                  {},
+                  {},
+                  {}};
+    Pixels pixels{256, 256, {}};
+    for (int i = 0; i < 256 * 256; ++i) {
+        const auto value = static_cast<std::uint8_t>(i % 256 / 16 % 2 == 0 ? 255 : 0);
+        pixels.rgba.push_back({value, value, value, 255});
+    }
+    file.extras.appearance.images.push_back(std::make_shared<const Image>(encode(pixels, ImageFormat::png, "stripes.png")));
+    file.extras.appearance.materials.resize(1);
+    file.extras.appearance.materials[0].image = 0;
+    for (const Face face : file.mesh.faces()) {
+        file.extras.face_materials.push_back(0);
+        for (const Vertex v : corners(file.mesh, face)) {
+            const double x = file.mesh.point(v).x(), y = file.mesh.point(v).y();
+            file.extras.corner_texture.push_back({static_cast<float>(x * x * x), static_cast<float>(y)});
+        }
+    }
+    return file;
+}
+
+TEST(ResizeTexture, SimplifyOffersANewTextureWhereTheOldOneIsSmeared) {
+    const Scratch scratch;
+    const MeshFile sheet = striped_sheet();
+    const std::string in = (scratch / "sheet.glb").string(), out = (scratch / "small.glb").string();
+    write_mesh(in, sheet.mesh, sheet.extras);
+    const auto fine = run_command("mesh simplify " + in + " " + out + " --vertices 1600");
+    ASSERT_EQ(fine.code, 0) << fine.err;
+    EXPECT_EQ(fine.err.find("mesh bake"), std::string::npos) << fine.err;
+    const auto coarse = run_command("mesh simplify " + in + " " + out + " --vertices 12");
+    ASSERT_EQ(coarse.code, 0) << coarse.err;
+    const std::string baked = (scratch / "small-baked.glb").string(), offer = "mesh bake " + out + " " + in + " " + baked;
+    EXPECT_NE(coarse.err.find("ostraka " + offer), std::string::npos) << coarse.err;
+    const auto made = run_command(offer);
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(file_exists(baked));
+}
+
 TEST(ResizeRealScan, GargoyleKeepsTopologyAndVolume) {
     const Path folder = Path(OSTRAKA_SHARED_DATA) / "heritage-scans";
     Path file;

@@ -393,7 +393,7 @@ TEST(Transfer, OtherUnitsAndPositionsAreRefusedWithTheirSize) {
     EXPECT_EQ(refusal(torus(50, 30)), "");
 }
 
-TEST(Transfer, InsideOutAndMirroredTargetsAreRefused) {
+TEST(Transfer, MeshesThatAreInsideOutAreTurnedOverAndMirroredTargetsRefused) {
     TriangleSoup lopsided = octahedron_sphere(4);
     for (auto& p : lopsided.points) p[0] += 0.5 * p[0] * p[0];
     const Mesh source = build_mesh(lopsided);
@@ -401,8 +401,16 @@ TEST(Transfer, InsideOutAndMirroredTargetsAreRefused) {
     for (auto& t : flipped.triangles) std::swap(t[0], t[1]);
     for (auto& p : mirrored.points) p[0] = 0.3333 - p[0];
     for (auto& t : mirrored.triangles) std::swap(t[0], t[1]);
-    for (const TriangleSoup& soup : {flipped, mirrored}) EXPECT_THROW(transfer_to({source, set_of({})}, build_mesh(soup)), Error);
-    EXPECT_NO_THROW(transfer_to({source, set_of({})}, source));
+    EXPECT_THROW(transfer_to({source, set_of({})}, build_mesh(mirrored)), Error);
+    const Mesh turned = build_mesh(flipped);
+    const AnnotationSet caps = set_of({region(1, source, cap)});
+    EXPECT_FALSE(transfer_to({source, caps}, source).turned_over);
+    for (const auto& [from, onto] : {std::pair{&source, &turned}, {&turned, &source}}) {
+        const TransferResult result = transfer_to({*from, caps}, *onto);
+        EXPECT_TRUE(result.turned_over);
+        EXPECT_EQ(result.annotations.annotations.at(0).faces, caps.annotations.at(0).faces);
+        EXPECT_EQ(result.scores.at(0).outcome, TransferOutcome::kept);
+    }
 }
 
 TEST(Transfer, AnnotationOfAnotherMeshIsRefused) {

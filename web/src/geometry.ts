@@ -44,26 +44,25 @@ export async function readShape(bytes: Uint8Array): Promise<Shape & { textured?:
   const corners = packed.stride === 2 ? Uint32Array.from(new Uint16Array(packed.made.buffer)) : new Uint32Array(packed.made.buffer);
   const origins = primitive.attributes._VERTEX;
   const vertices = origins === undefined ? undefined : new Uint32Array(unpacked(origins).made.buffer);
-  const count = vertices ? vertices.reduce((most, v) => Math.max(most, v + 1), 0) : points.count;
+  let count = vertices ? 0 : points.count;
+  if (vertices) for (let i = 0; i < vertices.length; ++i) if (vertices[i] >= count) count = vertices[i] + 1;
   const positions = new Float32Array(3 * count);
   for (let i = 0; i < points.count; ++i) {
     const at = 3 * (vertices ? vertices[i] : i);
     for (let k = 0; k < 3; ++k) positions[at + k] = moved[k] + scale[k] * steps[(i * points.stride) / 2 + k];
   }
   if (!vertices) return { positions, triangles: corners };
-  const places = unpacked(primitive.attributes.TEXCOORD_0);
+  const texture = unpacked(primitive.attributes.TEXCOORD_0).made.buffer;
   const inSteps = file.accessors[primitive.attributes.TEXCOORD_0].normalized === true;
-  return {
-    positions,
-    triangles: corners.map((i) => vertices[i]),
-    textured: {
-      vertices,
-      corners,
-      places: inSteps
-        ? Float32Array.from(new Uint16Array(places.made.buffer), (step) => step / 65535)
-        : new Float32Array(places.made.buffer),
-    },
-  };
+  // Plain loops: before the browser has compiled them, callbacks take several times as long.
+  const triangles = new Uint32Array(corners.length);
+  for (let i = 0; i < corners.length; ++i) triangles[i] = vertices[corners[i]];
+  const places = inSteps ? new Float32Array(texture.byteLength / 2) : new Float32Array(texture);
+  if (inSteps) {
+    const steps = new Uint16Array(texture);
+    for (let i = 0; i < steps.length; ++i) places[i] = steps[i] / 65535;
+  }
+  return { positions, triangles, textured: { vertices, corners, places } };
 }
 
 function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Array {
@@ -88,7 +87,7 @@ function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Arra
     }
   }
   for (let i = 0; i < normals.length; i += 3) {
-    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    const length = Math.sqrt(normals[i] ** 2 + normals[i + 1] ** 2 + normals[i + 2] ** 2) || 1;
     normals[i] /= length;
     normals[i + 1] /= length;
     normals[i + 2] /= length;
@@ -441,13 +440,20 @@ export class DrawnObject {
     const texture = shape.look?.texture;
     this.kinds = kindsOf(this.sets.of, shape.look);
     const split = splitVertices(texture ? texture.vertices.length : positions.length / 3, texture?.corners ?? triangles, this.kinds.of);
-    this.split = { source: texture ? split.source.map((i) => texture.vertices[i]) : split.source, kind: split.kind };
+    this.split = { source: split.source, kind: split.kind };
+    if (texture) {
+      this.split.source = new Uint32Array(split.source.length);
+      for (let i = 0; i < split.source.length; ++i) this.split.source[i] = texture.vertices[split.source[i]];
+    }
     this.normals = restOf(shape).normals;
     const geometry = new THREE.BufferGeometry();
     const count = this.split.source.length;
     if (texture) {
       const places = new Float32Array(2 * count);
-      split.source.forEach((from, i) => places.set(texture.places.subarray(2 * from, 2 * from + 2), 2 * i));
+      for (let i = 0; i < count; ++i) {
+        places[2 * i] = texture.places[2 * split.source[i]];
+        places[2 * i + 1] = texture.places[2 * split.source[i] + 1];
+      }
       geometry.setAttribute("uv", new THREE.BufferAttribute(places, 2));
       const { index, ranges } = rangesByMaterial(split.index, texture);
       geometry.setIndex(new THREE.BufferAttribute(index, 1));

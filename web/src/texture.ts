@@ -166,18 +166,24 @@ export function kindsOf(sets: Uint32Array, look: ShapeLook | undefined): Kinds {
   const numbers = new Map<number, number>();
   const materials = (look?.texture?.materials.length ?? 0) + 1;
   const colours = look?.faceColours;
+  let last = -1;
+  let number = 0;
   for (let t = 0; t < sets.length; ++t) {
     const material = look?.texture?.of[t] ?? -1;
     const colour = colours ? (colours[3 * t] << 16) | (colours[3 * t + 1] << 8) | colours[3 * t + 2] : 0;
     const key = (sets[t] * materials + material + 1) * 0x1000000 + colour;
-    let kind = numbers.get(key);
-    if (kind === undefined) {
-      kind = made.set.push(sets[t]) - 1;
-      made.material.push(material);
-      made.triangle.push(t);
-      numbers.set(key, kind);
+    if (key !== last) {
+      let kind = numbers.get(key);
+      if (kind === undefined) {
+        kind = made.set.push(sets[t]) - 1;
+        made.material.push(material);
+        made.triangle.push(t);
+        numbers.set(key, kind);
+      }
+      last = key;
+      number = kind;
     }
-    of[t] = kind;
+    of[t] = number;
   }
   return made;
 }
@@ -188,15 +194,21 @@ export function rangesByMaterial(
   texture: ShapeTexture,
 ): { index: Uint32Array; ranges: { start: number; count: number; material: number }[] } {
   const count = texture.materials.length + 1;
+  const { of } = texture;
+  let isOne = of.length > 0;
+  for (let t = 1; t < of.length && isOne; ++t) isOne = of[t] === of[0];
+  if (isOne) return { index: corners, ranges: [{ start: 0, count: corners.length, material: of[0] + 1 }] };
   const begin = new Uint32Array(count + 1);
-  for (const material of texture.of) begin[material + 2] += 3;
+  for (let t = 0; t < of.length; ++t) begin[of[t] + 2] += 3;
   for (let i = 0; i < count; ++i) begin[i + 1] += begin[i];
   const index = new Uint32Array(corners.length);
   const next = begin.slice();
-  for (let t = 0; t < texture.of.length; ++t) {
-    const at = next[texture.of[t] + 1];
-    for (let k = 0; k < 3; ++k) index[at + k] = corners[3 * t + k];
-    next[texture.of[t] + 1] += 3;
+  for (let t = 0; t < of.length; ++t) {
+    const at = next[of[t] + 1];
+    index[at] = corners[3 * t];
+    index[at + 1] = corners[3 * t + 1];
+    index[at + 2] = corners[3 * t + 2];
+    next[of[t] + 1] += 3;
   }
   const ranges = [];
   for (let i = 0; i < count; ++i)

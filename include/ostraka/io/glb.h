@@ -133,6 +133,15 @@ public:
     /// Reads an accessor with `width` numbers per element. The accessor may be sparse or have no data (all numbers are then
     /// zero). Each accessor is read only once, even if it is referenced several times.
     [[nodiscard]] Values accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+    /// Numbers of single precision where they lie in the file; `bytes` lives as long as the reader.
+    struct Floats {
+        const char* bytes = nullptr;  ///< first number of the first element
+        std::size_t stride = 0;       ///< bytes from one element to the next
+        std::size_t count = 0;        ///< number of elements
+    };
+    /// The numbers of an accessor with `width` numbers per element, without copying them; nothing if they are stored otherwise
+    /// than as single precision, or sparse.
+    [[nodiscard]] std::optional<Floats> floats(std::size_t index, std::size_t width, const std::string& pointer) const;
     /// Reads an accessor with one unsigned integer per element.
     [[nodiscard]] std::vector<std::uint32_t> integers(std::size_t index, const std::string& pointer) const;
 

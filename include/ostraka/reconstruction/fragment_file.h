@@ -33,8 +33,9 @@ struct FragmentFile {
 };
 
 /// Reads a mesh and, if present, the annotations beside the mesh (NAME.ant.json), or points without faces (annotations beside
-/// points are not read; a note reports this). The facets come from the source in the options. Fracture segments found from the
-/// shape count only if their confidence is above 0.5. Throws Error (input).
+/// points are not read; a note reports this). The faces of a closed mesh that is inside out are turned over, with a note. The
+/// facets come from the source in the options. Fracture segments found from the shape count only if their confidence is above
+/// 0.5. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
 /// Makes annotations from facets: up to three regions "outer", "inner" and "fracture", with area and confidence as attributes.

@@ -23,10 +23,9 @@ struct MeshRegistrationOptions {
 
 /// Whether two meshes show the same object.
 enum class RegistrationVerdict {
-    aligned,     ///< the meshes are one surface, up to differences explained by the resolutions
-    mirrored,    ///< the meshes coincide only after a reflection
-    inside_out,  ///< the faces of one mesh are flipped
-    different    ///< the meshes are not the same object
+    aligned,   ///< the meshes are one surface, up to differences explained by the resolutions
+    mirrored,  ///< the meshes coincide only after a reflection
+    different  ///< the meshes are not the same object
 };
 std::string to_string(RegistrationVerdict verdict);
 
@@ -59,6 +58,9 @@ struct MeshRegistration {
     /// Motions under which the target's shape does not change, in the target's coordinates; for example the rotations of a
     /// vessel about its axis.
     SlippableMotions slippable;
+    /// True: the faces of one mesh point to the other side; the source was registered with its faces turned over.
+    bool turned_over = false;
+    enum class InsideOut { unknown, source, target } inside_out = InsideOut::unknown;  ///< which mesh, if `turned_over`
 };
 
 /// Registers `source` to `target`. Normalises both surfaces to one centre and size by the moments of their area. Scores all
@@ -66,12 +68,12 @@ struct MeshRegistration {
 /// on the grid (point to plane), and the best of the refined motions on the faces, in both directions; points on the coarser
 /// mesh get a larger weight, proportional to the area of its faces, so that the offsets of flat faces from the curved surface
 /// do not bias the scale. The source's mirror image is registered in the same way. The meshes are one surface if nearly all of
-/// either lies within the tolerance of the other. Among poses that fit equally, the pose that moves the source least is
-/// returned. The uncertainty follows from the equations of the last step (point to plane), with the residuals of one part of the
-/// surface taken as correlated: H^-1 (sum over parts of g g^T) H^-1 with the gradient g of each part (Liang and Zeger 1986), or
-/// from independent residuals if that is larger. The result is the same for any number of threads. Time: O(n), plus a search of
-/// constant size. Throws Error (usage) for options out of range, (input) for a mesh without area, and for a flat mesh, whose pose
-/// only its border could determine.
+/// either lies within the tolerance of the other; if one of them is inside out, the source's faces are turned over in memory.
+/// Among poses that fit equally, the pose that moves the source least is returned. The uncertainty follows from the equations of
+/// the last step (point to plane), with the residuals of one part of the surface taken as correlated: H^-1 (sum over parts of g
+/// g^T) H^-1 with the gradient g of each part (Liang and Zeger 1986), or from independent residuals if that is larger. The result
+/// is the same for any number of threads. Time: O(n), plus a search of constant size. Throws Error (usage) for options out of
+/// range, (input) for a mesh without area, and for a flat mesh, whose pose only its border could determine.
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
 /// The verdict and its reasons as one sentence; `diagonal`: diagonal of the target.

@@ -52,10 +52,11 @@ std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index 
 
 /// Test whether two meshes can be two resolutions of the same object in the same position.
 struct Agreement {
-    double scale = 1;     ///< diagonal of the target divided by diagonal of the source
-    double offset = 0;    ///< distance of the centres of the bounding boxes, as a share of the larger diagonal
-    double rotation = 0;  ///< angle between the principal axes, degrees; 0 if the axes are not distinct
-    std::string problem;  ///< the difference, its amount and the remedy, as text; empty if the meshes agree
+    double scale = 1;       ///< diagonal of the target divided by diagonal of the source
+    double offset = 0;      ///< distance of the centres of the bounding boxes, as a share of the larger diagonal
+    double rotation = 0;    ///< angle between the principal axes, degrees; 0 if the axes are not distinct
+    bool opposite = false;  ///< true: one of the meshes is inside out, the other is not
+    std::string problem;    ///< the difference, its amount and the remedy, as text; empty if the meshes agree
 };
 /// Compares size, position and orientation of two meshes.
 Agreement compare_alignment(const Mesh& source, const Mesh& target);

@@ -20,4 +20,8 @@ std::string unit_scaled(const std::string& unit, double scale);
 /// recomputes them). Descriptors stored in files that the motion makes invalid are marked stale: axes, and maps of lengths.
 AnnotationSet moved_annotations(AnnotatedMeshView object, const Motion& motion, const std::string& unit);
 
+/// The object with its faces turned over (`turned_over` of the mesh): vertices and faces keep their indices, curves through faces
+/// are adapted, and outlines still have the interior to the left.
+AnnotatedMesh turned_over(AnnotatedMeshView object);
+
 }  // namespace ostraka

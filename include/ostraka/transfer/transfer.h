@@ -81,6 +81,7 @@ struct TransferResult {
     std::vector<TransferScore> scores;      ///< one score per annotation of the source, in the order of the source
     std::optional<InsertedCurves> refined;  ///< the refined target, with options.refine; otherwise empty
     TransferTimes times;                    ///< computing times
+    bool turned_over = false;  ///< true: one of the meshes is inside out; the source's faces were turned over for the transfer
 };
 
 /// Transfers all annotations. Points are transferred to the corresponding vertices; poly-lines and outlines become edge paths
@@ -88,8 +89,8 @@ struct TransferResult {
 /// and recomputed. A region too small for the target becomes a line or a point, and the note of its score reports this. Some
 /// annotations are projected by their curves (project_curves.h) and keep their type, even if they are very small: free
 /// annotations; with `outlines` = free, all annotations; with `outlines` = partitions, regions that partition the whole surface
-/// (unless `refine` or `cover` require edges). Throws Error (input) if the meshes differ in unit, position or orientation,
-/// unless options.force.
+/// (unless `refine` or `cover` require edges). If one of the meshes is inside out, the source's faces are turned over in memory.
+/// Throws Error (input) if the meshes differ in unit or position, unless options.force.
 TransferResult transfer(AnnotatedMeshView source, const SurfaceSearch& target, const TransferOptions& options = {});
 
 }  // namespace ostraka

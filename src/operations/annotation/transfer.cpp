@@ -7,6 +7,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/mesh/orientation.h"
 #include "ostraka/registration/pose_json.h"
 #include "ostraka/transfer/misalignment.h"
 #include "ostraka/transfer/moved_annotations.h"
@@ -93,6 +94,11 @@ struct AnnotationTransfer final : Operation {
         const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
         report.run("tree", tree.seconds());
         TransferResult there = in_file(target.file(), [&] { return transfer(from, *search, options); });
+        if (there.turned_over)
+            report.note(
+                fmt::format("{} is inside out: the faces of the source were turned over in memory (ostraka mesh repair "
+                            "corrects the file)",
+                            is_inside_out(onto) ? target.file() : source.file()));
         const Misalignment apart = find_misalignment(from.mesh, *search);
         report("meanDistance", apart.distance);
         if (apart.is_significant) report.note(message_about(apart, search->diagonal(), printable(from.annotations.unit, 20)));

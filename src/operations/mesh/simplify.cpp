@@ -1,7 +1,9 @@
 // mesh simplify
+#include "operations/mesh/baking.h"
 #include "operations/mesh/resizing.h"
 #include "operations/operations.h"
 
+#include "ostraka/measure/appearance_change.h"
 #include "ostraka/remesh/simplify.h"
 
 namespace ostraka {
@@ -20,7 +22,7 @@ struct MeshSimplify final : MeshResizeBound {
         outlines = p.options.find("outlines");
         p.options("protect-outlines", protect, "same as --outlines protect").unrecorded();
         p.report.values(boolean("reached"), text("stop_reason"), integer("collapses"), boolean("outlines_broken"),
-                        integer("isolated_dropped"));
+                        integer("isolated_dropped"), number("texture_error"), number("resampling_error"));
     }
 
     void check() const override {
@@ -32,8 +34,11 @@ struct MeshSimplify final : MeshResizeBound {
         if (protect) options.outlines = SimplifyOptions::Outlines::protect;
         std::size_t vertices = 0, faces = 0;
         SimplifyResult result = resize(context, report, [&](BoundMesh& bound) {
+            std::optional<MeshFile> before;
+            if (shows_images(bound.extras)) before = MeshFile{bound.mesh, bound.extras, {}, {}};
             SimplifyResult simplified = bound.simplify(options);
             vertices = bound.mesh.number_of_vertices(), faces = bound.mesh.number_of_faces();
+            if (before) compare_textures(*before, bound, report);
             return simplified;
         });
         report("reached", result.reached)("stop_reason", result.stop_reason)("collapses", result.collapses)(
@@ -47,6 +52,29 @@ struct MeshSimplify final : MeshResizeBound {
         if (vertex_map) vertex_map.write({"vertex", std::move(result.vertex_map), vertices});
         if (face_map) face_map.write({"face", std::move(result.face_map), faces});
     }
+
+    /// True if the mesh shows images in a file that keeps them.
+    [[nodiscard]] bool shows_images(const MeshExtras& extras) const {
+        return keeps_texture(output) && !extras.corner_texture.empty() &&
+               std::any_of(extras.appearance.images.begin(), extras.appearance.images.end(),
+                           [](const auto& image) { return image != nullptr; });
+    }
+
+    /// Reports how much the texture changed, and offers a new one where that is much more than a new one changes.
+    void compare_textures(const MeshFile& before, const BoundMesh& bound, Report& report) const {
+        const AppearanceChange change = appearance_change(before, bound.mesh, bound.extras, input.file());
+        report("texture_error", change.mean)("resampling_error", change.resampling);
+        if (!(change.mean > max_change && change.mean > max_ratio * change.resampling)) return;
+        const std::string kind = extension(output.file()), file = output.file();
+        report.note(fmt::format(
+            "the charts of the texture are too small for so few vertices: colours differ by {} of 255 on average, {} "
+            "times the difference that a new image makes by resampling (make one: ostraka mesh bake {} {} {}-baked{})",
+            number(change.mean, 2), number(change.mean / std::max(change.resampling, 0.1), 2), file, input.file(),
+            file.substr(0, file.size() - kind.size()), kind));
+    }
+
+    static constexpr double max_change = 3;  ///< mean difference of colours below which a change is not noted, of 255
+    static constexpr double max_ratio = 2;   ///< likewise, relative to the difference that resampling makes
 
     IndexMapOutput vertex_map, face_map;
     SimplifyOptions options;

@@ -79,7 +79,7 @@ struct MeshSurface final : Operation {
             std::optional<PointCloud> points = read_point_cloud(file);
             if (!points)
                 fail_input(file.string(), "has faces, so that it has a surface already",
-                           "run: ostraka mesh repair " + file.string());
+                           "use it as it is, or make an object of it: ostraka import " + file.string() + " OBJECT");
             return std::move(*points);
         });
     }
