@@ -81,20 +81,37 @@ WallVertices wall_vertices(const Mesh& mesh, const std::vector<Index>& faces, in
     return wall.points.size() > max_vertices ? thinned(wall, std::sqrt(area / (0.6 * double(max_vertices)))) : wall;
 }
 
-/// Lines from which the axis is improved: the axis of the search, and tilted lines on which the normals meet.
-std::vector<SpaceLine> starting_lines(const RotationSearch& search) {
+/// Adds lines in several directions on which the normals of the samples meet; returns the mean direction of the normals.
+Vector3d add_lines(const std::vector<RoundSample>& samples, std::vector<SpaceLine>& lines) {
     Matrix3d moments = Matrix3d::Zero();
-    for (const RoundSample& s : search.samples) moments += s.weight * s.n * s.n.transpose();
+    for (const RoundSample& s : samples) moments += s.weight * s.n * s.n.transpose();
     const SymmetricEigen3 solver(moments);
     const Vector3d along = solver.eigenvectors().col(0), around = solver.eigenvectors().col(1),
                    out = solver.eigenvectors().col(2);
     std::vector<Vector3d> directions{along, around, along + around, along - around};
     for (const double tilt : {-0.7, 0.7}) directions.push_back(along + tilt * out);
-    std::vector<SpaceLine> lines{{search.line.point, search.line.direction}};
     for (const Vector3d& direction : directions) {
-        const AxisLine line = axis_along(search.samples, direction.normalized());
+        const AxisLine line = axis_along(samples, direction.normalized());
         if (line.point.allFinite()) lines.push_back({line.point, line.direction});
     }
+    return out;
+}
+
+/// Lines from which the axis is improved: the axis of the search, and tilted lines on which the normals meet: all normals, and
+/// those near the normal of the wall, without fractures at its sides.
+std::vector<SpaceLine> starting_lines(const RotationSearch& search) {
+    std::vector<SpaceLine> lines{{search.line.point, search.line.direction}};
+    const Vector3d out = add_lines(search.samples, lines);
+    std::vector<RoundSample> walls;
+    for (const RoundSample& sample : search.samples)
+        if (std::abs(sample.n.dot(out)) > 0.8) walls.push_back(sample);
+    if (walls.size() < 40) return lines;
+    add_lines(walls, lines);
+    // Normals of a narrow sherd hardly show its curvature: lines at several distances on both sides of the wall too.
+    const Vector3d along = lines[lines.size() - 6].direction;
+    Vector3d middle = Vector3d::Zero();
+    for (const RoundSample& sample : walls) middle += sample.p / double(walls.size());
+    for (const double distance : {-2.5, -1.0, -0.4, 0.4, 1.0, 2.5}) lines.push_back({middle + distance * out, along});
     return lines;
 }
 
@@ -149,6 +166,10 @@ void set_extent(Axis& axis, const Mesh& mesh, const std::vector<Index>& faces) {
     axis.lines = {{point_of(origin + low * a), point_of(origin + high * a)}};
 }
 
+/// Whether an axis in another direction fits nearly as well: a narrow sherd has two directions of curvature. A rim is evidence of
+/// the axis that has it.
+bool has_rivals(const RevolutionPosterior& posterior, const WallRing& ring) { return posterior.margin < (ring.rim ? 0.15 : 0.4); }
+
 /// Sets the reason why the axis of the posterior is not determined, if it is not.
 void judge(RevolutionAxis& result, const RevolutionPosterior& posterior, const AxisSpread& spread,
            const RevolutionAxisOptions& options) {
@@ -189,6 +210,13 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     const WallRing ring = diameter_ring(posterior), widest = ring.rim ? widest_ring(posterior) : ring;
     // Without a lip, an axis of a sphere is determined by nothing but noise.
     if (search.sphere && !ring.rim) return result;
+    if (has_rivals(posterior, ring)) {
+        const double quality = result.axis.quality;
+        result.axis = {};
+        result.axis.quality = quality;
+        result.axis.reason = "axes in several directions fit, and no rim shows which of them is right";
+        return result;
+    }
     const AxisSpread spread = spread_of(posterior);
     const double scale = search.scale;
     const std::vector<double> diameters = ring_diameters(posterior, ring);

@@ -471,11 +471,16 @@ std::vector<RevolutionFit> RevolutionModel::fit(const AxisStep& x, const std::ve
             fit.log_volume = -factorise(A) / 2;
             solve_lower(A, B);
             reduced -= B.transpose().lazyProduct(B);
-            Eigen::MatrixXd F = Eigen::MatrixXd::Zero(extras, 1);
-            for (Eigen::Index k = 0; k < extras; ++k) F(k, 0) = e * mean_extra_[static_cast<std::size_t>(k)];
+            Eigen::MatrixXd F = Eigen::MatrixXd::Zero(extras, 2);
+            for (Eigen::Index k = 0; k < 4; ++k) {
+                F(k, 0) = e * mean_extra_[static_cast<std::size_t>(k)];
+                F(k + 4, 1) = e * mean_extra_[static_cast<std::size_t>(k + 4)];
+            }
             solve_lower(A, F);
-            fit.deviation = F.col(0).dot(B.col(0));
-            fit.deviation_variance = F.squaredNorm();
+            fit.deviation = F.transpose().lazyProduct(B.col(0));
+            Eigen::MatrixXd covariance = F.transpose().lazyProduct(F);
+            factorise(covariance);
+            fit.deviation_root << covariance(0, 0), 0, covariance(1, 0), covariance(1, 1);
         }
         fit.squares = reduced(0, 0);
         if (derivatives) fit.H = reduced.bottomRightCorner<4, 4>(), fit.g = reduced.bottomLeftCorner<4, 1>();
@@ -591,6 +596,10 @@ void RevolutionModel::weigh(const AxisStep& x, double amplitude) {
     }
     double observed = 0, expected = 0;
     for (const auto& [key, patch] : patches) observed += patch[0] * patch[0], expected += patch[1];
+    // The fit takes part of the means over patches: one for each row of patches, and the axis and the deviations.
+    const double rows =
+        8 * double(std::count_if(sheets_.begin(), sheets_.end(), [](const WallSheet& s) { return s.used && s.wall; }));
+    expected *= std::max(0.4, 1 - (rows + 4 + (amplitude > 0 ? 8 : 0)) / double(std::max<std::size_t>(1, patches.size())));
     correlation_ = std::max(1.0, expected > 0 ? observed / expected : 1);
 }
 

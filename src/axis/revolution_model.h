@@ -47,8 +47,10 @@ using AxisStep = Eigen::Vector4d;
 /// Sum of squares, with the profiles and the deviations from roundness at their best, and its derivatives.
 struct RevolutionFit {
     double squares = 0;  ///< weighted sum of squares
-    /// Expected mean deviation from roundness over the arc at an end of the wall, as a share of the radius, and its variance.
-    double deviation = 0, deviation_variance = 0;
+    /// Expected mean deviation from roundness over the arc, as a share of the radius: at the middle of the height, and its change
+    /// over half the height; and the lower root of their covariance.
+    Eigen::Vector2d deviation = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d deviation_root = Eigen::Matrix2d::Zero();
     double log_volume = 0;  ///< minus half the logarithm of the volume that the deviations from roundness lose
     Eigen::Matrix4d H = Eigen::Matrix4d::Zero();  ///< normal matrix, with profiles and deviations integrated out
     Eigen::Vector4d g = Eigen::Vector4d::Zero();  ///< half the gradient of the sum of squares
@@ -83,6 +85,8 @@ public:
     /// Signed radius of a cell about the line at a step: negative if the axis is on the other side of the wall.
     [[nodiscard]] std::vector<double> radii(const AxisStep& step) const;
     [[nodiscard]] std::vector<double> heights(const AxisStep& step) const;
+    /// A height from -1 at one end of the wall to 1 at the other.
+    [[nodiscard]] double relative_height(double height) const { return (height - middle_height_) / half_height_; }
     [[nodiscard]] const std::vector<WallCell>& cells() const { return cells_; }
     [[nodiscard]] const std::vector<WallSheet>& sheets() const { return sheets_; }
     [[nodiscard]] const std::vector<double>& residuals() const { return residuals_; }

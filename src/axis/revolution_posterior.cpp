@@ -12,6 +12,7 @@
 
 namespace ostraka::detail {
 
+using Eigen::Matrix3d;
 using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
@@ -49,7 +50,7 @@ AxisStep climb(const RevolutionModel& model, AxisStep x, double amplitude, int r
         for (int k = 0; k < 4; ++k) A(k, k) += damping * now.H(k, k) + 1e-12 * now.H.trace();
         Vector4d step = -(A.inverse() * now.g);
         if (!step.allFinite()) break;
-        const double most = model.short_arc() ? 0.5 * std::abs(x[0]) : 0.3;
+        const double most = model.short_arc() ? std::max(0.2, 0.5 * std::abs(x[0])) : 0.3;
         step *= std::min({1.0, most / std::max(1e-300, std::abs(step[0])), 0.3 / std::max(1e-300, step.tail<3>().norm())});
         const AxisStep next = x + step;
         const double squares = model.fit(next, level, false)[0].squares;
@@ -67,17 +68,19 @@ AxisStep climb(const RevolutionModel& model, AxisStep x, double amplitude, int r
     return x;
 }
 
-/// Mean square of the residuals of all vertices; those on no sheet count with the largest.
+/// Sum over all vertices of the logarithm of the residual: few vertices far off, such as those of fractures, count less than many
+/// with a small residual. Vertices on no sheet count with the largest.
 double deviation_of(const RevolutionModel& model, std::size_t vertices) {
-    constexpr double limit = 0.02;
+    constexpr double limit = 0.02, unit = 1e-3;
+    const auto score = [](double square) { return std::log1p(std::min(limit * limit, square) / (unit * unit)); };
     double sum = 0, counted = 0;
     for (std::size_t i = 0; i < model.cells().size(); ++i) {
         const double count = model.cells()[i].count, residual = model.residuals()[i] / std::sqrt(count);
         const double sigma = model.sheets()[model.cells()[i].sheet].sigma;
-        sum += count * std::min(limit * limit, residual * residual + sigma * sigma);
+        sum += count * score(residual * residual + sigma * sigma);
         counted += count;
     }
-    return sum + limit * limit * std::max(0.0, double(vertices) - counted);
+    return sum + score(limit * limit) * std::max(0.0, double(vertices) - counted);
 }
 
 struct Candidate {
@@ -108,7 +111,7 @@ std::optional<Candidate> improve(const WallVertices& vertices, SpaceLine line, d
 
 std::vector<RoundnessLevel> levels_of(double out_of_round) {
     if (!(out_of_round > 0)) return {{0, 1}};
-    return {{0, 0.3}, {out_of_round / 5, 0.2}, {out_of_round / 2, 0.2}, {out_of_round, 0.2}, {2 * out_of_round, 0.1}};
+    return {{0, 0.1}, {out_of_round / 5, 0.1}, {out_of_round / 2, 0.3}, {out_of_round, 0.35}, {2 * out_of_round, 0.15}};
 }
 
 /// A multivariate t distribution with six degrees of freedom.
@@ -159,10 +162,12 @@ public:
         const double total = log_sum(evidence);
         for (std::size_t k = 0; k < components_.size(); ++k) components_[k].weight = std::exp(evidence[k] - total) + 0.03;
         make_prior(components_[most]);
-        for (int round = 0; round < 3; ++round) {
+        constexpr int fewest_rounds = 3;
+        for (int round = 1;; ++round) {
             draw();
             weigh();
-            if (round < 2) adapt();
+            if (round >= options_.rounds || (round >= fewest_rounds && posterior_.effective >= options_.enough)) break;
+            adapt();
         }
     }
 
@@ -191,7 +196,7 @@ private:
         z = z.cwiseMax(-4).cwiseMin(4);
         return prior_slope_.dot(z) + prior_bend_.dot(z.cwiseAbs2());
     }
-    [[nodiscard]] double log_target(const AxisStep& x, double& deviation) {
+    [[nodiscard]] double log_target(const AxisStep& x, Eigen::Vector2d& deviation) {
         if (model_.short_arc() && std::abs(x[0]) < 1e-5) return -1e300;
         if (model_.short_arc() && (std::abs(x[2]) > 1.4 || std::abs(x[3]) > 1.4)) return -1e300;
         std::vector<double> terms;
@@ -203,7 +208,8 @@ private:
         double choice = random_.uniform();
         std::size_t k = 0;
         while (k + 1 < terms.size() && choice > std::exp(terms[k] - total)) choice -= std::exp(terms[k++] - total);
-        deviation = fits[k].deviation + std::sqrt(std::max(0.0, fits[k].deviation_variance)) * random_.normal();
+        const double first = random_.normal();
+        deviation = fits[k].deviation + fits[k].deviation_root * Eigen::Vector2d(first, random_.normal());
         return total + log_prior(x);
     }
     void draw() {
@@ -219,13 +225,13 @@ private:
             for (int d = 0; d < 6; ++d) chi += std::pow(random_.normal(), 2);
             const AxisStep x = components_[k].mean + components_[k].L * z * std::sqrt(6 / chi);
             posterior_.samples.push_back(x);
-            targets_.push_back(log_target(x, posterior_.deviations.emplace_back(0)));
+            targets_.push_back(log_target(x, posterior_.deviations.emplace_back(0, 0)));
         }
         rounds_.push_back(components_);
     }
     /// Weights of all samples against the mixture of all rounds.
     void weigh() {
-        std::vector<double> logs;
+        logs_.clear();
         for (std::size_t i = 0; i < posterior_.samples.size(); ++i) {
             std::vector<double> terms;
             for (const auto& round : rounds_) {
@@ -234,28 +240,39 @@ private:
                 for (const Component& c : round)
                     terms.push_back(std::log(c.weight / total) + c.log_density(posterior_.samples[i]));
             }
-            logs.push_back(targets_[i] - log_sum(terms));
+            logs_.push_back(targets_[i] - log_sum(terms));
         }
-        const double total = log_sum(logs);
-        posterior_.weights.clear();
-        double squares = 0;
-        for (const double value : logs) {
-            posterior_.weights.push_back(std::exp(value - total));
-            squares += std::pow(posterior_.weights.back(), 2);
-        }
-        posterior_.effective = 1 / squares;
+        posterior_.weights = tempered(1);
+        posterior_.effective = effective_number(posterior_.weights);
     }
-    /// Replaces the proposal by one of the mean and covariance of the samples, with a wider one behind it.
+    /// Importance weights to a power, with the sum 1.
+    [[nodiscard]] std::vector<double> tempered(double power) const {
+        std::vector<double> weights;
+        for (const double value : logs_) weights.push_back(power * value);
+        const double total = log_sum(weights);
+        for (double& weight : weights) weight = std::exp(weight - total);
+        return weights;
+    }
+    static double effective_number(const std::vector<double>& weights) {
+        double squares = 0;
+        for (const double weight : weights) squares += weight * weight;
+        return 1 / squares;
+    }
+    /// Adds a component with the mean and covariance of the samples to the proposal, and a wider one. While few samples have most
+    /// of the weight, weights are evened out so that the covariance is not that of these few.
     void adapt() {
+        constexpr double fewest = 50;
+        std::vector<double> weights = posterior_.weights;
+        for (double power = 0.8; effective_number(weights) < fewest && power > 1e-3; power *= 0.8) weights = tempered(power);
         Vector4d mean = Vector4d::Zero();
         Matrix4d covariance = Matrix4d::Zero();
-        for (std::size_t i = 0; i < posterior_.samples.size(); ++i) mean += posterior_.weights[i] * posterior_.samples[i];
-        for (std::size_t i = 0; i < posterior_.samples.size(); ++i) {
+        for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] * posterior_.samples[i];
+        for (std::size_t i = 0; i < weights.size(); ++i) {
             const Vector4d d = posterior_.samples[i] - mean;
-            covariance += posterior_.weights[i] * d * d.transpose();
+            covariance += weights[i] * d * d.transpose();
         }
         Component component{mean, root_of_inverse(covariance.inverse(), 0), 0};
-        if (!component.L.allFinite() || posterior_.effective < 8) {
+        if (!component.L.allFinite()) {
             for (Component& c : components_) c.L *= 1.5;
             return;
         }
@@ -275,7 +292,7 @@ private:
     Random random_;
     std::vector<Component> components_;
     std::vector<std::vector<Component>> rounds_;
-    std::vector<double> targets_;
+    std::vector<double> targets_, logs_;
     Component prior_mode_;
     Vector4d prior_slope_ = Vector4d::Zero(), prior_bend_ = Vector4d::Zero();
 };
@@ -302,6 +319,11 @@ RevolutionPosterior revolution_posterior(const WallVertices& vertices, const std
     if (candidates.empty()) return posterior;
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.deviation < b.deviation; });
+    constexpr double other_direction = 15 * degree;
+    for (const Candidate& candidate : candidates)
+        if (candidate.line.direction.cross(candidates[0].line.direction).norm() > std::sin(other_direction))
+            posterior.margin = std::min(posterior.margin, (candidate.deviation - candidates[0].deviation) /
+                                                              double(std::max<std::size_t>(1, vertices.points.size())));
     if (const auto better = improve(vertices, candidates[0].line, amplitude, 2, 250)) candidates[0] = *better;
     RevolutionModel& model = posterior.model.emplace(vertices, candidates[0].line, 500);
     if (!model.enough()) {
@@ -340,17 +362,110 @@ double share_of(const RevolutionPosterior& posterior, const std::vector<std::siz
     return turns.empty() ? 0 : std::min(1.0, arc_of(turns) / (2 * pi) * (1 + 1.0 / double(turns.size())));
 }
 
-/// Mean of the cells' radii, and its error.
-void finish(const RevolutionPosterior& posterior, const std::vector<double>& radius, double ring_radius, WallRing& ring) {
-    double sum = 0, count = 0;
+/// Mean of the cells' radii and heights, and its error. `place_variance`: of the radius of the ring among the cells.
+void finish(const RevolutionPosterior& posterior, const std::vector<double>& radius, double ring_radius, double place_variance,
+            WallRing& ring) {
+    const std::vector<double> heights = posterior.model->heights(posterior.best);
+    double sum = 0, count = 0, height = 0;
     for (const std::size_t i : ring.cells) {
         const double n = posterior.model->cells()[i].count;
-        sum += radius[i], count += n;
+        sum += radius[i], count += n, height += heights[i];
     }
     ring.correction = ring_radius - sum / double(ring.cells.size());
+    ring.height = std::clamp(posterior.model->relative_height(height / double(ring.cells.size())), -1.0, 1.0);
     const double sigma = posterior.model->sheets()[posterior.model->cells()[ring.cells[0]].sheet].sigma;
-    ring.error = sigma / std::sqrt(std::max(1.0, count));
+    ring.error = std::sqrt(sigma * sigma / std::max(1.0, count) + place_variance);
     ring.share = share_of(posterior, ring.cells);
+}
+
+/// Radius of the highest place of a section, and its variance.
+struct SectionTop {
+    double radius, variance;
+};
+/// A section about a point in it: distance as a cubic of the angle from the vertical.
+class PolarSection {
+public:
+    explicit PolarSection(const Eigen::Vector4d& coefficients, double low, double high)
+        : coefficients_(coefficients), low_(low), high_(high) {}
+    [[nodiscard]] double at(double angle) const {
+        return coefficients_[0] + angle * (coefficients_[1] + angle * (coefficients_[2] + angle * coefficients_[3]));
+    }
+    /// Angle of the highest place.
+    [[nodiscard]] double top() const {
+        constexpr int steps = 60;
+        double best = low_, high = -1e300;
+        for (int k = 0; k <= steps; ++k) {
+            const double angle = low_ + (high_ - low_) * k / steps, height = at(angle) * std::cos(angle);
+            if (height > high) high = height, best = angle;
+        }
+        double left = std::max(low_, best - (high_ - low_) / steps), right = std::min(high_, best + (high_ - low_) / steps);
+        for (int k = 0; k < 60; ++k) {
+            const double a = left + (right - left) / 3, b = right - (right - left) / 3;
+            (at(a) * std::cos(a) < at(b) * std::cos(b) ? left : right) = at(a) * std::cos(a) < at(b) * std::cos(b) ? a : b;
+        }
+        return (left + right) / 2;
+    }
+    /// Distance aside of the highest place.
+    [[nodiscard]] double aside() const {
+        const double angle = top();
+        return at(angle) * std::sin(angle);
+    }
+
+private:
+    Eigen::Vector4d coefficients_;
+    double low_, high_;
+};
+
+/// The highest place of points of a section (radius, height upwards), from a polar curve about the centre of their circle. None
+/// if they are flat or if the highest place is at their end.
+std::optional<SectionTop> top_of_section(const std::vector<Eigen::Vector2d>& points) {
+    if (points.size() < 12) return {};
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const auto& p : points) mean += p;
+    mean /= double(points.size());
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Vector3d b = Vector3d::Zero();
+    double extent = 0;
+    for (const auto& p : points) {
+        const Eigen::Vector2d d = p - mean;
+        const Vector3d row(2 * d.x(), 2 * d.y(), 1);
+        A += row * row.transpose(), b += d.squaredNorm() * row;
+        extent = std::max(extent, std::abs(d.x()));
+    }
+    const Vector3d circle = A.inverse() * b;
+    const Eigen::Vector2d centre = mean + circle.head<2>();
+    const double radius = std::sqrt(std::max(0.0, circle[2] + circle.head<2>().squaredNorm()));
+    // Flat, or hollow.
+    if (!circle.allFinite() || radius > 4 * extent || circle[1] > 0) return {};
+    Matrix4d normal = Matrix4d::Zero();
+    Vector4d right = Vector4d::Zero();
+    double low = 1e300, high = -1e300, squares = 0;
+    std::vector<std::pair<double, double>> polar;
+    for (const auto& p : points) {
+        const Eigen::Vector2d d = p - centre;
+        const double u = std::atan2(d.x(), d.y());
+        if (std::abs(u) > 1.4) continue;
+        polar.emplace_back(u, d.norm());
+        const Vector4d row(1, u, u * u, u * u * u);
+        normal += row * row.transpose(), right += d.norm() * row;
+        low = std::min(low, u), high = std::max(high, u);
+    }
+    if (polar.size() < 12 || high - low < 0.4) return {};
+    for (int k = 0; k < 4; ++k) normal(k, k) *= 1 + 1e-9;
+    const Matrix4d inverse = normal.inverse();
+    const Vector4d coefficients = inverse * right;
+    const PolarSection section(coefficients, low, high);
+    const double angle = section.top();
+    if (!inverse.allFinite() || angle < low + 0.02 * (high - low) || angle > high - 0.02 * (high - low)) return {};
+    for (const auto& [u, distance] : polar) squares += std::pow(distance - section.at(u), 2);
+    Vector4d slope;
+    for (int k = 0; k < 4; ++k) {
+        const double step = 1e-3 * radius;
+        slope[k] = (PolarSection(coefficients + step * Vector4d::Unit(k), low, high).aside() -
+                    PolarSection(coefficients - step * Vector4d::Unit(k), low, high).aside()) /
+                   (2 * step);
+    }
+    return SectionTop{centre.x() + section.aside(), squares / double(polar.size() - 4) * slope.dot(inverse * slope)};
 }
 
 /// The ring of a lip, and how far the lip falls off from its top.
@@ -380,7 +495,7 @@ std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t
     }
     if (members.size() < 8 || outer - inner > 0.25 * outer || top < walls - 0.02 * (walls - lowest_wall)) return {};
     // On a leaning wall the top is beyond the sheet of the lip: cells of its neighbours are used too.
-    const double margin = 0.35 * (outer - inner), from = inner - margin, width = outer - inner + 2 * margin;
+    const double margin = 0.7 * (outer - inner), from = inner - margin, width = outer - inner + 2 * margin;
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < radius.size(); ++i)
         if (model.sheets()[model.cells()[i].sheet].used && side * height[i] > lowest_lip - margin && std::abs(radius[i]) > from &&
@@ -398,29 +513,26 @@ std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t
     double best = -1e300, lowest = 1e300;
     for (std::size_t k = 0; k < rows; ++k)
         if (count[k] > most / 4) best = std::max(best, sum[k] / count[k]), lowest = std::min(lowest, sum[k] / count[k]);
-    // A parabola through the points near the top, or the middle of a flat lip.
-    const double depth = std::max(0.12 * (outer - inner), 2 * model.sheets()[sheet].sigma);
+    // A polar curve through the points near the top, or the middle of a flat lip.
+    const double depth = std::max(0.25 * (outer - inner), 3 * model.sheets()[sheet].sigma);
     WallRing ring;
     ring.rim = true;
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Vector3d b = Vector3d::Zero();
-    const double middle = from + width / 2, half = std::max(1e-12, width / 2);
-    double mean = 0;
+    std::vector<Eigen::Vector2d> section, wide_section;
+    double mean = 0, squares = 0;
     for (const std::size_t i : near) {
+        if (side * height[i] > best - 1.5 * depth) wide_section.emplace_back(std::abs(radius[i]), side * height[i]);
         if (side * height[i] < best - depth) continue;
         ring.cells.push_back(i);
-        const double x = (std::abs(radius[i]) - middle) / half;
-        const Vector3d row(1, x, x * x);
-        A += row * row.transpose(), b += side * height[i] / half * row;
-        mean += std::abs(radius[i]);
+        section.emplace_back(std::abs(radius[i]), side * height[i]);
+        mean += section.back().x(), squares += section.back().x() * section.back().x();
     }
     if (ring.cells.size() < 5) return {};
     mean /= double(ring.cells.size());
-    A.diagonal().array() += 1e-9;
-    const Vector3d parabola = A.inverse() * b;
-    const double apex = middle + half * std::clamp(-parabola[1] / (2 * parabola[2]), -1.0, 1.0);
-    const double sign = radius[ring.cells[0]] < 0 ? -1 : 1;
-    finish(posterior, radius, sign * (parabola[2] < -0.05 ? apex : mean), ring);
+    const double sign = radius[ring.cells[0]] < 0 ? -1 : 1, spread = squares / double(ring.cells.size()) - mean * mean;
+    SectionTop at = top_of_section(section).value_or(SectionTop{mean, std::max(0.0, spread) / 16});
+    // The top depends on the shape of the lip too: the difference from that of a wider section counts as an error.
+    if (const auto wider = top_of_section(wide_section)) at.variance += std::pow(wider->radius - at.radius, 2) / 2;
+    finish(posterior, radius, sign * at.radius, at.variance, ring);
     // A lip that is preserved along less than half of the wall is a corner of it.
     if (ring.share < 0.5 * model.arc() / (2 * pi)) return {};
     return Lip{std::move(ring), best - lowest};
@@ -448,13 +560,27 @@ WallRing widest_ring(const RevolutionPosterior& posterior) {
     std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2), heights.end());
     const double middle = heights[heights.size() / 2];
     const std::size_t sheet = model.cells()[wide.back().second].sheet;
-    double sum = 0;
     for (const auto& [r, i] : wide)
-        if (model.cells()[i].sheet == sheet && std::abs(height[i] - middle) < 0.03 * (high - low))
-            ring.cells.push_back(i), sum += radius[i];
-    if (ring.cells.empty()) ring.cells.push_back(wide.back().second), sum = radius[wide.back().second];
-    // Widest cells are widest by noise too: the ring has their mean radius, at the level of the profile.
-    finish(posterior, radius, sum / double(ring.cells.size()), ring);
+        if (model.cells()[i].sheet == sheet && std::abs(height[i] - middle) < 0.05 * (high - low)) ring.cells.push_back(i);
+    if (ring.cells.empty()) ring.cells.push_back(wide.back().second);
+    // Widest cells are widest by noise too: the ring has the largest radius of a smooth profile through the cells.
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Vector3d b = Vector3d::Zero();
+    const auto row_at = [&](double h) {
+        const double x = (h - middle) / (0.05 * (high - low) + 1e-12);
+        return Vector3d(1, x, x * x);
+    };
+    for (const std::size_t i : ring.cells)
+        A += row_at(height[i]) * row_at(height[i]).transpose(), b += std::abs(radius[i]) * row_at(height[i]);
+    A.diagonal().array() += 1e-6 * A(0, 0);
+    const Matrix3d inverse = A.inverse();
+    const Vector3d profile = inverse * b;
+    double most = -1e300, variance = 0;
+    const double sigma = model.sheets()[sheet].sigma;
+    for (const std::size_t i : ring.cells)
+        if (const double r = row_at(height[i]).dot(profile); r > most)
+            most = r, variance = sigma * sigma * row_at(height[i]).dot(inverse * row_at(height[i]));
+    finish(posterior, radius, radius[ring.cells[0]] < 0 ? -most : most, variance, ring);
     return ring;
 }
 
@@ -480,8 +606,8 @@ std::vector<double> ring_diameters(const RevolutionPosterior& posterior, const W
         double sum = 0;
         for (const std::size_t i : ring.cells) sum += radius[i];
         const double value = sum / double(ring.cells.size()) + ring.correction + ring.error * random.normal();
-        diameters.push_back(value > 0 ? 2 * value / (1 + std::max(-0.5, posterior.deviations[k]))
-                                      : std::numeric_limits<double>::infinity());
+        const double deviation = posterior.deviations[k][0] + ring.height * posterior.deviations[k][1];
+        diameters.push_back(value > 0 ? 2 * value / (1 + std::max(-0.5, deviation)) : std::numeric_limits<double>::infinity());
     }
     return diameters;
 }

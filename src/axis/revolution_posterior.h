@@ -4,13 +4,16 @@
 #include "axis/revolution_model.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace ostraka::detail {
 
 struct PosteriorOptions {
     double out_of_round = 0.005;  ///< typical deviation from roundness, as a share of the radius; 0: perfectly round
-    int draws = 400;              ///< number of samples of each of three rounds
+    int draws = 300;              ///< number of samples of each round
+    int rounds = 8;               ///< greatest number of rounds
+    double enough = 200;          ///< effective number of samples with which no more rounds are made
     std::uint64_t seed = 1;       ///< random seed
 };
 
@@ -19,10 +22,13 @@ struct RevolutionPosterior {
     std::optional<RevolutionModel> model;  ///< empty: too few vertices on walls
     AxisStep best = AxisStep::Zero();      ///< most likely axis
     double amplitude = 0;                  ///< most likely deviation from roundness
+    /// How much worse the best axis in another direction fits: mean difference of the logarithms of the squares of the residuals.
+    double margin = std::numeric_limits<double>::infinity();
     std::vector<AxisStep> samples;
     std::vector<double> weights;
-    /// For each sample, a draw of the mean deviation of the arc from the circle of the vessel, as a share of the radius.
-    std::vector<double> deviations;
+    /// For each sample, a draw of the mean deviation of the arc from the circle of the vessel, as a share of the radius: at the
+    /// middle of the height, and its change over half the height.
+    std::vector<Eigen::Vector2d> deviations;
     double effective = 0;  ///< effective number of samples
     /// Weighted quantile of a value of each sample.
     [[nodiscard]] double quantile(const std::vector<double>& values, double fraction) const;
@@ -36,7 +42,8 @@ RevolutionPosterior revolution_posterior(const WallVertices& vertices, const std
 struct WallRing {
     std::vector<std::size_t> cells;  ///< cells near the ring
     double correction = 0;           ///< radius of the ring minus mean radius of the cells, about the best axis
-    double error = 0;                ///< standard error of the mean radius of the cells from their noise
+    double error = 0;                ///< standard error of the radius of the ring from noise and from the place of its top
+    double height = 0;               ///< height, from -1 to 1 at the ends of the wall
     bool rim = false;                ///< true: top of a lip, the end of a wall
     double share = 0;                ///< share of the circumference over which the ring is preserved
 };

@@ -52,6 +52,16 @@ std::string attribute_text(const Attribute& attribute) {
     return text + (figures.stale ? " (out of date)" : "");
 }
 
+/// Faces of the annotations "fracture".
+std::vector<Index> fractures_of(const CatalogueSubject& subject) {
+    std::vector<Index> faces;
+    if (subject.annotations == nullptr) return faces;
+    for (const Annotation& annotation : subject.annotations->annotations)
+        if (!annotation.all && lower(annotation.tag) == "fracture")
+            faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
+    return faces;
+}
+
 void add_annotations(CatalogueEntry& entry, const AnnotationSet& set) {
     if (!set.object_class.empty()) entry.state.emplace_back("class", set.object_class);
     for (const Annotation& annotation : set.annotations) {
@@ -204,7 +214,7 @@ CatalogueEntry catalogue_entry(const CatalogueSubject& subject, const CatalogueO
     }
     for (const auto& [name, place] : subject.landmarks) entry.landmarks.push_back(name);
     if (manifold && subject.landmarks.empty()) {
-        const CatalogueAxis axis = catalogue_axis(mesh);
+        const CatalogueAxis axis = catalogue_axis(mesh, fractures_of(subject));
         if (axis.found) {
             const bool hint_known = subject.annotations != nullptr && subject.annotations->up.has_value();
             const Pose pose = detail::pose_of(soup, axis, factor, up_of(subject), hint_known);

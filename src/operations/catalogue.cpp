@@ -17,6 +17,13 @@ namespace ostraka {
 
 namespace {
 
+/// The provenance as one line, with numbers as short as they are exact.
+std::string printed_line(Provenance provenance) {
+    for (auto& [name, value] : provenance.options)
+        if (const std::optional<double> amount = number_of(value)) value = digits(*amount);
+    return provenance.to_line();
+}
+
 /// Descriptive fields of an object: NAME.dc.json beside the mesh, an object whose members are texts or lists of texts.
 std::vector<std::pair<std::string, std::string>> record_beside(const CollectionObject& object, std::vector<std::string>& notes) {
     std::vector<std::pair<std::string, std::string>> fields_of_object;
@@ -181,7 +188,7 @@ struct MakeCatalogue final : Operation {
         const Path file = output.sources.front().file;
         const bool keeps = !file.empty() && !is_memory(file);
         const ResultStore store(keeps ? file.parent_path() / (file.stem().string() + ".catalogue") : Path());
-        const std::vector<std::string> key{"catalogue 1", options_text(options), options.section_right ? "right" : "left"};
+        const std::vector<std::string> key{"catalogue 2", options_text(options), options.section_right ? "right" : "left"};
         const auto make_entry = [&](const CollectionObject& object) { return to_json(entry_of(object, options)); };
         std::size_t largest = 0;
         for (const CollectionObject& object : objects.objects)
@@ -201,7 +208,7 @@ struct MakeCatalogue final : Operation {
     }
 
     void write(const std::vector<CatalogueEntry>& entries, Context& context, Report& report) const {
-        const Catalogue catalogue(entries, style, context.provenance().to_line());
+        const Catalogue catalogue(entries, style, printed_line(context.provenance()));
         const std::string ending = extension(output.sources.front().file);
         if (ending == ".svg" && entries.size() > 1)
             fail_usage(fmt::format("an SVG file holds one page, and there are {} objects", entries.size()),

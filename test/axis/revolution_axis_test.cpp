@@ -109,6 +109,23 @@ TEST(RevolutionAxis, IntervalsHoldTheTruth) {
     EXPECT_GE(diameters, 9);
 }
 
+// On a long arc the top of the lip, not the axis, limits the diameter.
+TEST(RevolutionAxis, IntervalsHoldTheTopOfALeaningLip) {
+    int diameters = 0;
+    constexpr int draws = 10;
+    for (int draw = 0; draw < draws; ++draw) {
+        const Sherd sherd = rim_sherd(75, 0.05, 300 + static_cast<std::uint64_t>(draw));
+        const RevolutionAxis result = axis_of(sherd.mesh, {.out_of_round = 0});
+        ASSERT_TRUE(result.axis.found) << draw << ": " << result.axis.reason;
+        const DiameterEstimate& rim = result.diameters.front();
+        ASSERT_EQ(rim.name, "rim diameter");
+        diameters += holds(rim, sherd.rim) ? 1 : 0;
+        EXPECT_NEAR(rim.value, sherd.rim, 0.4);
+        EXPECT_LT(rim.high - rim.low, 1.0);
+    }
+    EXPECT_GE(diameters, 8);
+}
+
 TEST(RevolutionAxis, AShortArcCannotBeTold) {
     const Sherd sherd = rim_sherd(9, 0.3, 8);
     const RevolutionAxis result = axis_of(sherd.mesh);

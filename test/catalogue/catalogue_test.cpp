@@ -1,5 +1,6 @@
 // Catalogue entries: kinds, drawings and measures of objects whose answers are known; pages of exact size.
 #include "ostraka/figures/catalogue.h"
+#include "ostraka/catalogue/catalogue_axis.h"
 #include "ostraka/catalogue/entry.h"
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using namespace ostraka;
@@ -158,6 +160,22 @@ TEST(CatalogueEntry, SaysWhatCannotBeTold) {
     EXPECT_FALSE(cube.unknown.empty());
     EXPECT_EQ(cube.views.size(), 6U);
     EXPECT_NEAR(cube.volume, 1e-3 * volume(build_mesh(box(4))), 1e-9);
+}
+
+TEST(CatalogueAxis, IsThatOfTheWallsWithoutFractures) {
+    const Mesh sherd = build_mesh(rim_sherd(50));
+    const CatalogueAxis axis = catalogue_axis(sherd);
+    ASSERT_TRUE(axis.found) << axis.reason;
+    EXPECT_TRUE(axis.is_sherd);
+    EXPECT_LT(axis.diameter_low, 0);
+    EXPECT_GT(axis.diameter_high, 0);
+    std::vector<Index> all(sherd.number_of_faces());
+    std::iota(all.begin(), all.end(), Index{0});
+    const CatalogueAxis none = catalogue_axis(sherd, all);
+    EXPECT_FALSE(none.found);
+    EXPECT_NE(none.reason.find("fracture"), std::string::npos);
+    // A whole vessel has no posterior of a sherd.
+    EXPECT_FALSE(catalogue_axis(build_mesh(bowl())).is_sherd);
 }
 
 TEST(CatalogueEntry, ConvertsUnits) {

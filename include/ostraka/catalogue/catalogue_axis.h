@@ -5,6 +5,7 @@
 #include "ostraka/mesh/mesh.h"
 
 #include <string>
+#include <vector>
 
 namespace ostraka {
 
@@ -18,10 +19,12 @@ struct CatalogueAxis {
     /// Bounds of the 95 % interval of a diameter, relative to the diameter measured about the axis: the true diameter lies
     /// between diameter + `diameter_low` and diameter + `diameter_high`.
     double diameter_low = 0, diameter_high = 0;
+    bool is_sherd = false;  ///< true: the interval is that of the posterior of a sherd (`revolution_axis`)
 };
 
-/// The axis of the surface of revolution fitted to all faces (`rotation_axis`), with 1.96 of its standard errors as interval.
-/// Throws Error (input) for a mesh without faces with area.
-CatalogueAxis catalogue_axis(const Mesh& mesh);
+/// The axis of the surface of revolution fitted to all faces except `fractures` (`revolution_axis`). A sherd has the 95 %
+/// interval of its posterior, a whole vessel 1.96 standard errors. There is no axis if all faces are fractures. Throws Error
+/// (input) for a mesh without faces with area.
+CatalogueAxis catalogue_axis(const Mesh& mesh, const std::vector<Index>& fractures = {});
 
 }  // namespace ostraka
