@@ -132,13 +132,13 @@ private:
         const std::size_t count = primitive.vertices(), first = soup_.points.size();
         if (first + count >= no_index) fail_work(path_.string(), "has more than four thousand million vertices", "split it");
         reader_.charge(static_cast<double>((sizeof(std::array<double, 3>) + sizeof(Colour)) * count), primitive.pointer());
-        soup_.points.resize(first + count);
+        if (soup_.points.capacity() < first + count) soup_.points.reserve(std::max(first + count, 2 * first));
         const bool moves = placement != AffineMap{};
         for_each_element<3>(primitive, "POSITION", count, [&](std::size_t i, std::array<double, 3> point) {
             if (moves) point = placement(point);
             if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
                 reader_.fail(primitive.pointer() + "/attributes/POSITION", fmt::format("vertex {} is not finite", i));
-            soup_.points[first + i] = point;
+            soup_.points.push_back(point);
         });
         if (primitive.accessor("COLOR_0")) add_colours(primitive, first, count);
         else if (!soup_.extras.vertex_colours.empty()) soup_.extras.vertex_colours.resize(soup_.points.size(), white);
@@ -211,8 +211,10 @@ private:
         reader_.charge(static_cast<double>(sizeof(TexturePoint) * count), primitive.pointer());
         std::vector<TexturePoint> of_vertex(count);
         bool all_finite = true;
+        const bool is_plain = coordinates.map == TextureMap{};
         for_each_element<2>(primitive, attribute, count, [&](std::size_t i, const std::array<double, 2>& numbers) {
-            of_vertex[i] = coordinates.map(numbers[0], numbers[1]);
+            of_vertex[i] = is_plain ? TexturePoint{static_cast<float>(numbers[0]), static_cast<float>(1 - numbers[1])}
+                                    : coordinates.map(numbers[0], numbers[1]);
             all_finite = all_finite && std::isfinite(of_vertex[i][0]) && std::isfinite(of_vertex[i][1]);
         });
         const auto at_corner = [&](std::uint32_t v) -> const TexturePoint& { return of_vertex[v]; };
