@@ -103,13 +103,14 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
         (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
         m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
       );
-    const angle = angleOf(drawn[state.object.value], i);
-    if (angle !== undefined)
-      add(
-        state.object.value,
-        one.points!.map((v) => drawn[state.object.value].vertex(v)),
-        `${one.tag} ${numberText(Number(angle.toFixed(1)))}°`,
-      );
+    const of = drawn[state.object.value];
+    const angle = of && angleOf(of, i);
+    if (angle === undefined) return;
+    const legs = one.points!.map((v) => of.vertex(v));
+    add(state.object.value, legs, "");
+    const apex = view!.place(of, legs[1]);
+    const text = `${one.tag} ${numberText(Number(angle.toFixed(1)))}°`;
+    if (apex) list.push({ from: apex, to: apex, text, ends: [false, false] });
   });
   const { object, places } = state.measured.value;
   if (object >= 0 && places.length > 0) {

@@ -1092,6 +1092,51 @@ try {
     await server.stop();
   });
 
+  await test("strokes of the brush are undone one by one, and the hint says what the next click does", async () => {
+    copyFileSync(at("pot.ply"), at("strokes.ply"));
+    const server = serve(at("strokes.ply"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    const [w, h] = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
+    const hint = () => page.locator(".hint").last().innerText();
+    const count = () => page.evaluate(() => ostraka.selection.selected.value?.count ?? 0);
+    await useTool(page, "brush");
+    assert.match(await hint(), /Paint on the surface/);
+    const counts = [];
+    for (const y of [0.45, 0.55, 0.65]) {
+      const last = counts.at(-1) ?? 0;
+      await drag(page, [0.45 * w, y * h], [0.55 * w, y * h], 8);
+      await until(page, "the stroke", "(last) => (ostraka.selection.selected.value?.count ?? 0) > last", last);
+      counts.push(await count());
+    }
+    assert.match(await hint(), /adds to the selection/);
+    await page.locator(".canvas canvas").first().focus();
+    for (const wanted of [counts[1], counts[0], 0]) {
+      await page.keyboard.press("Control+z");
+      await until(page, "undone", "(n) => (ostraka.selection.selected.value?.count ?? 0) === n", wanted);
+    }
+    assert.equal(await page.evaluate(() => ostraka.model.place.value), 1, "no step of the session was undone");
+    await page.keyboard.press("Control+y");
+    await until(page, "redone", "(n) => ostraka.selection.selected.value?.count === n", counts[0]);
+    await page.locator(".annotate input").first().fill("belly");
+    await page.locator(".annotate button[type=submit]").first().click();
+    await steps(page, 2);
+    // Now an undo takes back the annotation; five fast presses are five steps, as far as there are any.
+    await page.locator(".canvas canvas").first().focus();
+    for (let i = 0; i < 2; ++i) await page.keyboard.press("Control+z");
+    await steps(page, 0);
+    for (let i = 0; i < 2; ++i) await page.keyboard.press("Control+y");
+    await steps(page, 2);
+    await useTool(page, "angle");
+    const box = await page.locator(".canvas canvas").boundingBox();
+    await page.mouse.click(box.x + 0.45 * w, box.y + 0.5 * h);
+    assert.match(await hint(), /apex/);
+    await page.keyboard.press("Escape");
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

@@ -4,7 +4,8 @@ import type { Language } from "../data";
 import { ColouringChoice } from "../colouring";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
-import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
+import { canListen, commands, gazed, heard, listen, listening, palette, redoLast, say, undoLast } from "./commands";
+import * as deform from "./deform";
 import { Arriving, ChooseFiles } from "./drop";
 import { Gizmo } from "./gizmo";
 import { FirstQuestions } from "./first";
@@ -17,6 +18,7 @@ import { Measuring } from "./measuring";
 import { Annotating, Deforming, Everything, Fragments, History, PartEditor, Relations, Results, Slicing } from "./panels";
 import { folded, remediesOf, tab, tabs, withoutCommands } from "./remedies";
 import { FileThumbnail, ObjectThumbnail } from "./thumbnails";
+import * as selection from "./selection";
 import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
 import { text, type Key } from "./words";
 import { canEnter, enter } from "./xr";
@@ -84,15 +86,15 @@ function Header() {
           icon="undo"
           name={text("undo")}
           hint={`${text("undo")} (Ctrl+Z)`}
-          disabled={place.value === 0}
-          onClick={() => void model.undo()}
+          disabled={place.value === 0 && selection.strokes.value === 0}
+          onClick={undoLast}
         />
         <IconButton
           icon="redo"
           name={text("redo")}
           hint={`${text("redo")} (Ctrl+Y)`}
           disabled={place.value === history.value.length}
-          onClick={() => void model.redo()}
+          onClick={redoLast}
         />
       </span>
       <form
@@ -177,13 +179,28 @@ function Tools() {
   );
 }
 
+/** What the next click does, in words. */
+function nextHint(hasCage: boolean): Key {
+  const t = tool.value;
+  const count = picked.value.length;
+  if (t === "ruler") return count === 0 ? "rulerHelp" : "nextEnd";
+  if (t === "angle") return (["angleHelp", "nextApex", "nextLeg"] as const)[Math.min(2, count)];
+  if ((t === "tape" || t === "path") && count > 0) return count === 1 ? "nextPoint" : "nextPointOrEnd";
+  if (t === "closed" && count > 0) return count < 3 ? "nextPoint" : "nextInside";
+  if (selection.selected.value && ["rectangle", "lasso", "brush", "closed", "path", "points"].includes(t))
+    return selection.erases.value ? "nextErase" : "nextMore";
+  if (["move", "rotate", "scale", "stretch"].includes(t) && hasCage && deform.handles.value.size === 0) return "nextHandles";
+  if (["move", "rotate", "scale", "stretch"].includes(t) && !hasCage) return "nextWhole";
+  return `${t}Help` as Key;
+}
+
 /** What the next click does with the chosen tool, and the settings of the tool. */
 function ToolHint() {
   const of = drawn[page.object.value];
   if (!of) return null;
   return (
     <div class="hint">
-      <span>{text(`${tool.value}Help` as Key)}</span>
+      <span>{text(nextHint(of.about.cage !== undefined))}</span>
       {tool.value === "brush" && (
         <label>
           {text("radius")}{" "}
@@ -244,7 +261,7 @@ function Layers() {
                 {about && (
                   <small>
                     {page.numberText(about.faces)} {page.word("faces")}
-                    {one.parts.annotations && `, ${about.annotations.length} ${text("annotating").toLocaleLowerCase()}`}
+                    {about.annotations.length > 0 && `, ${about.annotations.length} ${text("annotating").toLocaleLowerCase()}`}
                     {one.parts.cage && `, ${text("cage").toLocaleLowerCase()}`}
                   </small>
                 )}

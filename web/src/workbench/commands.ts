@@ -60,9 +60,17 @@ function selectGazed(discards: boolean) {
 
 const useTool = (which: Tool) => () => choose(which);
 
+/** Takes back the last stroke of the selection, or else the last step of the session. */
+export const undoLast = () => {
+  if (!selection.undoStroke()) void undo();
+};
+export const redoLast = () => {
+  if (!selection.redoStroke()) void redo();
+};
+
 export const commands: Command[] = [
-  { id: "undo", words: "undo", key: "Ctrl+Z", action: () => void undo() },
-  { id: "redo", words: "redo", key: "Ctrl+Y", action: () => void redo() },
+  { id: "undo", words: "undo", key: "Ctrl+Z", action: undoLast },
+  { id: "redo", words: "redo", key: "Ctrl+Y", action: redoLast },
   { id: "select", words: "sayselect", action: () => selectGazed(false) },
   { id: "discard", words: "saydiscard", action: () => selectGazed(true) },
   { id: "hide-cage", words: "hideCage", action: () => (page.cage.value = false) },
@@ -178,10 +186,11 @@ export function attachKeys() {
       return;
     } else if ((event.ctrlKey || event.metaKey) && key === "z") {
       event.preventDefault();
-      void (event.shiftKey ? redo() : undo());
+      if (event.shiftKey) redoLast();
+      else undoLast();
     } else if ((event.ctrlKey || event.metaKey) && key === "y") {
       event.preventDefault();
-      void redo();
+      redoLast();
     }
   });
 }

@@ -1,4 +1,5 @@
 // Deformation by numbers: one part is made higher or longer, raised or turned, while others keep their level or their shape. No cage is needed.
+import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import * as page from "../state";
 import { has, outcome, part, run } from "./model";
@@ -10,11 +11,14 @@ const axes = ["up", "x", "y", "z"] as const;
 /** Words for parts that most likely stay on one level. */
 const standing = /leg|foot|feet|bein|fu(ß|ss|ess)|gamb|pied|base/i;
 
+/** The part that was chosen last, also when the result is shown. */
+const lastPart = signal<number | undefined>(undefined);
+
 export function ByNumbers() {
   const about = page.page.objects[page.object.value];
   const regions = about?.annotations.filter((one) => one.type === "region") ?? [];
   const chosen = about?.annotations[page.chosen.value]?.id;
-  const [given, setPart] = useState<number | undefined>(undefined);
+  const given = regions.some((one) => one.id === lastPart.value) ? lastPart.value : undefined;
   const [change, setChange] = useState<Change>("stretch");
   const [axis, setAxis] = useState<(typeof axes)[number]>("up");
   const [amount, setAmount] = useState("20");
@@ -59,7 +63,7 @@ export function ByNumbers() {
     <section aria-labelledby="numbers-title">
       <h2 id="numbers-title">{text("byNumbers")}</h2>
       <form class="numbers" onSubmit={submit}>
-        <select aria-label={text("partOf")} value={String(id)} onChange={(event) => setPart(Number(event.currentTarget.value))}>
+        <select aria-label={text("partOf")} value={String(id)} onChange={(event) => (lastPart.value = Number(event.currentTarget.value))}>
           {regions.map((one) => (
             <option key={one.id} value={String(one.id)}>
               {one.tag || `#${one.id}`}

@@ -77,6 +77,12 @@ function edit(title: string, more: Record<string, unknown>, one = chosenAnnotati
   });
 }
 
+/** The area of a region, or the length of a line, with its unit. */
+function sizeText(size: number, type: string): string {
+  const { unit } = page.page.objects[page.object.value];
+  return page.withUnit(Number(size.toPrecision(4)), unit && type === "region" ? `${unit}²` : unit);
+}
+
 /** Name and colour of the selected annotation, changed in place, and its removal together with the relationships that name it. */
 export function PartEditor() {
   const [asks, setAsks] = useState(false);
@@ -146,6 +152,7 @@ export function Annotating() {
         <h2 id="selection-title">{text("selection")}</h2>
         <p class="quiet" role="status">
           {chosen ? text("selected", chosen.count, text(chosen.type as Key)) : text("nothingSelected")}
+          {chosen?.size !== undefined && `, ${sizeText(chosen.size, chosen.type)}`}
         </p>
         <div class="buttons">
           <label>

@@ -1,8 +1,9 @@
 // The selection: shapes drawn on the view, as an expression of recipes that the command evaluates.
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import * as THREE from "three";
 import { flatMaterial, type DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
+import { areaOf, lengthOf } from "../sizes";
 import * as page from "../state";
 import { indicesIn } from "./link";
 import { attempt, link, onShown, shown } from "./model";
@@ -10,7 +11,8 @@ import { text } from "./words";
 
 export type Expression = Record<string, unknown>;
 export const expression = signal<Expression | undefined>(undefined);
-export const selected = signal<{ type: string; count: number } | undefined>(undefined);
+/** What is selected: its type, how many elements, and its area or length. */
+export const selected = signal<{ type: string; count: number; size?: number } | undefined>(undefined);
 export const erases = signal(false);
 export const visible = signal(true);
 /** Whether outlines cut through triangles as drawn, instead of following the nearest edges. */
@@ -81,24 +83,65 @@ export async function add(drawnNow: Expression): Promise<boolean> {
   return setSelection(next);
 }
 
+/** The selections before each stroke since the last annotation, and those that were taken back. */
+const before = signal<(Expression | undefined)[]>([]);
+const after: (Expression | undefined)[] = [];
+/** How many strokes can be taken back. */
+export const strokes = computed(() => before.value.length);
+
+/** Takes the last stroke back; false if there is none. */
+export function undoStroke(): boolean {
+  const list = before.value;
+  if (list.length === 0) return false;
+  const last = list[list.length - 1];
+  after.push(expression.value);
+  before.value = list.slice(0, -1);
+  void evaluate(last);
+  return true;
+}
+/** Repeats the stroke that was taken back last; false if there is none. */
+export function redoStroke(): boolean {
+  if (after.length === 0) return false;
+  before.value = [...before.value, expression.value];
+  void evaluate(after.pop());
+  return true;
+}
+
 /** Sets the selection; the command evaluates it on the object's own mesh. */
-export function setSelection(next: Expression | undefined): Promise<boolean> {
+export async function setSelection(next: Expression | undefined): Promise<boolean> {
+  const last = expression.value;
+  if (!(await evaluate(next))) return false;
+  if (next) {
+    before.value = [...before.value, last];
+    after.length = 0;
+  }
+  return true;
+}
+
+function evaluate(next: Expression | undefined): Promise<boolean> {
   const of = target();
   if (!next || !of) {
-    clear();
+    empty();
     return Promise.resolve(true);
   }
   return attempt(text("select"), async () => {
     const answer = await link.ask("select", { expression: next, type: typeOf(next) });
     const { type, count } = answer.result;
     expression.value = next;
-    selected.value = { type, count };
     const faces = type === "region" ? indicesIn(answer, answer.result.faces) : undefined;
+    const size = faces ? areaOf(of, faces) : type === "line" ? lengthOf(of, answer.result.lines) : undefined;
+    selected.value = { type, count, size };
     show(of, faces ? facesMark(of, faces) : type === "line" ? linesMark(of, answer.result.lines) : pointsMark(of, answer.result.points));
   });
 }
 
 export function clear() {
+  before.value = [];
+  after.length = 0;
+  empty();
+}
+
+function empty() {
   expression.value = undefined;
   selected.value = undefined;
   if (mark) mark.removeFromParent();
