@@ -85,7 +85,7 @@ constexpr OperationEntry entries[]{
     {"template classify", "classify objects, and report the proportions, relations or distances that contradict a class (exit code 3: an object belongs to no class, or is undecided)", make_template_classify, 2},
     {"template sample", "sample random new members of a class that satisfy the constraints of the class (exit code 3: fewer members than requested)", make_template_sample},
     {"template propagate", "fit a template to members of its class and transfer its annotations to the members (exit code 3: annotations are lost, or the template does not fit a member)", make_template_propagate, 2},
-    {"template revolve", "reconstruct a whole vessel from its sherds as a surface of revolution, with its profile", make_template_revolve},
+    {"template revolve", "reconstruct a whole vessel from its sherds as a surface of revolution, with its profile", make_template_revolve, 2},
     {"cage make", "make a closed coarse mesh strictly around a mesh", make_cage_make},
     {"cage edit", "move the vertices of a cage as an edit file specifies", make_cage_edit},
     {"cage check", "check whether one mesh is a sound cage of another mesh (exit code 3: it is not)", make_cage_check, 2},
