@@ -142,6 +142,7 @@ private:
             context.notes(given_files[k].file.string(), fragment_files[k].notes);
             fragment_files[k].fragment.name = name;
             fragments.push_back(std::move(fragment_files[k].fragment));
+            face_colours.push_back(std::move(fragment_files[k].face_colours));
             facets_from.push_back(fragment_files[k].facets_from);
         }
         if (fragments.size() < 2)
@@ -282,6 +283,7 @@ private:
 
     void write_group(Context& context, Report& report, const Reassembly& result, int g, JsonValue& entry,
                      JsonAllocator& allocator) {
+        const bool is_coloured = has_colours_in(result, g);
         TriangleSoup soup;
         Fragment joined_group;
         MeshExtras extras;
@@ -293,6 +295,8 @@ private:
             const Mesh placed = moved(fragments[k].mesh, result.poses[k]);
             MeshExtras facets;
             for (const Facet facet : fragments[k].facets) facets.face_labels.push_back(static_cast<std::int32_t>(facet));
+            facets.face_colours = face_colours[k];
+            if (is_coloured) append_colours(extras.face_colours, k);
             output.write(fragments[k].name + ".placed.ply", placed, facets);
             const TriangleSoup fragment_soup = to_soup(placed);
             const auto offset = static_cast<Index>(soup.points.size());
@@ -328,7 +332,23 @@ private:
                 draw_apart(soup, begins);
             }
         }
-        if (object_template) complete(context, report, joined_group, name, entry, allocator);
+        if (object_template) complete(context, report, joined_group, extras.face_colours, name, entry, allocator);
+    }
+
+    /// True if a fragment of the group has colours.
+    [[nodiscard]] bool has_colours_in(const Reassembly& result, int g) const {
+        for (std::size_t k = 0; k < fragments.size(); ++k)
+            if (result.group[k] == g && !face_colours[k].empty()) return true;
+        return false;
+    }
+
+    /// Appends the colours of a fragment's faces; the tone of clay if it has none.
+    void append_colours(std::vector<Colour>& colours, std::size_t k) const {
+        if (face_colours[k].empty()) {
+            colours.resize(colours.size() + fragments[k].mesh.number_of_faces(), {clay.red, clay.green, clay.blue, 255});
+            return;
+        }
+        colours.insert(colours.end(), face_colours[k].begin(), face_colours[k].end());
     }
 
     /// Moves fragments away from their common centre, so that fracture surfaces are visible.
@@ -349,8 +369,8 @@ private:
         }
     }
 
-    void complete(Context& context, Report& report, const Fragment& joined_group, const std::string& name, JsonValue& entry,
-                  JsonAllocator& allocator) {
+    void complete(Context& context, Report& report, const Fragment& joined_group, const std::vector<Colour>& colours,
+                  const std::string& name, JsonValue& entry, JsonAllocator& allocator) {
         if (!object_template->annotations) fail_input(object_template.file(), "has no annotations", "pack them");
         std::optional<ShapePrior> prior;
         if (class_file) {
@@ -370,7 +390,7 @@ private:
                                 completed.undecided.empty() ? "" : ", because " + completed.undecided,
                                 number(100 * completed.observed_share, 3)));
         if (completed.points.empty()) return;
-        write_completed(output, name + ".completed.ply", completed.object);
+        write_completed(output, name + ".completed.ply", completed.object, {colours});
         add_members(entry, allocator, "completed", name + ".completed.ply");
     }
 
@@ -381,6 +401,7 @@ private:
     FragmentFileOptions reading;
     bool no_pictures = false, fresh = false;
     std::vector<Fragment> fragments;
+    std::vector<std::vector<Colour>> face_colours;  ///< colours of the faces of each fragment; empty: none
     std::vector<std::string> facets_from;
     std::vector<std::pair<std::string, std::string>> unreadable;  ///< name and problem
     std::map<std::size_t, std::string> left_out;                  ///< reason for each excluded fragment

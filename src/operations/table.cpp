@@ -41,7 +41,7 @@ constexpr OperationEntry entries[]{
     {"mesh move", "translate, rotate, scale or mirror a mesh, or change its unit or axes, together with annotations, relationships and cage", make_mesh_move},
     {"mesh extract", "cut annotated parts out of a mesh, with the annotations of these parts", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment with known pose", make_mesh_break},
-    {"mesh surface", "reconstruct the surface of a point cloud, with the colours and intensities of its points", make_mesh_surface},
+    {"mesh surface", "reconstruct the surface of a point cloud, with the colours and intensities of its points", make_mesh_surface, 2},
     {"mesh make", "make a closed mesh of a synthetic object, with the exact label of each part", make_mesh_make},
     {"annotation apply", "annotate a mesh from a recipe or from labels", make_annotation_apply, 4},
     {"annotation list", "list the annotations of a mesh", make_annotation_list},

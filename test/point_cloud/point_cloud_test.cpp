@@ -44,6 +44,19 @@ TEST(PointCloud, NormalsOfABallPointOutward) {
     }
 }
 
+TEST(PointCloud, CoincidentPointsHaveTheNormalOfTheirPlace) {
+    std::vector<Point> points = ball(3000, 1, {0, 0, 0});
+    const std::vector<Vector> expected = estimate_normals(points);
+    points.insert(points.end(), 100, points[7]);
+    const std::vector<Vector> normals = estimate_normals(points);
+    for (std::size_t i = 0; i < 3000; ++i) ASSERT_EQ(normals[i], expected[i]) << i;
+    for (std::size_t i = 3000; i < points.size(); ++i) EXPECT_EQ(normals[i], expected[7]);
+    // Beside a point that is far away all others coincide.
+    std::vector<Point> far = ball(100, 1, {0, 0, 0});
+    far.emplace_back(1e38, 0, 0);
+    EXPECT_THROW(estimate_normals(far), Error);
+}
+
 TEST(PointCloud, SurfaceOfABall) {
     for (const double scale : {1e-6, 1.0, 1e6}) {
         PointCloud cloud;

@@ -235,7 +235,12 @@ TEST(AssembleCommand, RepeatsARunAndReportsAnUnreadableFile) {
     const test::Scratch scratch;
     std::filesystem::create_directory(scratch / "box");
     const Mixture box;
-    for (const std::size_t k : {1, 2, 3}) write_mesh(scratch / "box" / (box.fragments[k].name + ".ply"), box.fragments[k].mesh);
+    const Colour red{200, 30, 30, 255};
+    for (const std::size_t k : {1, 2, 3}) {
+        MeshExtras extras;
+        if (box.fragments[k].name == "above") extras.vertex_colours.assign(box.fragments[k].mesh.number_of_vertices(), red);
+        write_mesh(scratch / "box" / (box.fragments[k].name + ".ply"), box.fragments[k].mesh, extras);
+    }
     write_file(scratch / "box" / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
     const std::string small = " --frames 60 --samples 500 --starts 40 --refined 6",
                       command = "assemble " + quoted(scratch / "box") + " --output " + quoted(scratch / "out") + small;
@@ -257,8 +262,13 @@ TEST(AssembleCommand, RepeatsARunAndReportsAnUnreadableFile) {
     EXPECT_NE(run.out.find("cannot be read: "), std::string::npos) << run.out;
     const Mesh above = read_mesh(scratch / "out" / "above.placed.ply").mesh;
     const Mesh below = read_mesh(scratch / "out" / "below.placed.ply").mesh;
-    EXPECT_EQ(read_mesh(scratch / "out" / "group-1.ply").mesh.number_of_faces(),
-              above.number_of_faces() + below.number_of_faces());
+    const MeshFile joined_group = read_mesh(scratch / "out" / "group-1.ply");
+    EXPECT_EQ(joined_group.mesh.number_of_faces(), above.number_of_faces() + below.number_of_faces());
+    const std::vector<Colour>& colours = joined_group.extras.face_colours;
+    ASSERT_EQ(colours.size(), joined_group.mesh.number_of_faces());
+    EXPECT_EQ(std::count(colours.begin(), colours.end(), red), static_cast<std::ptrdiff_t>(above.number_of_faces()));
+    EXPECT_EQ(read_mesh(scratch / "out" / "above.placed.ply").extras.face_colours.size(), above.number_of_faces());
+    EXPECT_TRUE(read_mesh(scratch / "out" / "below.placed.ply").extras.face_colours.empty());
     const auto again = test::run_command(command);
     EXPECT_EQ(again.code, 0);
     EXPECT_NE((again.out + again.err).find("3 of 3 pairs were tried by an earlier run"), std::string::npos)

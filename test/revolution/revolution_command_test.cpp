@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -59,6 +60,25 @@ TEST_F(RevolutionCommand, ReportsAsInTheSchema) {
     Json broken = parse_json(run.out, "report");
     broken["result"].RemoveMember("height");
     EXPECT_THROW(validate(broken["result"], "vessel", "report"), Error);
+}
+
+TEST_F(RevolutionCommand, CarriesTheColoursOfSherdsAndTurnsOverThoseThatAreInsideOut) {
+    for (const Path& file : files) {
+        TriangleSoup soup = to_soup(read_mesh(file).mesh);
+        if (file == files[0])
+            for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+        MeshExtras extras;
+        extras.vertex_colours.assign(soup.points.size(), Colour{200, 60, 20, 255});
+        write_mesh(file, build_mesh(soup), extras);
+    }
+    const auto run = run_command("template revolve " + quoted_files() + "--vertices 3000 --output " + quoted(scratch / "out"));
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_NE(run.err.find("sherd1.ply: is inside out: its faces were turned over in memory"), std::string::npos) << run.err;
+    const MeshFile vessel = read_mesh(scratch / "out" / "vessel.ply");
+    ASSERT_EQ(vessel.extras.vertex_colours.size(), vessel.mesh.number_of_vertices());
+    const auto painted = std::count_if(vessel.extras.vertex_colours.begin(), vessel.extras.vertex_colours.end(),
+                                       [](const Colour& c) { return std::abs(c[0] - 200) < 3 && std::abs(c[1] - 60) < 3; });
+    EXPECT_GT(static_cast<double>(painted), 0.8 * static_cast<double>(vessel.mesh.number_of_vertices()));
 }
 
 TEST_F(RevolutionCommand, AFitMatchesRotationsByFractures) {

@@ -4,6 +4,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/revolution/surface_of_revolution.h"
+#include "ostraka/texture/bake.h"
 
 #include <fmt/core.h>
 
@@ -33,12 +34,14 @@ struct TemplateRevolve final : Operation {
 
     void run(Context& context, Report& report) override {
         std::vector<const Fragment*> sherds;
+        std::vector<const std::vector<Colour>*> colours;
         std::vector<SherdOnProfile> unreadable;
         for (std::size_t k = 0; k < files.size(); ++k) try {
                 const FragmentFile& file = files.load<FragmentFile>(
                     [&](const Path& path) { return read_fragment(path, reading); }, k, options_text(reading));
                 context.notes(files.file(k), file.notes);
                 sherds.push_back(&file.fragment);
+                colours.push_back(&file.face_colours);
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::input || files.size() == 1) throw;
                 SherdOnProfile& sherd = unreadable.emplace_back();
@@ -50,11 +53,34 @@ struct TemplateRevolve final : Operation {
         output.open();
         RevolutionTemplate vessel = template_of_revolution(sherds, options, unreadable);
         vessel.annotations.unit = unit;
-        write(context, vessel);
+        write(context, vessel, colours_of(vessel, sherds, colours, report));
         report_result(report, vessel);
     }
 
-    void write(Context& context, const RevolutionTemplate& vessel) const {
+    /// Colours of the vessel's vertices from coloured sherds near them, grey elsewhere; empty if no sherd has colours.
+    static std::vector<Colour> colours_of(const RevolutionTemplate& vessel, const std::vector<const Fragment*>& sherds,
+                                          const std::vector<const std::vector<Colour>*>& colours, Report& report) {
+        TriangleSoup soup;
+        MeshFile coloured;
+        for (std::size_t k = 0; k < sherds.size(); ++k) {
+            if (colours[k]->empty()) continue;
+            const TriangleSoup sherd = to_soup(sherds[k]->mesh);
+            const auto offset = static_cast<Index>(soup.points.size());
+            soup.points.insert(soup.points.end(), sherd.points.begin(), sherd.points.end());
+            for (auto triangle : sherd.triangles) {
+                for (Index& v : triangle) v += offset;
+                soup.triangles.push_back(triangle);
+            }
+            coloured.extras.face_colours.insert(coloured.extras.face_colours.end(), colours[k]->begin(), colours[k]->end());
+        }
+        if (soup.triangles.empty()) return {};
+        coloured.mesh = build_mesh(soup);
+        BakedVertices baked = bake_vertices(vessel.mesh, coloured, BakeOptions(), "sherds");
+        report.note("vessel.ply has the colours of the sherds where they lie near it, and grey elsewhere");
+        return std::move(baked.colours);
+    }
+
+    void write(Context& context, const RevolutionTemplate& vessel, std::vector<Colour> colours) const {
         const Provenance provenance = context.provenance();
         TemplateFile file{vessel.annotations.object_class, unit, vessel.annotations.up, {}};
         const WriteOptions write_options{.comment = provenance.to_line()};
@@ -71,7 +97,11 @@ struct TemplateRevolve final : Operation {
             write_file(place, bytes);
             file.contents.push_back({role, name, place, sha256(bytes)});
         };
-        part("mesh", "vessel.ply", [&](const Path& path) { write_mesh(path, vessel.mesh, {}, write_options); });
+        part("mesh", "vessel.ply", [&](const Path& path) {
+            MeshExtras extras;
+            extras.vertex_colours = std::move(colours);
+            write_mesh(path, vessel.mesh, extras, write_options);
+        });
         part("annotations", "vessel.ant.json",
              [&](const Path& path) { write_annotations(path, vessel, "vessel.ply", provenance); });
         std::string csv = "radius,height\n";
