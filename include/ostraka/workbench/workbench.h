@@ -50,8 +50,8 @@ private:
 
     [[nodiscard]] std::unique_ptr<Context> fresh_context();  ///< context with the memory limit
 
-    void hello(const JsonValue& request, Json& result, std::string& bytes);    ///< version, operations, and state of the session
-    void scene(const JsonValue& request, Json& result, std::string& bytes);    ///< shapes and tables to show
+    void hello(const JsonValue& request, Json& result, std::string& bytes);  ///< version, operations, and state of the session
+    void scene(const JsonValue& request, Json& result, std::string& bytes);  ///< shapes and tables to show
     /// Content with the shape of a file that can be opened, for a thumbnail: {"name"}; without content if the file is large.
     void preview(const JsonValue& request, Json& result, std::string& bytes);
     void select(const JsonValue& request, Json& result, std::string& bytes);   ///< elements that a selection expression selects
