@@ -76,6 +76,23 @@ std::map<std::string, std::string> checksums(const Session& session) {
 
 }  // namespace
 
+TEST(WorkbenchPreview, HasTheShapeOfAFileThatCanBeOpenedAndChangesNothing) {
+    const Bench bench;
+    const Workbench::Reply reply = bench.workbench->answer(R"({"id":1,"do":"preview","name":"ball.ply"})");
+    const Json answer = parse_json(reply.json, "the answer");
+    ASSERT_TRUE(answer["ok"].GetBool()) << reply.json;
+    const Json content = parse_json(text_in(answer["result"], "content"), "the content");
+    ASSERT_EQ(content["objects"].Size(), 1u);
+    EXPECT_EQ(content["objects"][0]["faces"].GetUint(), build_mesh(octahedron_sphere(3)).number_of_faces());
+    EXPECT_FALSE(reply.bytes.empty());
+    EXPECT_FALSE(reply.changed);
+    EXPECT_TRUE(bench.state().objects.empty());
+    for (const char* name : {"no.ply", "../ball.ply", "/etc/passwd", ""})
+        EXPECT_NE(bench.refused(R"({"id":2,"do":"preview","name":")" + std::string(name) + "\"}").find("not a file"),
+                  std::string::npos)
+            << name;
+}
+
 TEST(Session, OpensAnnotatesAndKeepsTheSteps) {
     Bench bench;
     bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");

@@ -91,6 +91,10 @@ async function cageOf(one: DrawnObject, content: Content): Promise<THREE.Object3
 export const objectsOf = ({ data, blobs }: Content): Promise<DrawnObject[]> =>
   Promise.all(data.objects.map(async (about, i) => new DrawnObject(i, about, await shapeOf(about, blobs), blobs)));
 
+/** How much of the picture an object fills at first. */
+let fill = 0.97;
+export const setFill = (share: number) => (fill = share);
+
 /** Displays a content: that of the page, or of an object of a collection. */
 export async function showContent(content: Content, keepsCamera = false) {
   const objects = await objectsOf(content);
@@ -100,7 +104,10 @@ export async function showContent(content: Content, keepsCamera = false) {
   }
   let made = view;
   try {
-    if (!made && objects.length > 0) made = new View(matchMedia("(prefers-reduced-motion: reduce)").matches);
+    if (!made && objects.length > 0) {
+      made = new View(matchMedia("(prefers-reduced-motion: reduce)").matches);
+      made.fill = fill;
+    }
   } catch {
     made = undefined; // without WebGL the tables are still shown
   }

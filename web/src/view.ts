@@ -68,6 +68,8 @@ export class View {
   private running = false;
   /** Compares two objects: left of the share of the width the first, right of it the second. */
   wipe: { left: DrawnObject; right: DrawnObject; share: number } | undefined;
+  /** How much of a pane the displayed objects fill; less where bars lie over the picture. */
+  fill = 0.97;
   clip = 1;
   clipAxis = 2;
   background = 0xffffff;
@@ -184,7 +186,7 @@ export class View {
     const [width, height] = this.paneSize();
     const [x, y] = halfSizes(width > 0 && height > 0 ? width / height : 1.6);
     const most = this.mostOf(this.panes.length > 0 ? this.panes : this.objects.slice(0, 1), camera, x, y);
-    return most > 0 ? 0.97 / most : 1;
+    return most > 0 ? this.fill / most : 1;
   }
 
   /** How far the boxes of objects reach from the centre of the picture, as a share of its half width and half height. */

@@ -1137,7 +1137,7 @@ try {
     await server.stop();
   });
 
-  await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
+  await test("for everybody: keys reach all, axe finds nothing, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));
     ostraka("annotation", "select", at("evil.ply"), at("evil.ant.json"), "--all", "--tag", evil);
@@ -1149,13 +1149,12 @@ try {
     for (const language of ["en", "de", "it"]) {
       await page.evaluate((language) => ostraka.page.setLanguage(language), language);
       await page.evaluate(readFileSync(require.resolve("axe-core/axe.min.js"), "utf8"));
-      for (const name of ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"]) {
+      for (const name of ["annotating", "measuring", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"]) {
         await tab(page, name);
         if (language !== "en" && name !== "annotating") continue;
         const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-        const serious = found.violations.filter((one) => one.impact === "serious" || one.impact === "critical");
         assert.deepEqual(
-          serious.map((one) => `${name}: ${one.id}: ${one.nodes[0].html}`),
+          found.violations.map((one) => `${name}: ${one.id}: ${one.nodes[0].html}`),
           [],
         );
       }

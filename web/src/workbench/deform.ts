@@ -259,7 +259,9 @@ function stretchTo(drag: Drag, along: THREE.Vector3, up: THREE.Vector3, dx: numb
 /** The part of the selected control points that a stretch from the base keeps in place. */
 function baseOf(drag: Drag, direction: number[]): THREE.Vector3 {
   const d = new THREE.Vector3(...direction);
-  return drag.rest.reduce((lowest, p) => (p.dot(d) < lowest.dot(d) ? p : lowest), drag.rest[0] ?? drag.centre);
+  // A whole object: the lowest corner of its box.
+  if (drag.rest.length === 0) return new THREE.Vector3(...drag.of.about.size.map((x, k) => (direction[k] < 0 ? x : 0)));
+  return drag.rest.reduce((lowest, p) => (p.dot(d) < lowest.dot(d) ? p : lowest));
 }
 
 /** A step in words: "20 % higher, from its base". */

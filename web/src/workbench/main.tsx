@@ -1,5 +1,6 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
+import { setFill } from "../content";
 import { shared } from "../geometry";
 import { followLook } from "../look";
 import { drawn, view } from "../picture";
@@ -37,6 +38,7 @@ model.link.onEvent = (event) => {
   // Another page changed the same session.
   if (event.event === "changed") void model.attempt(text("loading"), model.refresh);
 };
+setFill(0.87); // bars lie over the upper and lower edge of the picture
 // On a phone names and measures would cover the picture: they are shown when asked for.
 const isNarrow = window.innerWidth < 600;
 page.allMeasures.value = !isNarrow;

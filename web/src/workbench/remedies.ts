@@ -88,9 +88,10 @@ export function remediesOf(said: string): Remedy[] {
   return name ? [{ label: text("openForm", name), action: () => showForm(name) }] : [];
 }
 
-/** A text without the commands of a terminal, which a button replaces. */
+/** A text without the commands of a terminal, which a button replaces, and without the folders of files. */
 export const withoutCommands = (said: string) =>
   said
+    .replace(/(^|\s|')\/(?:[^\s,:;()]+\/)+/g, "$1")
     .replace(/\s*\([^()]*\bostraka [^()]*\)/g, "")
     .replace(/^(run|use): ostraka .*$/, "")
     .replace(/,? (run|use):? '?ostraka [^;,']*'?/g, "");
