@@ -116,10 +116,18 @@ std::vector<SpaceLine> starting_lines(const RotationSearch& search) {
 }
 
 DiameterEstimate estimate(const std::string& name, const RevolutionPosterior& posterior, const std::vector<double>& diameters,
-                          double scale) {
+                          double scale, bool round) {
     DiameterEstimate result{name, scale * posterior.quantile(diameters, 0.5), scale * posterior.quantile(diameters, 0.025),
                             scale * posterior.quantile(diameters, 0.975)};
-    if (!std::isfinite(result.value)) result.value = result.low;
+    if (!std::isfinite(result.value)) {
+        result.value = result.low;
+        return result;
+    }
+    // Vessels deviate from roundness in more ways than the model has: of simulated sherds, the interval of the posterior alone
+    // held the truth in too few draws.
+    const double widening = round ? 1 : 1.3;
+    result.low = std::max(0.0, result.value - widening * (result.value - result.low));
+    result.high = result.value + widening * (result.high - result.value);
     return result;
 }
 
@@ -225,9 +233,10 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     }
     const AxisSpread spread = spread_of(posterior);
     const double scale = search.scale;
+    const bool round = !(options.out_of_round > 0);
     const std::vector<double> diameters = ring_diameters(posterior, ring);
-    if (ring.rim) result.diameters.push_back(estimate("rim diameter", posterior, diameters, scale));
-    result.diameters.push_back(estimate("largest diameter", posterior, ring_diameters(posterior, widest), scale));
+    if (ring.rim) result.diameters.push_back(estimate("rim diameter", posterior, diameters, scale, round));
+    result.diameters.push_back(estimate("largest diameter", posterior, ring_diameters(posterior, widest), scale, round));
     Axis& axis = result.axis;
     axis = {};
     axis.quality = search.axis.quality;
