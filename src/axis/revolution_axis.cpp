@@ -116,10 +116,18 @@ std::vector<SpaceLine> starting_lines(const RotationSearch& search) {
 }
 
 DiameterEstimate estimate(const std::string& name, const RevolutionPosterior& posterior, const std::vector<double>& diameters,
-                          double scale) {
+                          double scale, bool round) {
     DiameterEstimate result{name, scale * posterior.quantile(diameters, 0.5), scale * posterior.quantile(diameters, 0.025),
                             scale * posterior.quantile(diameters, 0.975)};
-    if (!std::isfinite(result.value)) result.value = result.low;
+    if (!std::isfinite(result.value)) {
+        result.value = result.low;
+        return result;
+    }
+    // Vessels deviate from roundness in more ways than the model has: of simulated sherds, the interval of the posterior alone
+    // held the truth in too few draws.
+    const double widening = round ? 1 : 1.3;
+    result.low = std::max(0.0, result.value - widening * (result.value - result.low));
+    result.high = result.value + widening * (result.high - result.value);
     return result;
 }
 
@@ -166,9 +174,15 @@ void set_extent(Axis& axis, const Mesh& mesh, const std::vector<Index>& faces) {
     axis.lines = {{point_of(origin + low * a), point_of(origin + high * a)}};
 }
 
-/// Whether an axis in another direction fits nearly as well: a narrow sherd has two directions of curvature. A rim is evidence of
-/// the axis that has it.
-bool has_rivals(const RevolutionPosterior& posterior, const WallRing& ring) { return posterior.margin < (ring.rim ? 0.15 : 0.4); }
+/// Why the posterior is not that of one axis; empty if it is. An axis in another direction may fit nearly as well: a narrow sherd
+/// has two directions of curvature, and a rim is evidence of the axis that has it. A narrow sherd may also be as good as flat.
+std::string reason_against(const RevolutionPosterior& posterior, const WallRing& ring) {
+    constexpr double least_arc = 4 * degree;
+    if (posterior.margin < (ring.rim ? 0.15 : 0.4))
+        return "axes in several directions fit, and no rim shows which of them is right";
+    if (posterior.model->arc() < least_arc) return "too little of its circumference is preserved: it is as good as flat";
+    return {};
+}
 
 /// Sets the reason why the axis of the posterior is not determined, if it is not.
 void judge(RevolutionAxis& result, const RevolutionPosterior& posterior, const AxisSpread& spread,
@@ -210,18 +224,19 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     const WallRing ring = diameter_ring(posterior), widest = ring.rim ? widest_ring(posterior) : ring;
     // Without a lip, an axis of a sphere is determined by nothing but noise.
     if (search.sphere && !ring.rim) return result;
-    if (has_rivals(posterior, ring)) {
+    if (std::string reason = reason_against(posterior, ring); !reason.empty()) {
         const double quality = result.axis.quality;
         result.axis = {};
         result.axis.quality = quality;
-        result.axis.reason = "axes in several directions fit, and no rim shows which of them is right";
+        result.axis.reason = std::move(reason);
         return result;
     }
     const AxisSpread spread = spread_of(posterior);
     const double scale = search.scale;
+    const bool round = !(options.out_of_round > 0);
     const std::vector<double> diameters = ring_diameters(posterior, ring);
-    if (ring.rim) result.diameters.push_back(estimate("rim diameter", posterior, diameters, scale));
-    result.diameters.push_back(estimate("largest diameter", posterior, ring_diameters(posterior, widest), scale));
+    if (ring.rim) result.diameters.push_back(estimate("rim diameter", posterior, diameters, scale, round));
+    result.diameters.push_back(estimate("largest diameter", posterior, ring_diameters(posterior, widest), scale, round));
     Axis& axis = result.axis;
     axis = {};
     axis.quality = search.axis.quality;

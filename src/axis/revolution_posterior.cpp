@@ -111,7 +111,7 @@ std::optional<Candidate> improve(const WallVertices& vertices, SpaceLine line, d
 
 std::vector<RoundnessLevel> levels_of(double out_of_round) {
     if (!(out_of_round > 0)) return {{0, 1}};
-    return {{0, 0.1}, {out_of_round / 5, 0.1}, {out_of_round / 2, 0.3}, {out_of_round, 0.35}, {2 * out_of_round, 0.15}};
+    return {{0, 0.1}, {out_of_round / 2, 0.15}, {out_of_round, 0.4}, {2 * out_of_round, 0.35}};
 }
 
 /// A multivariate t distribution with six degrees of freedom.
