@@ -91,9 +91,9 @@ struct Compared {
     std::string object_class;
     std::size_t object;
     std::string compared;
-    double unlike;
+    double dissimilarity;
 };
-double unlike_where_nothing_else_speaks(const ClassAnswer& answer) {
+double dissimilarity_unless_rejected(const ClassAnswer& answer) {
     const bool against = std::any_of(answer.rejecting_checks.begin(), answer.rejecting_checks.end(),
                                      [&](std::size_t k) { return answer.checks[k].quantity.name != unlike_the_members; });
     return against || !answer.fit_problem.empty() || !answer.dissimilarity ? std::numeric_limits<double>::infinity()
@@ -119,8 +119,8 @@ void print_curve(const std::vector<Compared>& points, const char* title, const s
         const double limit = members[std::max<std::size_t>(1, k) - 1];
         if (!std::isfinite(limit)) break;
         Hits accepted, by_any;
-        for (const double unlike : others) accepted.add(unlike <= limit);
-        for (const auto& [object, unlike] : nearest) by_any.add(unlike <= limit);
+        for (const double dissimilarity : others) accepted.add(dissimilarity <= limit);
+        for (const auto& [object, dissimilarity] : nearest) by_any.add(dissimilarity <= limit);
         table.row("{} | {:.2f} | {:.1f} | {:.1f}", per_cent, limit, accepted.percent(), by_any.percent());
     }
 }
@@ -294,7 +294,7 @@ void LeaveOneOut::ask(std::size_t arm, const Way& way) const {
             answers(object.member.name, answer.name, to_string(answer.verdict), answer.score, answer.dissimilarity.value_or(-1),
                     answer.fit.residuals ? answer.fit.residuals->off() : 0, answer.rejecting_checks.size(),
                     reasons.empty() ? answer.undecided : reasons.front());
-            curve.push_back({object.class_name, i, answer.name, unlike_where_nothing_else_speaks(answer)});
+            curve.push_back({object.class_name, i, answer.name, dissimilarity_unless_rejected(answer)});
         }
         const Classification result = decide(object.member.name, std::move(list));
         const auto name = [&](int k) { return result.answers[static_cast<std::size_t>(k)].name; };

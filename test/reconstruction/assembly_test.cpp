@@ -42,10 +42,10 @@ TEST(Assembly, StatedMatchesAreThoseOfTheFragment) {
                     "," + entry("base", R"({"ofFragment": 9, "ofTemplate": 9, "stated": true})") + R"(, {"name": "bare"})");
     const std::vector<StatedMatch> matches = stated_matches(assembly, "top");
     ASSERT_EQ(matches.size(), 2U);
-    EXPECT_EQ(matches[0].of_fragment, 1);
-    EXPECT_EQ(matches[0].of_template, 2);
-    EXPECT_EQ(matches[1].of_fragment, 2147483647);
-    EXPECT_FALSE(matches[1].of_template.has_value());
+    EXPECT_EQ(matches[0].fragment_annotation, 1);
+    EXPECT_EQ(matches[0].template_annotation, 2);
+    EXPECT_EQ(matches[1].fragment_annotation, 2147483647);
+    EXPECT_FALSE(matches[1].template_annotation.has_value());
     EXPECT_TRUE(stated_matches(assembly, "bare").empty());
     EXPECT_TRUE(stated_matches(assembly, "absent").empty());
     EXPECT_EQ(unused_statements(assembly, {"top"}), std::vector<std::string>{"base"});

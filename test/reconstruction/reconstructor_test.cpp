@@ -39,7 +39,7 @@ void expect_same(const Reconstruction& a, const Reconstruction& b, const std::st
     for (std::size_t k = 0; k < a.annotations.size(); ++k) {
         ASSERT_EQ(a.annotations[k].size(), b.annotations[k].size()) << context;
         for (std::size_t i = 0; i < a.annotations[k].size(); ++i) {
-            EXPECT_EQ(a.annotations[k][i].of_template, b.annotations[k][i].of_template) << context;
+            EXPECT_EQ(a.annotations[k][i].template_annotation, b.annotations[k][i].template_annotation) << context;
             EXPECT_EQ(a.annotations[k][i].score, b.annotations[k][i].score) << context;
         }
     }

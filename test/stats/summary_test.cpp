@@ -17,8 +17,8 @@ TEST(Summary, OfNumbersByHand) {
     const Summary s = summarise({2, 4, 4, 4, 5, 5, 7, 9});
     EXPECT_EQ(s.count, 8u);
     EXPECT_DOUBLE_EQ(s.mean, 5);
-    EXPECT_DOUBLE_EQ(*s.deviation, std::sqrt(32.0 / 7));
-    EXPECT_DOUBLE_EQ(*s.variation, std::sqrt(32.0 / 7) / 5);
+    EXPECT_DOUBLE_EQ(*s.standard_deviation, std::sqrt(32.0 / 7));
+    EXPECT_DOUBLE_EQ(*s.coefficient_of_variation, std::sqrt(32.0 / 7) / 5);
     EXPECT_EQ(s.median, 4.5);
     EXPECT_EQ(s.min, 2);
     EXPECT_EQ(s.max, 9);
@@ -28,14 +28,14 @@ TEST(Summary, HandlesSingleAndEqualValues) {
     const Summary single_value = summarise({3});
     EXPECT_EQ(single_value.mean, 3);
     EXPECT_EQ(single_value.median, 3);
-    EXPECT_FALSE(single_value.deviation);
-    EXPECT_FALSE(single_value.variation);
+    EXPECT_FALSE(single_value.standard_deviation);
+    EXPECT_FALSE(single_value.coefficient_of_variation);
     const Summary same = summarise({0.1, 0.1, 0.1});
     EXPECT_EQ(same.mean, 0.1);
-    EXPECT_EQ(*same.deviation, 0);
-    EXPECT_EQ(*same.variation, 0);
-    EXPECT_FALSE(summarise({-1, 1}).variation) << "no coefficient of variation about 0";
-    EXPECT_DOUBLE_EQ(*summarise({-1, -3}).variation, std::sqrt(2.0) / 2) << "of the magnitude of the mean";
+    EXPECT_EQ(*same.standard_deviation, 0);
+    EXPECT_EQ(*same.coefficient_of_variation, 0);
+    EXPECT_FALSE(summarise({-1, 1}).coefficient_of_variation) << "no coefficient of variation about 0";
+    EXPECT_DOUBLE_EQ(*summarise({-1, -3}).coefficient_of_variation, std::sqrt(2.0) / 2) << "of the magnitude of the mean";
 }
 
 TEST(Summary, ScalesAndShifts) {
@@ -46,13 +46,14 @@ TEST(Summary, ScalesAndShifts) {
         for (double& v : scaled) v *= scale;
         const Summary s = summarise(scaled);
         EXPECT_NEAR(s.mean / scale, original.mean, 1e-14 * 8);
-        EXPECT_NEAR(*s.deviation / scale, *original.deviation, 1e-14 * 8);
+        EXPECT_NEAR(*s.standard_deviation / scale, *original.standard_deviation, 1e-14 * 8);
     }
     std::vector<double> distant = values;
     for (double& v : distant) v += 0x1p40;
-    EXPECT_NEAR(*summarise(distant).deviation, *original.deviation, 1e-12) << "values are multiples of 1/4: nothing is lost";
+    EXPECT_NEAR(*summarise(distant).standard_deviation, *original.standard_deviation, 1e-12)
+        << "values are multiples of 1/4: nothing is lost";
     const double huge = std::numeric_limits<double>::max();
-    EXPECT_TRUE(std::isfinite(*summarise({-huge / 2, huge / 2}).deviation));
+    EXPECT_TRUE(std::isfinite(*summarise({-huge / 2, huge / 2}).standard_deviation));
 }
 
 TEST(Summary, DoesNotDependOnTheOrder) {
@@ -63,7 +64,7 @@ TEST(Summary, DoesNotDependOnTheOrder) {
     for (int trial = 0; trial < 5; ++trial) {
         random.shuffle(values);
         EXPECT_EQ(summarise(values).mean, first.mean);
-        EXPECT_EQ(*summarise(values).deviation, *first.deviation);
+        EXPECT_EQ(*summarise(values).standard_deviation, *first.standard_deviation);
     }
 }
 
