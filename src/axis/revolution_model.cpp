@@ -393,46 +393,56 @@ void fill_extras(double* row, double radius, double c1, double s1, double height
 
 }  // namespace
 
+/// Weight of a cell's squared residual.
+double RevolutionModel::cell_weight(std::size_t i) const {
+    const WallSheet& sheet = sheets_[cells_[i].sheet];
+    return robust_[i] * cells_[i].count / (sheet.sigma * sheet.sigma * correlation_ * (1 + slope_[i] * slope_[i]));
+}
+
+/// Slopes of the fitted profiles at the cells.
+std::vector<double> RevolutionModel::profile_slopes(const Chart& at) const {
+    std::vector<double> slope(cells_.size(), 0);
+    std::vector<BandedSystem> splines;
+    for (const WallSheet& sheet : sheets_) splines.emplace_back(sheet.knots, 1);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const std::size_t k = cells_[i].sheet;
+        if (sheets_[k].used) splines[k].add(basis_at(at.parameter(i, k), sheets_[k].knots), cell_weight(i), &at.s[i]);
+    }
+    for (BandedSystem& spline : splines) spline.solve();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const std::size_t k = cells_[i].sheet;
+        const Basis basis = basis_at(at.parameter(i, k), sheets_[k].knots);
+        const double range = std::max(1e-12, at.range[k].second - at.range[k].first);
+        for (std::size_t a = 0; a < 4; ++a)
+            slope[i] += basis.slope[a] * splines[k].coefficients()(0, static_cast<Eigen::Index>(basis.first + a)) / range;
+    }
+    return slope;
+}
+
+/// Central differences of the chart: for each cell, the derivatives of s and then of t by the four parameters of the step.
+std::vector<double> RevolutionModel::chart_derivatives(const AxisStep& x) const {
+    std::vector<double> derivative(8 * cells_.size());
+    for (int k = 0; k < 4; ++k) {
+        AxisStep plus = x, minus = x;
+        const double h = 1e-5 * (k == 0 && short_arc_ ? std::abs(x[0]) : 1);
+        plus[k] += h, minus[k] -= h;
+        const Chart after = chart(plus), before = chart(minus);
+        for (std::size_t i = 0; i < cells_.size(); ++i) {
+            derivative[8 * i + static_cast<std::size_t>(k)] = (after.s[i] - before.s[i]) / (2 * h);
+            derivative[8 * i + 4 + static_cast<std::size_t>(k)] = (after.t[i] - before.t[i]) / (2 * h);
+        }
+    }
+    return derivative;
+}
+
 std::vector<RevolutionFit> RevolutionModel::fit(const AxisStep& x, const std::vector<RoundnessLevel>& levels,
                                                 bool derivatives) const {
     const Chart at = chart(x);
     const bool deviations = std::any_of(levels.begin(), levels.end(), [](const auto& level) { return level.amplitude > 0; });
     const int slopes = derivatives ? 4 : 0, free = deviations ? extras : 0, columns = 1 + slopes + free;
     const double turn = short_arc_ ? x[2] : 0;
-    std::vector<double> derivative;  // of t and s for each cell and parameter
-    std::vector<double> slope = slope_;
-    const auto weight_of = [&](std::size_t i) {
-        const WallSheet& sheet = sheets_[cells_[i].sheet];
-        return robust_[i] * cells_[i].count / (sheet.sigma * sheet.sigma * correlation_ * (1 + slope_[i] * slope_[i]));
-    };
-    if (derivatives) {
-        std::vector<BandedSystem> splines;
-        for (const WallSheet& sheet : sheets_) splines.emplace_back(sheet.knots, 1);
-        for (std::size_t i = 0; i < cells_.size(); ++i) {
-            const std::size_t k = cells_[i].sheet;
-            if (sheets_[k].used) splines[k].add(basis_at(at.parameter(i, k), sheets_[k].knots), weight_of(i), &at.s[i]);
-        }
-        for (BandedSystem& spline : splines) spline.solve();
-        for (std::size_t i = 0; i < cells_.size(); ++i) {
-            const std::size_t k = cells_[i].sheet;
-            const Basis basis = basis_at(at.parameter(i, k), sheets_[k].knots);
-            const double range = std::max(1e-12, at.range[k].second - at.range[k].first);
-            slope[i] = 0;
-            for (std::size_t a = 0; a < 4; ++a)
-                slope[i] += basis.slope[a] * splines[k].coefficients()(0, static_cast<Eigen::Index>(basis.first + a)) / range;
-        }
-        derivative.resize(8 * cells_.size());
-        for (int k = 0; k < 4; ++k) {
-            AxisStep plus = x, minus = x;
-            const double h = 1e-5 * (k == 0 && short_arc_ ? std::abs(x[0]) : 1);
-            plus[k] += h, minus[k] -= h;
-            const Chart after = chart(plus), before = chart(minus);
-            for (std::size_t i = 0; i < cells_.size(); ++i) {
-                derivative[8 * i + static_cast<std::size_t>(k)] = (after.s[i] - before.s[i]) / (2 * h);
-                derivative[8 * i + 4 + static_cast<std::size_t>(k)] = (after.t[i] - before.t[i]) / (2 * h);
-            }
-        }
-    }
+    const std::vector<double> slope = derivatives ? profile_slopes(at) : slope_;
+    const std::vector<double> derivative = derivatives ? chart_derivatives(x) : std::vector<double>();
     std::vector<BandedSystem> splines;
     for (const WallSheet& sheet : sheets_) splines.emplace_back(sheet.knots, columns);
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(columns, columns);
@@ -448,7 +458,7 @@ std::vector<RevolutionFit> RevolutionModel::fit(const AxisStep& x, const std::ve
             fill_extras(&row[static_cast<std::size_t>(1 + slopes)], at.radius[i], at.cosine[i], at.sine[i],
                         (at.height[i] - middle_height_) / half_height_, c + slope_[i] * s, s - slope_[i] * c, !sheets_[k].wall);
         }
-        const double weight = weight_of(i);
+        const double weight = cell_weight(i);
         splines[k].add(basis_at(at.parameter(i, k), sheets_[k].knots), weight, row.data());
         for (Eigen::Index a = 0; a < columns; ++a) {
             const double scaled = weight * row[static_cast<std::size_t>(a)];
@@ -488,6 +498,95 @@ std::vector<RevolutionFit> RevolutionModel::fit(const AxisStep& x, const std::ve
     return fits;
 }
 
+namespace {
+
+/// Posterior mean of the deviations from roundness, of which `amplitude` is the standard deviation. G: normal matrix of the
+/// column of targets and the columns of deviations.
+Eigen::VectorXd expected_deviation(const Eigen::MatrixXd& G, double amplitude) {
+    const Eigen::Index count = G.rows() - 1;
+    if (!(amplitude > 0)) return Eigen::VectorXd::Zero(count);
+    Eigen::MatrixXd A = amplitude * amplitude * G.bottomRightCorner(count, count) + Eigen::MatrixXd::Identity(count, count);
+    Eigen::MatrixXd b = amplitude * G.block(1, 0, count, 1);
+    factorise(A);
+    solve_lower(A, b);
+    for (Eigen::Index i = count - 1; i >= 0; --i) {
+        for (Eigen::Index k = i + 1; k < count; ++k) b(i, 0) -= A(k, i) * b(k, 0);
+        b(i, 0) /= A(i, i);
+    }
+    return amplitude * b.col(0);
+}
+
+}  // namespace
+
+/// Sets the robust weights of the cells and the noise of the sheets from the residuals, of which `errors` are the absolute values
+/// for each sheet. `select_sheets`: sheets that are much noisier than the best wall are no longer used.
+void RevolutionModel::update_noise(const std::vector<std::vector<double>>& errors, bool select_sheets) {
+    std::vector<double> scale(sheets_.size());
+    for (std::size_t k = 0; k < sheets_.size(); ++k)
+        scale[k] = std::max(min_sigma, errors[k].empty() ? 0 : 1.4826 * upper_median(errors[k]));
+    std::vector<double> sum(sheets_.size(), 0), weight(sheets_.size(), 0);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const std::size_t k = cells_[i].sheet;
+        const double u = residuals_[i] / (4.685 * scale[k]);
+        robust_[i] = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
+        sum[k] += robust_[i] * residuals_[i] * residuals_[i], weight[k] += robust_[i];
+    }
+    double best = 1e300;
+    for (std::size_t k = 0; k < sheets_.size(); ++k) {
+        // Weighted sums of Tukey's biweight: of normal errors they give 0.83 of the variance.
+        const double cells = std::max(1.0, static_cast<double>(errors[k].size()));
+        sheets_[k].sigma = std::max(
+            min_sigma, std::sqrt(sum[k] / std::max(1e-300, weight[k]) * 1.207 * cells / std::max(1.0, cells - sheets_[k].knots)));
+        if (sheets_[k].wall && sheets_[k].vertices > 0) best = std::min(best, sheets_[k].sigma);
+    }
+    if (select_sheets)
+        for (WallSheet& sheet : sheets_) sheet.used = sheet.sigma < (sheet.wall ? 6 : 3) * best;
+}
+
+/// Means of the deviations from roundness over the walls.
+void RevolutionModel::average_extras(const Chart& at) {
+    mean_extra_.fill(0);
+    double total = 0;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (!sheets_[cells_[i].sheet].wall) continue;
+        const double c = at.cosine[i], s = at.sine[i], n = cells_[i].count;
+        const std::array<double, 4> values{c * c - s * s, 2 * c * s, 4 * c * c * c - 3 * c, 3 * s - 4 * s * s * s};
+        for (std::size_t k = 0; k < 4; ++k) {
+            mean_extra_[k] += n * values[k] * extra_scale[k];
+            mean_extra_[k + 4] += n * values[k] * extra_scale[k + 4];
+        }
+        total += n;
+    }
+    for (double& value : mean_extra_) value /= std::max(1.0, total);
+}
+
+/// Estimates how much neighbouring residuals agree, from their sums over patches of the walls.
+void RevolutionModel::estimate_correlation(const Chart& at, double amplitude) {
+    // Patches of the wall: neighbouring residuals that agree are not independent.
+    std::map<std::array<int, 3>, std::array<double, 2>> patches;
+    std::vector<std::pair<double, double>> turns(sheets_.size(), {1e300, -1e300});
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const double angle = std::atan2(at.sine[i], at.cosine[i]);
+        auto& [low, high] = turns[cells_[i].sheet];
+        low = std::min(low, angle), high = std::max(high, angle);
+    }
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const std::size_t k = cells_[i].sheet;
+        if (!sheets_[k].used || !sheets_[k].wall) continue;
+        const double angle = std::atan2(at.sine[i], at.cosine[i]), width = std::max(1e-12, turns[k].second - turns[k].first);
+        auto& patch = patches[{static_cast<int>(k), static_cast<int>(7.99 * at.parameter(i, k)),
+                               static_cast<int>(7.99 * (angle - turns[k].first) / width)}];
+        patch[0] += robust_[i] * residuals_[i] / sheets_[k].sigma, patch[1] += robust_[i] * robust_[i];
+    }
+    double observed = 0, expected = 0;
+    for (const auto& [key, patch] : patches) observed += patch[0] * patch[0], expected += patch[1];
+    // The fit takes part of the means over patches: one for each row of patches, and the axis and the deviations.
+    const double rows =
+        8 * double(std::count_if(sheets_.begin(), sheets_.end(), [](const WallSheet& s) { return s.used && s.wall; }));
+    expected *= std::max(0.4, 1 - (rows + 4 + (amplitude > 0 ? 8 : 0)) / double(std::max<std::size_t>(1, patches.size())));
+    correlation_ = std::max(1.0, expected > 0 ? observed / expected : 1);
+}
+
 void RevolutionModel::weigh(const AxisStep& x, double amplitude) {
     const Chart at = chart(x);
     const double turn = short_arc_ ? x[2] : 0;
@@ -514,19 +613,7 @@ void RevolutionModel::weigh(const AxisStep& x, double amplitude) {
             splines[k].solve();
             if (sheets_[k].used) G -= splines[k].explained();
         }
-        Eigen::VectorXd deviation = Eigen::VectorXd::Zero(extras);
-        if (amplitude > 0) {
-            Eigen::MatrixXd A =
-                amplitude * amplitude * G.bottomRightCorner(extras, extras) + Eigen::MatrixXd::Identity(extras, extras);
-            Eigen::MatrixXd b = amplitude * G.block(1, 0, extras, 1);
-            factorise(A);
-            solve_lower(A, b);
-            for (Eigen::Index i = extras - 1; i >= 0; --i) {
-                for (Eigen::Index k = i + 1; k < extras; ++k) b(i, 0) -= A(k, i) * b(k, 0);
-                b(i, 0) /= A(i, i);
-            }
-            deviation = amplitude * b.col(0);
-        }
+        const Eigen::VectorXd deviation = expected_deviation(G, amplitude);
         std::vector<std::vector<double>> errors(sheets_.size());
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             const std::size_t k = cells_[i].sheet;
@@ -544,63 +631,10 @@ void RevolutionModel::weigh(const AxisStep& x, double amplitude) {
             residuals_[i] = value / std::sqrt(1 + slope_[i] * slope_[i]) * std::sqrt(cells_[i].count);
             errors[k].push_back(std::abs(residuals_[i]));
         }
-        std::vector<double> scale(sheets_.size());
-        for (std::size_t k = 0; k < sheets_.size(); ++k)
-            scale[k] = std::max(min_sigma, errors[k].empty() ? 0 : 1.4826 * upper_median(errors[k]));
-        std::vector<double> sum(sheets_.size(), 0), weight(sheets_.size(), 0);
-        for (std::size_t i = 0; i < cells_.size(); ++i) {
-            const std::size_t k = cells_[i].sheet;
-            const double u = residuals_[i] / (4.685 * scale[k]);
-            robust_[i] = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
-            sum[k] += robust_[i] * residuals_[i] * residuals_[i], weight[k] += robust_[i];
-        }
-        double best = 1e300;
-        for (std::size_t k = 0; k < sheets_.size(); ++k) {
-            // Weighted sums of Tukey's biweight: of normal errors they give 0.83 of the variance.
-            const double cells = std::max(1.0, static_cast<double>(errors[k].size()));
-            sheets_[k].sigma = std::max(min_sigma, std::sqrt(sum[k] / std::max(1e-300, weight[k]) * 1.207 * cells /
-                                                             std::max(1.0, cells - sheets_[k].knots)));
-            if (sheets_[k].wall && sheets_[k].vertices > 0) best = std::min(best, sheets_[k].sigma);
-        }
-        if (round >= 2)
-            for (WallSheet& sheet : sheets_) sheet.used = sheet.sigma < (sheet.wall ? 6 : 3) * best;
+        update_noise(errors, round >= 2);
     }
-    mean_extra_.fill(0);
-    double total = 0;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        if (!sheets_[cells_[i].sheet].wall) continue;
-        const double c = at.cosine[i], s = at.sine[i], n = cells_[i].count;
-        const std::array<double, 4> values{c * c - s * s, 2 * c * s, 4 * c * c * c - 3 * c, 3 * s - 4 * s * s * s};
-        for (std::size_t k = 0; k < 4; ++k) {
-            mean_extra_[k] += n * values[k] * extra_scale[k];
-            mean_extra_[k + 4] += n * values[k] * extra_scale[k + 4];
-        }
-        total += n;
-    }
-    for (double& value : mean_extra_) value /= std::max(1.0, total);
-    // Patches of the wall: neighbouring residuals that agree are not independent.
-    std::map<std::array<int, 3>, std::array<double, 2>> patches;
-    std::vector<std::pair<double, double>> turns(sheets_.size(), {1e300, -1e300});
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        const double angle = std::atan2(at.sine[i], at.cosine[i]);
-        auto& [low, high] = turns[cells_[i].sheet];
-        low = std::min(low, angle), high = std::max(high, angle);
-    }
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        const std::size_t k = cells_[i].sheet;
-        if (!sheets_[k].used || !sheets_[k].wall) continue;
-        const double angle = std::atan2(at.sine[i], at.cosine[i]), width = std::max(1e-12, turns[k].second - turns[k].first);
-        auto& patch = patches[{static_cast<int>(k), static_cast<int>(7.99 * at.parameter(i, k)),
-                               static_cast<int>(7.99 * (angle - turns[k].first) / width)}];
-        patch[0] += robust_[i] * residuals_[i] / sheets_[k].sigma, patch[1] += robust_[i] * robust_[i];
-    }
-    double observed = 0, expected = 0;
-    for (const auto& [key, patch] : patches) observed += patch[0] * patch[0], expected += patch[1];
-    // The fit takes part of the means over patches: one for each row of patches, and the axis and the deviations.
-    const double rows =
-        8 * double(std::count_if(sheets_.begin(), sheets_.end(), [](const WallSheet& s) { return s.used && s.wall; }));
-    expected *= std::max(0.4, 1 - (rows + 4 + (amplitude > 0 ? 8 : 0)) / double(std::max<std::size_t>(1, patches.size())));
-    correlation_ = std::max(1.0, expected > 0 ? observed / expected : 1);
+    average_extras(at);
+    estimate_correlation(at, amplitude);
 }
 
 }  // namespace ostraka::detail

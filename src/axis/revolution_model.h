@@ -104,6 +104,12 @@ private:
     void make_cells(const WallVertices& vertices, std::size_t max_cells);
     void make_frame();
     [[nodiscard]] Chart chart(const AxisStep& step) const;
+    [[nodiscard]] double cell_weight(std::size_t cell) const;
+    [[nodiscard]] std::vector<double> profile_slopes(const Chart& at) const;
+    [[nodiscard]] std::vector<double> chart_derivatives(const AxisStep& x) const;
+    void update_noise(const std::vector<std::vector<double>>& errors, bool select_sheets);
+    void average_extras(const Chart& at);
+    void estimate_correlation(const Chart& at, double amplitude);
 
     SpaceLine reference_;
     bool short_arc_ = true;

@@ -136,15 +136,16 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 
 void CageOptions::declare_options(OptionList& list) {
     list("vertices", vertices, "target number of vertices of the cage", Range{4, 1e6});
-    list("alpha", alpha,
-         "maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
-         "requires it",
-         Range{0, 1}, "share of the diagonal");
+    list(
+        "alpha", alpha,
+        "half the maximum width of openings of the mesh that are closed; 0: a fortieth, or more if the target number of vertices "
+        "requires it",
+        Range{0, 1}, "share of the diagonal");
     list("offset", offset, "distance between the mesh and the wrap from which the cage is made", Range{1e-4, 0.5},
          "share of the diagonal");
     list("genus", genus,
          "treatment of the handles (holes) of the object: follow (the cage has the handles whose openings are wider than "
-         "--alpha) or fill (the cage has no handles)",
+         "twice --alpha) or fill (the cage has no handles)",
          Choices{"follow", "fill"});
 }
 

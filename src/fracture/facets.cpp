@@ -198,7 +198,9 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
 }
 
 void FacetOptions::declare_options(OptionList& list) {
-    list("facet-edge", edge, "minimum dihedral angle of an edge that may bound a fracture surface", Range{5, 120}, "degrees");
+    list("facet-edge", edge,
+         "angle between the normals of two faces above which a convex edge is likely to bound a fracture surface", Range{5, 120},
+         "degrees");
     list("facet-wall", wall, "maximum wall thickness of a two-sided fragment, as a share of the root of its area",
          Range{0.01, 1});
     list("facet-coherence", coherence,

@@ -304,9 +304,10 @@ void RepairOptions::declare_options(OptionList& list) {
     list("fill-holes-size", fill_holes_size, "maximum width (diameter of a disc of the same area) of a hole that is filled",
          Range{0, 1}, "share of their component's diagonal");
     list("remove-self-intersections", remove_self_intersections, "remove intersecting triangles and close the gaps", Anything{});
-    list("wrap", wrap, "replace the surface by a watertight wrap, which loses details smaller than --wrap-alpha", Anything{});
-    list("wrap-alpha", wrap_alpha, "with --wrap: minimum width of openings that the wrap enters", Range{0.002, 0.5},
-         "share of the diagonal");
+    list("wrap", wrap, "replace the surface by a watertight wrap, which loses details smaller than twice --wrap-alpha",
+         Anything{});
+    list("wrap-alpha", wrap_alpha, "with --wrap: radius of the ball that fits through openings that the wrap enters",
+         Range{0.002, 0.5}, "share of the diagonal");
     list("wrap-offset", wrap_offset, "with --wrap: distance of the wrap from the surface", Range{0.0001, 0.1},
          "share of the diagonal");
 }

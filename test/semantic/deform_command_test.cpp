@@ -138,7 +138,7 @@ TEST(CageCommand, BadInput) {
     refused(pot + cage + " --mirror 1,2,3", 2, "six numbers");
     refused(pot + cage + " --mirror 0,0,0,0,0,0", 2, "normal is zero");
     refused(pot + cage + " --detail spout=4", 2, "--annotations");
-    refused(pot + cage + " --annotations " + parts + "--detail nose=4", 2, "no annotation");
+    refused(pot + cage + " --annotations " + parts + "--detail nose=4", 2, "not an annotation");
     refused(pot + cage + " --parts spout", 2, "--annotations");
     refused(pot + cage + " --annotations " + parts + "--parts nose", 1, "nose");
     refused(pot + cage + " --annotations " + parts + "--parts spout --levels 100,50", 2, "--together");

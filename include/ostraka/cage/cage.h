@@ -17,7 +17,7 @@ namespace ostraka {
 /// Options of `make_cage`.
 struct CageOptions {
     std::uint64_t vertices = 200;  ///< target number of cage vertices; for nested cages: of the finest cage
-    /// Openings narrower than this fraction of the mesh's diagonal are closed; 0: automatic, doubled when needed.
+    /// Openings narrower than twice this fraction of the mesh's diagonal are closed; 0: automatic, doubled when needed.
     double alpha = 0;
     double offset = 0.0167;  ///< distance of the wrap from the mesh, as a fraction of the mesh's diagonal
     /// follow: the cage keeps the handles of the mesh; fill: the cage has no handles

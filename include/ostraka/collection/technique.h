@@ -32,7 +32,8 @@ struct TechniqueSlice {
     double radius = unknown;                         ///< radius of the fitted circle, in the mesh's unit
     std::array<double, 2> centre{unknown, unknown};  ///< centre of the fitted circle, in the mesh's unit
     double roundness = unknown;                      ///< mean distance of the outline from the fitted circle
-    /// Mean distance of the outline from the circle of equal area; closed outlines only.
+    /// Mean distance of the outline from the circle of equal area around its barycentre, relative to the radius of that circle;
+    /// closed outlines only.
     double roundness_equivalent = unknown;
     /// Short side divided by long side of the smallest enclosing rectangle; closed outlines only.
     double eccentricity = unknown;

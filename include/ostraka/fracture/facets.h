@@ -12,7 +12,9 @@ namespace ostraka {
 
 /// Options of `find_facets`.
 struct FacetOptions {
-    double edge = 40;  ///< edges with a dihedral angle above this value, in degrees, may bound a fracture surface
+    /// Angle between the normals of two faces, in degrees, at which a convex edge costs 0.4 times as much as a flat place as the
+    /// boundary of a fracture surface; the cost falls as exp(-(angle / edge)^2).
+    double edge = 40;
     /// Max wall thickness of a shell, as a fraction of the square root of the fragment's area.
     double wall = 0.25;
     /// Weight of the smoothness term (neighbouring faces get equal classes) relative to the data term (features of each face).

@@ -27,7 +27,7 @@ struct RepairOptions {
     double fill_holes_size = 0.3;
     bool remove_self_intersections = false;  ///< true: cut out intersecting triangles and close the gaps
     bool wrap = false;                       ///< true: replace the surface by a watertight wrap
-    double wrap_alpha = 0.02;                ///< the wrap enters openings wider than this fraction of the diagonal
+    double wrap_alpha = 0.02;                ///< the wrap enters openings wider than twice this fraction of the diagonal
     double wrap_offset = 0.002;              ///< distance of the wrap from the surface, as a fraction of the diagonal
     void declare_options(OptionList& list);  ///< adds every member to a list of options
 };

@@ -28,11 +28,12 @@ struct CompletedSample {
     std::vector<std::string> notes;           ///< messages on how estimates were obtained
 };
 
-/// Estimates missing landmarks, or leaves them out. `regression`: both sides are aligned by the landmarks that the specimen has;
-/// the number of principal components of these landmarks that the regression uses is the one with the least leave-one-out error
-/// over the complete specimens. Throws Error (input), naming specimen and landmark, if a specimen has too few landmarks for an
-/// estimate (three; in space four), if there are too few complete specimens (`tps`: one, `regression`: four), if `mirror` is
-/// given without pairs, or if `leave_out` leaves fewer than three landmarks.
+/// Estimates missing landmarks, or leaves them out. `regression`: the specimen and all complete specimens are superimposed by
+/// the landmarks that the specimen has, and the missing landmarks are predicted from the principal components of these
+/// landmarks; their number is the one with the least leave-one-out error over the complete specimens. Throws Error (input),
+/// naming specimen and landmark, if a specimen has too few landmarks for an estimate (three; in space four), if there are too few
+/// complete specimens (`tps`: one, `regression`: four), if `mirror` is given without pairs, or if `leave_out` leaves fewer than
+/// three landmarks.
 CompletedSample complete_landmarks(const ShapeSample& sample, MissingMethod method, const LandmarkPairs& pairs = {});
 
 }  // namespace ostraka

@@ -38,13 +38,13 @@ struct Crease {
 /// Finds ridges and hollows. The response of a vertex is s (H(s) - H(wide s)), where H(r) is the mean curvature over a ball of
 /// radius r (fields/curvature.h) and s is the scale as a length. The response is zero on planes, spheres and cylinders of any
 /// radius, positive on ridges, negative in hollows. The robust standard deviation of the response is 1.4826 times the median of
-/// its absolute values over the area (zero on a shape without noise or detail, hence the option `floor`). Vertices above `weak`
-/// that are connected with a vertex above `strong` form a crease (hysteresis), unless a response of the other sign within the
-/// wide radius is more than three times as strong (then the crease is a side effect of the stronger one). The line of a crease is
-/// the path along the crest between the two ends farthest apart, or, if the crease is a ring, the shortest loop around the ring
-/// (found on its double cover). Creases are sorted by length, then strength, both descending. Border vertices have no response.
-/// Time as for curvature, plus n log n in each crease. Throws Error (usage) for options out of range, `weak` above `strong`, or a
-/// scale below the mean edge length.
+/// its absolute values over the area (zero on a shape without noise or detail, hence the option `floor`). Vertices above
+/// `lower_threshold` that are connected with a vertex above `upper_threshold` form a crease (hysteresis), unless a response of
+/// the other sign within the radius of the background is more than three times as strong (then the crease is a side effect of the
+/// stronger one). The line of a crease is the path along the crest between the two ends farthest apart, or, if the crease is a
+/// ring, the shortest loop around the ring (found on its double cover). Creases are sorted by length, then strength, both
+/// descending. Border vertices have no response. Time as for curvature, plus n log n in each crease. Throws Error (usage) for
+/// options out of range, `lower_threshold` above `upper_threshold`, or a scale below the mean edge length.
 std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options = {});
 
 /// One annotation for each crease, in the order of `creases`: "ridge 1", "ridge 2", ... in warm and "hollow 1", ... in cold

@@ -68,11 +68,11 @@ struct ConstraintReport {
     double cost_before = 0, cost = 0;
 };
 
-/// A conflict: constraints that can be satisfied only if another constraint is omitted.
+/// A conflict: failing constraints that hold in the solution without another constraint.
 struct ConstraintConflict {
     int id = 0;                         ///< id of the omitted constraint
     std::vector<int> freed;             ///< ids of the constraints that are satisfied if the constraint `id` is omitted
-    std::vector<Deviation> deviations;  ///< deviations of the omitted constraint when the other constraints are satisfied
+    std::vector<Deviation> deviations;  ///< deviations of the omitted constraint in the solution without it
 };
 
 /// Measures how closely a result follows the edit, over the vertices that the edit moves. Without a cage the edit moves the

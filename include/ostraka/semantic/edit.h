@@ -43,8 +43,8 @@ struct EditStep {
     enum class Rule { cover_mesh, cover_cage, per_point };
     std::optional<std::variant<double, Rule>> threshold = {};
     bool rule_within_selection = false;  ///< true: the rule considers the selected vertices only; false: all vertices of the mesh
-    /// Level of the nested cages in which handles are selected (0: the outermost cage); empty: the innermost cage that contains
-    /// the vertices.
+    /// Number of the cage in which handles are selected: 0 is the outermost cage, inner cages count from 1 in the order of the
+    /// file, after the cage that contains them; empty: the innermost cage that contains the vertices.
     std::optional<std::size_t> level = {};
 
     /// Moves the handles by a vector.

@@ -48,8 +48,8 @@ struct SliceDescriptors {
 
     /// R, radius of the circle around the main outline's barycentre with the main outline's area; unit.
     double equivalent_radius = absent;
-    double roundness_equivalent = absent;           ///< mean over the main outline of ||p - c| - r|; unit (thesis, 3.2)
-    double roundness_equivalent_relative = absent;  ///< roundness_equivalent / r
+    double roundness_equivalent = absent;           ///< mean over the main outline of ||p - c| - R|; unit (thesis, 3.2)
+    double roundness_equivalent_relative = absent;  ///< roundness_equivalent / R
 
     /// Radius of the least squares circle of the main outline or, if they are longer, of all open contours that run
     /// counter-clockwise around their fitted circle. For open contours the radius is given only if they lie on a circle

@@ -82,7 +82,7 @@ struct CageMake final : Operation {
         if (border > 0)
             report.note(
                 fmt::format("the mesh is open ({} border edges): the cage goes around both sides of its surface, in through "
-                            "openings that are wider than --alpha; close it with 'mesh repair' where it represents a solid",
+                            "openings that are wider than twice --alpha; close it with 'mesh repair' where it represents a solid",
                             border));
         const auto sizes = wanted();
         const RelationGraph no_relations;
