@@ -5,7 +5,7 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/neighbourhood.h"
-#include "ostraka/geom/ray_search.h"
+#include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"
 
 #include <fmt/core.h>
@@ -80,8 +80,7 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
     if (result.empty() || !(surface_area(mesh) > 0)) return result;
     const std::vector<ConeRay> rays = cone_rays(options.rays, options.cone);
     const std::vector<Vector> normals = smooth_normals(mesh, options.scale * box_diagonal(mesh));
-    const RaySearch search(mesh);
-    const double diagonal = box_diagonal(mesh);
+    const SurfaceSearch search(mesh);
     parallel_for(result.size(), 64, [&](std::size_t f) {
         const Face face(static_cast<Index>(f));
         Vector axis = -normals[f];
@@ -94,7 +93,7 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
         const Point origin = centroid(mesh, face);
         for (const ConeRay& ray : rays) {
             const Vector direction = ray.x * u + ray.y * w + ray.z * axis;
-            const auto exit = search.first_exit(origin, direction, static_cast<Index>(f), 1e-9 * diagonal);
+            const auto exit = search.first_exit(origin, direction, static_cast<Index>(f), 1e-9 * search.diagonal());
             if (!exit) continue;
             lengths.push_back(exit->distance);
             weights.push_back(ray.weight);

@@ -370,9 +370,9 @@ struct FaceTree::Ray {
     }
 };
 
-std::optional<RayExit> FaceTree::first_exit(const Point& origin, const Vector& direction, Index ignored,
-                                            double min_distance) const {
-    std::optional<RayExit> best;
+std::optional<SurfaceHit> FaceTree::first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                               double min_distance) const {
+    std::optional<SurfaceHit> best;
     if (size_ == 0) return best;
     const double length = 1.01 * unit_;
     const Point end = origin + length * direction;
@@ -399,7 +399,8 @@ std::optional<RayExit> FaceTree::first_exit(const Point& origin, const Vector& d
         if (!(distance > min_distance) || (best && std::pair(distance, triangle.face) > std::pair(best->distance, best->face)) ||
             !meet(origin, end, pa, pb, pc))
             return;
-        best = RayExit{triangle.face, distance};
+        const Point point = origin + distance * direction;
+        best = SurfaceHit{triangle.face, point, nearest_barycentric(pa, pb, pc, point), distance};
         limit = static_cast<float>(distance * scale_ * (1 + 1e-5)) + ray.margin;
     };
     push(0, ray.entry(nodes_[0], limit));

@@ -1,7 +1,6 @@
 // Search tree for the closest face with a compatible normal, and for the faces that a segment intersects.
 #pragma once
 
-#include "ostraka/geom/ray_search.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <Eigen/Core>
@@ -42,9 +41,9 @@ public:
     /// True if the segment intersects a face for which `ignored` is false. The test is exact for the given coordinates.
     [[nodiscard]] bool meets(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
-    /// RaySearch::first_exit.
-    [[nodiscard]] std::optional<RayExit> first_exit(const Point& origin, const Vector& direction, Index ignored,
-                                                    double min_distance) const;
+    /// SurfaceSearch::first_exit.
+    [[nodiscard]] std::optional<SurfaceHit> first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                                       double min_distance) const;
 
 private:
     /// Position relative to the centre of the bounding box, in multiples of its diagonal; the fourth number is used otherwise.

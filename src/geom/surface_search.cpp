@@ -67,6 +67,11 @@ std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vect
     return hits;
 }
 
+std::optional<SurfaceHit> SurfaceSearch::first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                                    double min_distance) const {
+    return tree_->faces.first_exit(origin, direction, ignored, min_distance);
+}
+
 bool SurfaceSearch::blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const {
     return tree_->faces.meets(from, to, ignored);
 }

@@ -40,6 +40,13 @@ public:
     /// end points of the segment.
     [[nodiscard]] std::vector<SurfaceHit> line_hits(const Point& origin, const Vector& direction, double max_distance) const;
 
+    /// The first face, other than `ignored`, through which a ray leaves the solid: the scalar product of its normal and
+    /// `direction`, a unit vector, is positive, and its distance is above `min_distance`. Ties go to the lowest face index. Rays
+    /// end at 1.01 times the diagonal of the mesh's bounding box. Which faces the ray crosses is exact for the rounded end point.
+    /// Nodes of the tree are visited in the order in which the ray reaches them (Wald, Boulos and Shirley 2007).
+    [[nodiscard]] std::optional<SurfaceHit> first_exit(const Point& origin, const Vector& direction, Index ignored,
+                                                       double min_distance) const;
+
     /// True if the segment intersects a face for which `ignored` is false. The test is exact for the given coordinates.
     [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
