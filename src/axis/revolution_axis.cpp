@@ -4,6 +4,7 @@
 #include "axis/axis_methods.h"
 #include "axis/revolution_posterior.h"
 #include "axis/revolved_profile.h"
+#include "axis/wall_rings.h"
 
 #include "ostraka/algebra/dense.h"
 #include "ostraka/core/text.h"

@@ -5,6 +5,7 @@
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/mesh/flood.h"
+#include "ostraka/mesh/orientation.h"
 
 #include <CGAL/Side_of_triangle_mesh.h>
 
@@ -35,14 +36,6 @@ std::vector<bool> strictly_inside(const Mesh& closed, const std::vector<Point>& 
     static_cast<void>(side(in_unit(places.front())));  // the first query builds the search structure
     parallel_for(places.size(), [&](std::size_t i) { inside[i] = side(in_unit(places[i])) == CGAL::ON_BOUNDED_SIDE; });
     return {inside.begin(), inside.end()};
-}
-
-double signed_volume(const Mesh& mesh) {
-    double volume = 0;
-    if (mesh.number_of_faces() == 0) return 0;
-    const Point origin = mesh.point(*mesh.vertices().begin());
-    for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
-    return volume / 3;
 }
 
 /// The faces of the chosen components, and the isolated vertices if `loose`.

@@ -6,13 +6,15 @@
 
 namespace ostraka {
 
-bool is_inside_out(const Mesh& mesh) {
-    if (mesh.number_of_faces() == 0 || !CGAL::is_closed(mesh)) return false;
-    const Point origin = mesh.point(*mesh.vertices().begin());
+double signed_volume(const Mesh& mesh) {
     double volume = 0;
+    if (mesh.number_of_faces() == 0) return 0;
+    const Point origin = mesh.point(*mesh.vertices().begin());
     for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
-    return volume < 0;
+    return volume / 3;
 }
+
+bool is_inside_out(const Mesh& mesh) { return CGAL::is_closed(mesh) && signed_volume(mesh) < 0; }
 
 Mesh turned_over(const Mesh& mesh) {
     TriangleSoup soup = to_soup(mesh);

@@ -1,9 +1,12 @@
-// Meshes whose faces point inwards.
+// Signed volume, and meshes whose faces point inwards.
 #pragma once
 
 #include "ostraka/mesh/mesh.h"
 
 namespace ostraka {
+
+/// Volume that a closed mesh encloses, negative if its faces point inwards. Time: O(n).
+double signed_volume(const Mesh& mesh);
 
 /// True if the mesh is closed and encloses a negative volume: its faces point inwards. False for open meshes. Time: O(n).
 bool is_inside_out(const Mesh& mesh);
