@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/overloaded.h"
 #include "ostraka/core/text.h"
 
 #include <fmt/core.h>
@@ -15,11 +16,6 @@
 namespace ostraka {
 
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
 
 std::string value_text(bool value) { return value ? "true" : "false"; }
 std::string value_text(const std::string& value) { return value; }

@@ -3,9 +3,9 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
-#include "ostraka/files/safe_path.h"
 #include "ostraka/measure/measure.h"
-#include "select/recipe_step.h"
+#include "select/evaluator.h"
+#include "select/recipe_reader.h"
 
 #include <fmt/core.h>
 
@@ -18,7 +18,7 @@ namespace ostraka {
 
 namespace {
 
-/// Executes a recipe. Unknown members are rejected: a misspelt one would silently change the result.
+/// Executes a recipe.
 class RecipeRunner {
 public:
     RecipeRunner(const Mesh& mesh, RecipeStart start, std::string where)
@@ -26,23 +26,17 @@ public:
           where_(std::move(where)),
           face_labels_(std::move(start.face_labels)),
           set_(std::move(start.annotations)),
-          folder_(std::move(start.folder)),
           attributes_(start.attributes),
           evaluator_({mesh, set_}, face_labels_, where_) {
         for (const Annotation& one : set_.annotations) before_.insert(one.id);
     }
 
-    AnnotationSet follow(const JsonValue& recipe) {
-        if (const JsonValue* name = find_member(recipe, "class")) set_.object_class = name->GetString();
-        if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
-        if (const JsonValue* up = find_member(recipe, "up")) set_.up = triple_of(*up);
-        const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
-        surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_,
-                         attributes_};
-        evaluator_.set_surroundings(surroundings_);
-        const JsonValue& steps = recipe["annotations"];
-        for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) {
-            const RecipeStep step = recipe_step_from_json(steps[i], frame, where_, "/annotations/" + std::to_string(i));
+    AnnotationSet follow(const Recipe& recipe) {
+        if (recipe.object_class) set_.object_class = *recipe.object_class;
+        if (recipe.unit) set_.unit = *recipe.unit;
+        if (recipe.up) set_.up = recipe.up;
+        evaluator_.set_surroundings({set_.up.value_or(std::array<double, 3>{0, 0, 1}), attributes_});
+        for (const RecipeStep& step : recipe.steps) {
             touched_.insert(step.id);
             if (step.action == StepAction::make) make(step);
             else edit(step);
@@ -74,7 +68,7 @@ private:
     /// region, taken away from it, or replaces it, according to the action.
     Annotation selected_free(const RecipeStep& step, const Annotation* given) {
         const std::string here = step.at + "/select";
-        const auto [cut, named] = evaluator_.cut_selection(*step.select, step.frame, here);
+        const auto [cut, named] = evaluator_.cut_selection(*step.select);
         if (std::none_of(named.begin(), named.end(), [](bool b) { return b; }))
             fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
         Annotation annotation;
@@ -101,7 +95,7 @@ private:
             fail(here, "selects vertices: there are no free points of a selection", "leave out \"outline\"");
         Annotation annotation;
         annotation.type = type;
-        annotation.curves = evaluator_.curves(*step.select, step.frame, here);
+        annotation.curves = evaluator_.curves(*step.select);
         compute_elements(mesh_, annotation);
         return annotation;
     }
@@ -111,7 +105,7 @@ private:
     std::optional<Annotation> region_where_drawn(const RecipeStep& step, StepOutline outline, const Annotation* given) {
         if (outline == StepOutline::edges) return std::nullopt;
         const bool drawn = outline == StepOutline::drawn;
-        if (drawn && !evaluator_.ends_at_levels(*step.select, step.frame, step.at + "/select")) return std::nullopt;
+        if (drawn && !evaluator_.ends_at_levels(*step.select)) return std::nullopt;
         evaluator_.keep_face_sets(drawn);
         try {
             return selected_free(step, given);
@@ -139,18 +133,18 @@ private:
             return drawn_free(type, step);
         }
         const std::string here = step.at + "/select";
-        const JsonValue& select = *step.select;
+        const SelectionExpression& select = *step.select;
         Annotation annotation;
         annotation.type = type;
         if (type == AnnotationType::region) {
-            annotation.faces = flagged(evaluator_.faces(select, step.frame, here));
-            annotation.all = kind_of(select).first == "all";
+            annotation.faces = flagged(evaluator_.faces(select));
+            annotation.all = std::holds_alternative<selection::WholeMesh>(select.kind);
             if (annotation.faces.empty())
                 fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
         } else if (type == AnnotationType::line) {
-            annotation.polylines = evaluator_.polylines(select, step.frame, here);
+            annotation.polylines = evaluator_.polylines(select);
         } else {
-            annotation.points = evaluator_.vertices(select, step.frame, here);
+            annotation.points = evaluator_.vertices(select);
             if (annotation.points.empty())
                 fail(here, "selects no vertex", "the volume or the set misses the vertices: look at the numbers and the frame");
         }
@@ -172,27 +166,8 @@ private:
         annotation.colour = unused_colour({mesh_, set_}, annotation);
         set_looks(annotation, step);
         note_edges(annotation);
-        if (step.attributes != nullptr) add_attributes(annotation, step);
+        if (step.attributes) add_attributes(annotation, step);
         set_.annotations.push_back(std::move(annotation));
-    }
-
-    /// Checks that the members of a step suit its action.
-    void check_edit(const RecipeStep& step, const Annotation& edited) const {
-        const std::string action = to_string(step.action);
-        if (step.selects() && step.select == nullptr)
-            fail(step.at, fmt::format("the action '{}' without \"select\"", action), "say what to " + action);
-        if (!step.selects() && step.select != nullptr)
-            fail(step.at + "/select", fmt::format("the action '{}' selects nothing", action), "leave it out");
-        if (step.type && *step.type != edited.type)
-            fail(step.at + "/type", fmt::format("annotation {} is a {}", step.id, to_string(edited.type)),
-                 "an edit keeps the type");
-        const std::pair<const char*, bool> looks[]{
-            {"tag", step.tag.has_value()}, {"colour", step.colour.has_value()}, {"attributes", step.attributes != nullptr}};
-        for (const auto& [name, given] : looks)
-            if (step.action == StepAction::erase && given)
-                fail(step.at + '/' + name, "the action 'delete' keeps nothing", "leave it out");
-        if (step.action == StepAction::retag && !step.tag && !step.colour && step.attributes == nullptr)
-            fail(step.at, "the action 'retag' changes nothing", "give a tag, a colour or attributes");
     }
 
     void edit(const RecipeStep& step) {
@@ -200,13 +175,14 @@ private:
         Annotation* found = set_.find(id);
         if (found == nullptr)
             fail(step.at + "/id", fmt::format("no annotation has the id {}", id), "edit one that is there at this step");
-        check_edit(step, *found);
+        if (step.type && *step.type != found->type)
+            fail(step.at + "/type", fmt::format("annotation {} is a {}", id, to_string(found->type)), "an edit keeps the type");
         if (step.action == StepAction::erase) {
             std::erase_if(set_.annotations, [&](const Annotation& a) { return a.id == id; });
             return;
         }
         Annotation annotation = *found;
-        if (step.selects()) {
+        if (step.select) {
             change_elements(annotation, step);
             if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty() && !is_free(annotation))
                 fail(step.at + "/select", fmt::format("leaves nothing of annotation {}", id),
@@ -220,9 +196,9 @@ private:
                 }
         }
         set_looks(annotation, step);
-        if (step.attributes != nullptr) {
-            for (const auto& attribute : step.attributes->GetArray())
-                std::erase_if(annotation.attributes, [&](const Attribute& a) { return a.id == attribute["id"].GetInt(); });
+        if (step.attributes) {
+            for (const StepAttribute& given : *step.attributes)
+                std::erase_if(annotation.attributes, [&](const Attribute& a) { return a.id == given.attribute.id; });
             Annotation fresh = annotation;
             fresh.attributes.clear();
             add_attributes(fresh, step);
@@ -337,33 +313,25 @@ private:
         return left;
     }
 
-    /// Attributes are written as in annotation files, except that pins may be given by coordinates, and that a bounding measure
-    /// may omit its pins.
+    /// Vertices of the pins of a measure of this annotation.
+    std::vector<Index> pins_of_measure(const StepAttribute& given, const Annotation& annotation) const {
+        std::vector<Index> pins;
+        for (const selection::Pick& pin : given.pins) pins.push_back(evaluator_.vertex(pin));
+        if (!given.pins.empty() || !given.attribute.measure.direction) return pins;
+        const auto outermost = extremes(mesh_, annotation, *given.attribute.measure.direction);
+        return {outermost.begin(), outermost.end()};
+    }
+
+    /// Replaces the attributes of the annotation by those of the step.
     void add_attributes(Annotation& annotation, const RecipeStep& step) {
         const std::string at = step.at + "/attributes";
-        Json list;
-        list.CopyFrom(*step.attributes, list.GetAllocator());
-        for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
-            const auto measure = list[i].FindMember("measure");
-            if (measure == list[i].MemberEnd()) continue;
-            const std::string here = at + '/' + std::to_string(i) + "/measure";
-            JsonValue pins(rapidjson::kArrayType);
-            if (const JsonValue* points = find_member(measure->value, "points")) {
-                for (rapidjson::SizeType k = 0; k < points->Size(); ++k)
-                    pins.PushBack(evaluator_.vertex((*points)[k], step.frame, here + "/points/" + std::to_string(k)),
-                                  list.GetAllocator());
-            } else {
-                const JsonValue* direction = find_member(measure->value, "direction");
-                if (direction == nullptr)
-                    fail(here, "a measure with neither points nor a direction",
-                         "give its pins, or the direction of a bounding measure");
-                for (const Index pin : extremes(mesh_, annotation, triple_of(*direction)))
-                    pins.PushBack(pin, list.GetAllocator());
-            }
-            measure->value.RemoveMember("points");
-            measure->value.AddMember("points", pins, list.GetAllocator());
+        std::vector<Attribute> attributes;
+        for (const StepAttribute& given : *step.attributes) {
+            const std::vector<Index> pins = pins_of_measure(given, annotation);
+            attributes.push_back(given.attribute);
+            if (given.attribute.type == AttributeType::measure) attributes.back().measure.points = pins;
         }
-        annotation.attributes = attributes_from_json(list, where_, at);
+        annotation.attributes = std::move(attributes);
         for (Attribute& attribute : annotation.attributes) {
             if (attribute.type == AttributeType::measure && attribute.measure.unit.empty()) attribute.measure.unit = set_.unit;
             Descriptor& descriptor = attribute.descriptor;
@@ -384,41 +352,17 @@ private:
     std::string where_;
     std::vector<std::int32_t> face_labels_;
     AnnotationSet set_;
-    Path folder_;
     const MeshExtras* attributes_;
     std::set<int> before_, touched_;  ///< ids of annotations that existed before, and of those that steps edit
     std::string not_free_;            ///< why the last outline could not be free
-    Surroundings surroundings_;
     ExpressionEvaluator evaluator_;
 };
 
-void collect_maps(const JsonValue& value, const Path& folder, std::vector<Path>& files) {
-    if (value.IsArray())
-        for (const auto& item : value.GetArray()) collect_maps(item, folder, files);
-    if (!value.IsObject()) return;
-    for (const auto& member : value.GetObject()) {
-        if (std::string(member.name.GetString()) == "threshold" && member.value.IsObject())
-            if (const JsonValue* map = find_member(member.value, "map"); map != nullptr && map->IsString()) {
-                const Path file = file_inside(text_of(*map), folder, "", "threshold/map", "the recipe's folder",
-                                              "move the map beside the recipe");
-                if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
-            }
-        collect_maps(member.value, folder, files);
-    }
-}
-
 }  // namespace
 
-std::vector<Path> files_named_by(const JsonValue& recipe, const Path& folder) {
-    std::vector<Path> files;
-    collect_maps(recipe, folder, files);
-    return files;
-}
-
 AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeStart start, const std::string& where) {
-    check_format(recipe, "ostraka-recipe", where, "give a recipe ('ostraka-recipe')");
-    validate(recipe, "recipe", where);
-    return RecipeRunner(mesh, std::move(start), where).follow(recipe);
+    const Recipe typed = recipe_from_json(recipe, start.folder, where);
+    return RecipeRunner(mesh, std::move(start), where).follow(typed);
 }
 
 AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,

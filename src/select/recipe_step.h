@@ -1,11 +1,14 @@
-// A step of a recipe.
+// A recipe and its steps, as typed values; recipe_reader.h reads them.
 #pragma once
 
 #include "select/expression.h"
 
+#include "ostraka/annotation/annotation.h"
+
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ostraka {
 
@@ -17,29 +20,32 @@ enum class StepOutline {
 };
 
 enum class StepAction { make, add_to, remove_from, replace, erase, retag };  ///< what a step does with an annotation
-/// Name of an action in recipes: "make", "add to", "remove from", "replace", "delete", "retag".
-std::string to_string(StepAction action);
 
-/// What a step of a recipe does with one annotation. The recipe must outlive the step.
+/// An attribute of a step.
+struct StepAttribute {
+    Attribute attribute;                ///< without the pins of its measure
+    std::vector<selection::Pick> pins;  ///< pins of a measure; empty: the outermost vertices along the measure's direction
+};
+
+/// What a step of a recipe does with one annotation.
 struct RecipeStep {
     std::string at;  ///< JSON pointer of the step
     int id = 0;      ///< id of the annotation
     StepAction action = StepAction::make;
-    PlaceFrame frame;  ///< coordinate system of the step
     StepOutline outline = StepOutline::drawn;
-    std::optional<std::string> tag;  ///< tag, type and colour that the step states; empty: not stated
+    std::optional<std::string> tag;  ///< tag, type and colour that the step states; empty: not stated; new ones have tag and type
     std::optional<AnnotationType> type;
     std::optional<std::array<int, 3>> colour;
-    const JsonValue* select = nullptr;  ///< selection expression; null: the step selects nothing
-    /// Attributes in the form of annotation files, with the additions in doc/recipes.md; null: none.
-    const JsonValue* attributes = nullptr;
-
-    /// Whether the action has a selection expression.
-    [[nodiscard]] bool selects() const { return action != StepAction::erase && action != StepAction::retag; }
+    std::optional<SelectionExpression> select;             ///< none for the actions erase and retag
+    std::optional<std::vector<StepAttribute>> attributes;  ///< attributes to set; none: not stated
 };
 
-/// Reads a step of a valid recipe (recipe.schema.json). `around`: the recipe's coordinate system. Throws Error (input), with the
-/// file `where` and the JSON pointer `at`, for members that the action lacks or does not use.
-RecipeStep recipe_step_from_json(const JsonValue& step, PlaceFrame around, const std::string& where, const std::string& at);
+/// A recipe.
+struct Recipe {
+    std::optional<std::string> object_class;  ///< class of the object; none: not stated
+    std::optional<std::string> unit;          ///< unit of the coordinates; none: not stated
+    std::optional<std::array<double, 3>> up;  ///< upward direction of the object; none: not stated
+    std::vector<RecipeStep> steps;
+};
 
 }  // namespace ostraka
