@@ -1,7 +1,9 @@
 // Reading of selection expressions and recipes into typed values.
 #include "select/expression_reader.h"
 
+#include "annotation/example_meshes.h"
 #include "ostraka/core/error.h"
+#include "select/follow.h"
 #include "select/recipe_reader.h"
 
 #include <gtest/gtest.h>
@@ -279,4 +281,14 @@ TEST(RecipeReader, ReportsALaterStepBeforeAnythingIsEvaluated) {
     EXPECT_NE(recipe_refusal(first + R"({"id": 2, "tag": "t", "type": "region", "select": {"all": true, "faces": [1]}})")
                   .find("at /annotations/1/select: selects by two kinds, all and faces"),
               std::string::npos);
+}
+
+TEST(RecipeReader, NestedExpressionsNameTheirPlaceInErrorsOfTheMesh) {
+    const std::string step =
+        R"({"id": 1, "tag": "t", "type": "region", "select": {"union": [{"all": true}, {"grow": {"rings": 1, "of": )"
+        R"({"intersection": [{"all": true}, {"component": {"seed": 4000}}]}}}]}})";
+    const std::string message = message_of([&] { (void)test::follow(step, example::grid(4)); });
+    EXPECT_NE(message.find("r.json: at /annotations/0/select/union/1/grow/of/intersection/1/component/seed: face 4000 of a mesh"),
+              std::string::npos)
+        << message;
 }
