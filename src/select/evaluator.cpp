@@ -200,7 +200,7 @@ std::vector<bool> ExpressionEvaluator::faces(const SelectionExpression& expressi
     check_cancelled();
     if (whole_ != nullptr) {
         if (const SelectionLevel* level = whole_->level_of(expression)) return faces_at_level(*level);
-        if (whole_->keeps_to_edges(expression)) return faces_of_origin(whole_->faces(expression));
+        if (whole_->keeps_to_edges(expression)) return cut_->face_values(whole_->faces(expression));
     }
     const std::string& at = expression.at;
     return std::visit(Overloaded{[&](const selection::WholeMesh&) { return std::vector<bool>(mesh_.number_of_faces(), true); },

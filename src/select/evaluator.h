@@ -162,9 +162,7 @@ private:
     std::optional<SelectionLevel> share_level(const SelectionExpression& expression) const;
     /// Faces of the cut mesh on the selected side of a level.
     std::vector<bool> faces_at_level(const SelectionLevel& level) const;
-    /// For each face of the cut mesh, the flag of the original face that contains it.
-    std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
-    /// True if the selection's borders run along the edges of the mesh unless `level_of` gives a level.
+    /// True if the borders of a selection without a level (`level_of`) run along the edges of the mesh.
     bool keeps_to_edges(const SelectionExpression& expression) const;
     /// True if this lasso runs along the edges of the mesh, that is, if it states a metric.
     bool keeps_to_edges(const selection::Lasso& lasso) const;

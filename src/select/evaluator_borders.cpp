@@ -1,7 +1,6 @@
 // Borders of selections through the faces, for free outlines.
 #include "select/evaluator.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/core/overloaded.h"
 #include "ostraka/execution/parallel.h"
 #include "ostraka/geom/geodesic.h"
@@ -347,12 +346,6 @@ std::vector<bool> ExpressionEvaluator::faces_at_level(const SelectionLevel& leve
     constexpr double infinite = std::numeric_limits<double>::infinity();
     return faces_between(mesh_, {cut_->vertex_values(whole_->mesh_, level.values), false},
                          level.above ? ScalarRange{level.level, infinite} : ScalarRange{-infinite, level.level});
-}
-
-std::vector<bool> ExpressionEvaluator::faces_of_origin(const std::vector<bool>& whole) const {
-    std::vector<bool> parts(cut_->face_origin.size());
-    for (std::size_t f = 0; f < parts.size(); ++f) parts[f] = whole[cut_->face_origin[f]];
-    return parts;
 }
 
 std::vector<bool> ExpressionEvaluator::lassoed(const selection::Lasso& lasso, const std::string& at) const {

@@ -1,7 +1,6 @@
 // Expressions and picks through a camera.
 #include "select/evaluator.h"
 
-#include "ostraka/core/error.h"
 #include "ostraka/core/overloaded.h"
 #include "ostraka/core/text.h"
 

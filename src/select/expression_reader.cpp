@@ -7,7 +7,6 @@
 #include "select/camera_reader.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace ostraka {
 
