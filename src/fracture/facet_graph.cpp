@@ -3,6 +3,7 @@
 #include "fracture/filtered_normals.h"
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
+#include "ostraka/mesh/flood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,10 +54,7 @@ void join_contacts(const Mesh& mesh, FacetGraph& graph) {
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         const Point &p = mesh.point(mesh.source(h)), &q = mesh.point(mesh.target(h));
         const double length = std::sqrt(CGAL::squared_distance(p, q));
-        if (f == Mesh::null_face() || g == Mesh::null_face()) {
-            graph.border += length;
-            continue;
-        }
+        if (f == Mesh::null_face() || g == Mesh::null_face()) continue;
         const auto [a, b] = std::minmax(graph.patch_of_face[f], graph.patch_of_face[g]);
         if (a != b) edge_contacts.push_back({a, b, length, 0, CGAL::midpoint(p, q)});
     }
@@ -75,6 +73,21 @@ void join_contacts(const Mesh& mesh, FacetGraph& graph) {
 }
 
 }  // namespace
+
+bool has_opening(const Mesh& mesh) {
+    const FacePieces pieces = face_pieces(mesh);
+    std::vector<double> areas(pieces.count, 0);
+    double total = 0, border = 0;
+    for (const Face f : mesh.faces()) areas[pieces.of_face[f]] += face_area(mesh, f);
+    for (const double area : areas) total += area;
+    constexpr double scrap = 0.001, pinhole = 0.05;
+    for (const Edge e : mesh.edges()) {
+        const Halfedge h = mesh.halfedge(e), o = mesh.opposite(h);
+        if (!mesh.is_border(e) || areas[pieces.of_face[mesh.face(mesh.is_border(h) ? o : h)]] < scrap * total) continue;
+        border += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
+    }
+    return !(border < pinhole * std::sqrt(total));
+}
 
 FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches) {
     FacetGraph graph;
@@ -108,7 +121,7 @@ FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches) {
         graph.places.push_back(faces > max_patches && graph.areas[p] > 0 ? CGAL::ORIGIN + place[p] / graph.areas[p]
                                                                          : some_centroid[p]);
     join_contacts(mesh, graph);
-    graph.closed = graph.border < 0.05 * graph.size;  // a pinhole lets few rays out
+    graph.closed = !has_opening(mesh);
     std::vector<std::pair<Index, Index>> neighbours;
     for (const auto& c : graph.contacts) neighbours.emplace_back(c.a, c.b);
     const double spacing = 1.5 * graph.size / std::sqrt(static_cast<double>(count));

@@ -4,6 +4,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/message_text.h"
+#include "ostraka/mesh/disjoint_sets.h"
 #include "ostraka/mesh/flood.h"
 
 #include <algorithm>
@@ -24,8 +25,8 @@ public:
 
     Facets run() {
         classify_fractures();
-        classify_sides();
         answer();
+        classify_sides();
         finish();
         return std::move(result_);
     }
@@ -34,14 +35,19 @@ private:
     /// Bound of the log odds of a single patch.
     static constexpr double limit = 6;
 
-    /// Cost of the boundary at each contact: its length, reduced at or near sharp convex turns, since edges are rounded.
+    /// Convex turn of the surface at or near a contact, in crease angles: edges are rounded.
+    [[nodiscard]] double turn_at(const FacetGraph::Contact& contact) const {
+        // Near the edge of two planes, points lie about a quarter of the dihedral angle below the tangent plane.
+        const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
+        return std::max({0.0, contact.dihedral_angle, about}) / (options_.crease_angle * degree);
+    }
+
+    /// Cost of the boundary at each contact: its length, reduced at or near sharp convex turns.
     [[nodiscard]] std::vector<double> boundary() const {
         const double width = std::min(0.05 * graph_.size, walls_.thickness > 0 ? 0.5 * walls_.thickness : graph_.size);
         std::vector<double> costs;
         for (const auto& contact : graph_.contacts) {
-            // Near the edge of two planes, points lie about a quarter of the dihedral angle below the tangent plane.
-            const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
-            const double turn = std::max({0.0, contact.dihedral_angle, about}) / (options_.edge * degree);
+            const double turn = turn_at(contact);
             costs.push_back(options_.coherence * width * contact.length * (0.03 + std::exp(-turn * turn)));
         }
         return costs;
@@ -118,18 +124,50 @@ private:
     /// How far a patch faces away from the inside of the vessel, 0 to 1.
     [[nodiscard]] double outside(std::size_t p) const { return std::clamp((outward_[p] + 0.3) / 0.6, 0.0, 1.0); }
 
+    /// A connected surface that is classified as fracture.
+    struct FractureSurface {
+        double area = 0, supported_area = 0;  ///< area; area times probability of fracture
+        double outline = 0, folded = 0;       ///< length of the outline; length along convex edges
+    };
+    [[nodiscard]] std::vector<FractureSurface> fracture_surfaces() const {
+        DisjointSets connected(labels_.size());
+        const auto is_fracture = [&](Index p) { return labels_[p] == fracture_label; };
+        for (const auto& contact : graph_.contacts)
+            if (is_fracture(contact.a) && is_fracture(contact.b)) connected.unite(contact.a, contact.b);
+        std::vector<FractureSurface> surfaces(labels_.size());
+        for (Index p = 0; p < labels_.size(); ++p) {
+            if (!is_fracture(p)) continue;
+            FractureSurface& surface = surfaces[connected.find(p)];
+            surface.area += graph_.areas[p];
+            surface.supported_area += graph_.areas[p] * probability_[p];
+        }
+        constexpr double least_turn = 0.5;  // crease angles
+        for (const auto& contact : graph_.contacts) {
+            if (is_fracture(contact.a) == is_fracture(contact.b)) continue;
+            FractureSurface& surface = surfaces[connected.find(is_fracture(contact.a) ? contact.a : contact.b)];
+            surface.outline += contact.length;
+            if (turn_at(contact) > least_turn) surface.folded += contact.length;
+        }
+        return surfaces;
+    }
+
+    /// Evidence of a fracture is a surface of some size that an edge separates from the intact surface.
     void answer() {
         double fracture_area = 0, supported_area = 0, expected = 0;
-        for (std::size_t p = 0; p < labels_.size(); ++p) {
-            if (labels_[p] == fracture_label)
-                fracture_area += graph_.areas[p], supported_area += graph_.areas[p] * probability_[p];
-            expected += graph_.areas[p] * probability_[p];
+        constexpr double min_folded = 0.4;  // share of the outline
+        constexpr double min_area = 0.005;  // share of the area
+        for (const FractureSurface& surface : fracture_surfaces()) {
+            if (surface.area < min_area * graph_.area || !(surface.folded > min_folded * surface.outline)) continue;
+            fracture_area += surface.area;
+            supported_area += surface.supported_area;
         }
-        constexpr double little = 0.05;  // share of the area
+        for (std::size_t p = 0; p < labels_.size(); ++p) expected += graph_.areas[p] * probability_[p];
+        constexpr double little = 0.1;  // share of the area
         constexpr double min_support = 0.65;
         result_.answer = fracture_area > 0
                              ? (supported_area > min_support * fracture_area ? Facets::Answer::broken : Facets::Answer::unclear)
                              : (expected < little * graph_.area ? Facets::Answer::whole : Facets::Answer::unclear);
+        if (result_.answer == Facets::Answer::whole) std::replace(labels_.begin(), labels_.end(), fracture_label, std::size_t{0});
         if (result_.answer == Facets::Answer::unclear)
             result_.notes.emplace_back(
                 fracture_area > 0 ? "the surface classified as fracture may be a rough or shaped surface: inspect it"
@@ -198,7 +236,7 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
 }
 
 void FacetOptions::declare_options(OptionList& list) {
-    list("facet-edge", edge,
+    list("facet-crease-angle", crease_angle,
          "angle between the normals of two faces above which a convex edge is likely to bound a fracture surface", Range{5, 120},
          "degrees");
     list("facet-wall", wall, "maximum wall thickness of a two-sided fragment, as a share of the root of its area",

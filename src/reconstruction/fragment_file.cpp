@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/execution/parallel.h"
+#include "ostraka/fracture/facet_graph.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/measure/descriptors.h"
@@ -18,10 +19,6 @@
 namespace ostraka {
 
 namespace {
-
-bool has_border(const Mesh& mesh) {
-    return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
-}
 
 /// Adds the file name to errors about its contents.
 template <class Work>
@@ -90,7 +87,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         result.notes.emplace_back("is inside out: its faces were turned over in memory (ostraka mesh repair corrects the file)");
     }
     const bool by_shape = options.facets == FacetSource::automatic ||
-                          (options.facets == FacetSource::either && !annotated && (result.points || !has_border(fragment.mesh)));
+                          (options.facets == FacetSource::either && !annotated && (result.points || !has_opening(fragment.mesh)));
     result.facets_from = annotated && by_shape ? "shape and annotations"
                          : annotated           ? "annotations"
                          : by_shape            ? "shape"
@@ -164,13 +161,13 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
         for (const Attribute& attribute : match->attributes) {
             Quantity quantity;
             quantity.name = attribute.name;
-            quantity.values = attribute.descriptor.values;
+            quantity.values = attribute_values(attribute).values;
             quantity.power = attribute.name == "area" ? 2 : 0;
             quantities.push_back(quantity);
         }
         if (old.faces != match->faces)
             for (Attribute& attribute : old.attributes)
-                if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
+                if (Descriptor* descriptor = attribute.descriptor()) descriptor->stale = true;
         if (old.faces != match->faces) old.curves.clear();
         old.faces = std::move(match->faces);
         old.all = false;

@@ -93,6 +93,38 @@ TEST(Facets, AnIntactObjectHasNoFracture) {
     EXPECT_NE(find_facets(build_mesh(test::box(12))).answer, Facets::Answer::broken);
 }
 
+// The same log odds are evidence of a fracture at the end of a bar, which an edge surrounds, and none on a smooth ball.
+TEST(Facets, AFractureNeedsAnEdgeAroundIt) {
+    const auto answer = [](const Mesh& mesh, const std::function<bool(const Point&)>& is_likely) {
+        const FacetEvidence evidence = facet_evidence(mesh);
+        std::vector<double> log_odds;
+        for (const Point& place : evidence.graph.places) log_odds.push_back(is_likely(place) ? 3 : -5);
+        return find_facets(mesh, evidence, log_odds);
+    };
+    const Facets ball = answer(build_mesh(test::octahedron_sphere(5)), [](const Point& p) { return p.z() > 0.8; });
+    EXPECT_EQ(ball.answer, Facets::Answer::whole);
+    EXPECT_EQ(ball.area(Facet::fracture), 0);
+    const Facets large = answer(build_mesh(test::octahedron_sphere(5)), [](const Point& p) { return p.z() > 0; });
+    EXPECT_EQ(large.answer, Facets::Answer::unclear);
+    const SyntheticSherd bar = synthetic_bar(1);
+    const Facets broken = answer(bar.mesh, [](const Point& p) { return p.z() < 1e-9; });
+    EXPECT_EQ(broken.answer, Facets::Answer::broken);
+    EXPECT_GT(broken.area(Facet::fracture), 0);
+}
+
+TEST(Facets, PinholesAndScrapsAreNoOpening) {
+    TriangleSoup soup = test::octahedron_sphere(5);
+    EXPECT_FALSE(has_opening(build_mesh(soup)));
+    soup.triangles.pop_back();
+    EXPECT_FALSE(has_opening(build_mesh(soup))) << "a pinhole";
+    const TriangleSoup scrap = test::moved(test::patch(1, 1), 0.02, {3, 0, 0});
+    EXPECT_FALSE(has_opening(build_mesh(test::joined(soup, scrap)))) << "a loose scrap";
+    std::erase_if(soup.triangles, [&](const auto& t) { return soup.points[t[0]][2] > 0.9; });
+    EXPECT_TRUE(has_opening(build_mesh(soup)));
+    EXPECT_TRUE(has_opening(build_mesh(test::patch(4, 4))));
+    EXPECT_TRUE(has_opening(Mesh()));
+}
+
 TEST(Facets, AShapedFlatEndIsNoCertainFracture) {
     for (const double top : {0.5, 2.0}) {
         TriangleSoup ball = test::octahedron_sphere(5);
@@ -150,7 +182,7 @@ TEST(Facets, RejectsMeshesWithoutAreaAndInvalidOptions) {
     flat.points[2] = {0, 1, 0};
     EXPECT_EQ(find_facets(build_mesh(flat)).of_face, std::vector<Facet>{Facet::outer});
     FacetOptions options;
-    options.edge = 0;
+    options.crease_angle = 0;
     EXPECT_THROW(find_facets(build_mesh(flat), options), Error);
 }
 
@@ -228,7 +260,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     more.annotations[0].attributes.emplace_back();
     more.annotations[0].attributes.back().id = 9;
     more.annotations[0].attributes.back().name = "glaze";
-    more.annotations[0].attributes.back().note = "brown";
+    more.annotations[0].attributes.back().value = Note{"brown", {}};
     more.annotations.erase(more.annotations.begin() + 1);
     Annotation twice = more.annotations[0];
     twice.id = again;
@@ -240,7 +272,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const AnnotationSet updated = read_annotations(scratch / "sherd.ant.json", sherd.mesh);
     EXPECT_EQ(updated.unit, "mm");
     const std::string provenance = to_text(updated.provenance);
-    for (const char* part : {"\"sherd.ply\"", "\"sherd.ant.json\"", "\"facet-edge\"", "\"force-mesh\""})
+    for (const char* part : {"\"sherd.ply\"", "\"sherd.ant.json\"", "\"facet-crease-angle\"", "\"force-mesh\""})
         EXPECT_NE(provenance.find(part), std::string::npos) << part << provenance;
     EXPECT_NE(to_text(set.provenance).find("\"unit\": \"mm\""), std::string::npos);
     const std::string before = read_file(scratch / "sherd.ant.json");
@@ -269,7 +301,7 @@ TEST(FacetsCommand, WritesThreeRegions) {
         3);
     EXPECT_FALSE(std::filesystem::exists(scratch / "whole.ant.json")) << "no fracture, nothing written";
     EXPECT_EQ(test::run_command("annotation facets " + quoted(scratch / "whole.ply") + " " + quoted(scratch / "x.ant.json") +
-                                " --facet-edge 0")
+                                " --facet-crease-angle 0")
                   .code,
               2);
 }

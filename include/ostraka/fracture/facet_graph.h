@@ -28,11 +28,14 @@ struct FacetGraph {
     double area = 0;                ///< area of the surface
     double size = 0;                ///< square root of `area`: unit in which lengths of the fragment are measured
     double edge = 0;                ///< mean edge length of the mesh
-    double border = 0;              ///< total length of the borders
-    bool closed = true;             ///< true: the mesh has no border except pinholes
+    bool closed = true;             ///< true: the mesh has no opening (`has_opening`)
 
     [[nodiscard]] std::size_t count() const { return places.size(); }  ///< number of patches
 };
+
+/// Whether the surface is open: its borders together are at least 5 % of the square root of its area long. Smaller holes let few
+/// rays out. Borders of loose scraps, each with less than a thousandth of the area, do not count. Time: linear.
+bool has_opening(const Mesh& mesh);
 
 /// Divides the surface of a mesh into about `max_patches` patches at most. Throws Error (input) for a mesh without area.
 FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches = 24000);

@@ -13,8 +13,8 @@ namespace ostraka {
 /// Options of `find_facets`.
 struct FacetOptions {
     /// Angle between the normals of two faces, in degrees, at which a convex edge costs 0.4 times as much as a flat place as the
-    /// boundary of a fracture surface; the cost falls as exp(-(angle / edge)^2).
-    double edge = 40;
+    /// boundary of a fracture surface; the cost falls as exp(-(angle / crease_angle)^2).
+    double crease_angle = 40;
     /// Max wall thickness of a shell, as a fraction of the square root of the fragment's area.
     double wall = 0.25;
     /// Weight of the smoothness term (neighbouring faces get equal classes) relative to the data term (features of each face).

@@ -12,7 +12,7 @@ namespace ostraka {
 struct FragmentFileOptions {
     enum class FacetSource { either, annotated, automatic, none };
     /// Source of the facets. annotated: annotations; automatic: classification by shape; either: annotations if they contain
-    /// facets, otherwise the shape if the mesh is closed; none: all faces are outer surface.
+    /// facets, otherwise the shape if the mesh has no opening; none: all faces are outer surface.
     FacetSource facets = FacetSource::either;
     FacetOptions finding;  ///< options for finding facets from the shape
     CloudOptions cloud;    ///< options for reconstructing the surface of a point cloud
