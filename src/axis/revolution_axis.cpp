@@ -256,6 +256,10 @@ RevolutionAxis revolution_axis(const Mesh& mesh, const std::vector<Index>& faces
     const SpaceLine line = posterior.model->line(posterior.best);
     set_line(axis, search.centroid + scale * line.point, line.direction, search.centroid);
     set_extent(axis, mesh, faces);
+    if (ring.rim) {
+        const Vector3d along = ring.height < 0 ? -line.direction : line.direction;
+        result.rim_direction = Vector(along.x(), along.y(), along.z());
+    }
     return result;
 }
 

@@ -29,6 +29,7 @@ CatalogueAxis catalogue_axis(const Mesh& mesh, const std::vector<Index>& fractur
         const DiameterEstimate& diameter = revolution.diameters.front();
         result.diameter_low = diameter.low - diameter.value;
         result.diameter_high = diameter.high - diameter.value;
+        result.rim_direction = revolution.rim_direction;
         result.is_sherd = true;
         return result;
     }

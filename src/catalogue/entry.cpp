@@ -43,12 +43,12 @@ std::string lower(std::string text) {
 }
 
 std::string attribute_text(const Attribute& attribute) {
-    if (attribute.type == AttributeType::semantic) return attribute.note;
+    if (const Note* note = attribute.note()) return note->text;
     const Figures figures = attribute_values(attribute);
     if (figures.values.size() != 1) return figures.values.empty() ? "" : counted(figures.values.size(), "value");
     std::string text = digits(figures.values[0], 5) + (figures.unit.empty() ? "" : " " + figures.unit);
-    if (attribute.type == AttributeType::measure && attribute.measure.uncertainty)
-        text += " \u00B1 " + digits(*attribute.measure.uncertainty, 2);
+    if (const Measure* measure = attribute.measure(); measure != nullptr && measure->uncertainty)
+        text += " \u00B1 " + digits(*measure->uncertainty, 2);
     return text + (figures.stale ? " (out of date)" : "");
 }
 

@@ -88,9 +88,11 @@ struct Turn {
     std::string doubt;
 };
 
-Turn turn_of_sherd(const Pose& pose) {
+/// `rim_above`: whether the rim found with the axis is at the top; empty without a rim.
+Turn turn_of_sherd(const Pose& pose, std::optional<bool> rim_above) {
     const EndShape top = shape_of(pose, true), bottom = shape_of(pose, false);
     if (top.base != bottom.base) return {top.base, ""};
+    if (rim_above) return {!*rim_above, ""};
     if (pose.top.is_level() != pose.bottom.is_level()) return {pose.bottom.is_level(), ""};
     if (!pose.top.is_level()) return {false, "neither end of the wall is level or closes: which end is up is not known"};
     // Two level ends: a break cut straight is flat, a lip is not; else the wider end is taken for the rim.
@@ -156,7 +158,8 @@ Pose pose_of(const TriangleSoup& soup, const CatalogueAxis& axis, double factor,
     if (hint_known) {
         // A stated direction is not doubted.
     } else if (!pose.all_around) {
-        turn = turn_of_sherd(pose);
+        const auto rim_above = axis.rim_direction ? std::optional<bool>(*axis.rim_direction * up > 0) : std::nullopt;
+        turn = turn_of_sherd(pose, rim_above);
     } else if (const std::size_t top = hollow_rows(pose.grid, true), bottom = hollow_rows(pose.grid, false); top != bottom) {
         turn.over = bottom > top;
     } else {

@@ -109,6 +109,20 @@ TEST(RevolutionAxis, IntervalsHoldTheTruth) {
     EXPECT_GE(diameters, 9);
 }
 
+TEST(RevolutionAxis, ThePartIsBelowItsRim) {
+    for (const std::uint64_t seed : {41, 42, 43}) {
+        const Sherd sherd = rim_sherd(50, 0.05, seed);
+        const RevolutionAxis result = axis_of(sherd.mesh);
+        ASSERT_TRUE(result.rim_direction) << result.axis.reason;
+        EXPECT_GT(eigen(*result.rim_direction).dot(sherd.direction), 0.99);
+    }
+    const Mesh wall = build_mesh(grid(60, 40, false, false, [&](double s, double t) {
+        const double a = s * 50 * degree;
+        return std::array<double, 3>{100 * std::cos(a), 100 * std::sin(a), 60 * t};
+    }));
+    EXPECT_FALSE(axis_of(wall).rim_direction);
+}
+
 // On a long arc the top of the lip, not the axis, limits the diameter.
 TEST(RevolutionAxis, IntervalsHoldTheTopOfALeaningLip) {
     int diameters = 0;

@@ -266,7 +266,7 @@ TEST(Catalogue, PutsManyOnASheetAtOneScale) {
     std::vector<CatalogueEntry> entries;
     for (const double degrees : {30.0, 40.0, 50.0, 60.0, 70.0}) entries.push_back(entry_of(rim_sherd(degrees)));
     CatalogueStyle style;
-    style.sheet = true;
+    style.several_per_page = true;
     for (const auto convention :
          {CatalogueStyle::Convention::english, CatalogueStyle::Convention::continental, CatalogueStyle::Convention::american}) {
         style.convention = convention;

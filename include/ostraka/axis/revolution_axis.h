@@ -4,6 +4,7 @@
 #include "ostraka/axis/axis.h"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct RevolutionAxis {
     /// The diameter at the rim, if there is one, and at the widest place; empty if the part determines no intervals.
     std::vector<DiameterEstimate> diameters;
     bool undetermined = false;  ///< true: there is no axis because the interval of the first diameter is too wide
+    /// Unit vector along the axis from the part towards its rim; empty if there is no axis or no rim.
+    std::optional<Vector> rim_direction = std::nullopt;
 };
 
 /// Axis and diameter of a surface of revolution with 95 % intervals. The estimate starts at `rotation_axis` and at several tilted

@@ -4,6 +4,7 @@
 
 #include "ostraka/mesh/mesh.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct CatalogueAxis {
     /// Bounds of the 95 % interval of a diameter, relative to the diameter measured about the axis: the true diameter lies
     /// between diameter + `diameter_low` and diameter + `diameter_high`.
     double diameter_low = 0, diameter_high = 0;
-    bool is_sherd = false;  ///< true: the interval is that of the posterior of a sherd (`revolution_axis`)
+    std::optional<Vector> rim_direction;  ///< unit vector along the axis towards the rim of a sherd; empty: no rim
+    bool is_sherd = false;                ///< true: the interval is that of the posterior of a sherd (`revolution_axis`)
 };
 
 /// The axis of the surface of revolution fitted to all faces except `fractures` (`revolution_axis`). A sherd has the 95 %
